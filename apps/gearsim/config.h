@@ -1,0 +1,95 @@
+/* SPDX-FileCopyrightText: The gearmesh authors */
+/* SPDX-License-Identifier: BSD-3-Clause */
+
+/*
+ * What a run is asked to do: the INI file and the command line, checked and converted to SI once. NaN in
+ * an optional number means that the key is missing.
+ */
+#ifndef GEARSIM_CONFIG_H
+#define GEARSIM_CONFIG_H
+
+#include <gearmesh/gearmesh.h>
+#include <stdint.h>
+#include <stdio.h>
+
+enum mesh_model { MODEL_SIMPLE, MODEL_3D };
+enum drive_kind { DRIVE_SPEED, DRIVE_TORQUE };
+enum analysis_type { ANALYSIS_DYNAMIC, ANALYSIS_STATIC };
+enum static_period { PERIOD_MESH, PERIOD_PINION, PERIOD_HUNTING };
+enum solver_method { METHOD_BDF, METHOD_ADAMS };
+enum deviation_direction { DEVIATION_NORMAL, DEVIATION_TRANSVERSE };
+
+typedef struct flank_files {
+    char *deviations; /* path as it can be opened from the working folder, NULL = ideal */
+    char *pitch;
+} flank_files;
+
+typedef struct config {
+    char *path; /* of the INI file, as given */
+
+    gm_pair_params gears;
+
+    flank_files pinion_flanks;
+    flank_files wheel_flanks;
+    double flank_scale;
+    enum deviation_direction deviation_direction;
+    double profile_from, profile_to, profile_blend;
+
+    enum mesh_model model;
+    double stiffness;        /* K of one tooth pair, N/m */
+    double damping;          /* D of one tooth pair, N s/m */
+    double simple_stiffness; /* of the simple model, N/m; NaN: stiffness * eps_alpha */
+
+    double pinion_inertia; /* kg m2 */
+    double wheel_inertia;
+
+    enum drive_kind drive;
+    double start_speed, end_speed; /* rad/s */
+    double drive_torque;           /* N m */
+
+    double mean_load; /* N m */
+    double noise_amplitude;
+    double noise_interval; /* s */
+    uint64_t seed;
+
+    enum analysis_type analysis;
+    double duration; /* s */
+    int positions;
+    enum static_period period;
+
+    enum solver_method method;
+    double relative_tolerance;
+    double absolute_tolerance; /* of x, m */
+    double max_step;           /* s, 0 = none */
+
+    char *output_file;  /* as it can be opened from the working folder */
+    double output_rate; /* Hz */
+    int oversampling;
+    int digits;
+    char *columns; /* names separated by commas, NULL = all */
+
+    int quiet;
+
+    /* Every key in effect, defaults included, as "section.key = value": what an output says of its origin. */
+    char **provenance;
+    int provenance_count;
+} config;
+
+/* Exit codes of gearsim. */
+enum exit_code { EXIT_DONE = 0, EXIT_RUN_FAILED = 1, EXIT_BAD_INPUT = 2, EXIT_INTERRUPTED = 130 };
+
+/*
+ * Reads and checks an INI file and the `--set section.key=value` overrides. Messages go to stderr as
+ * `file:line: section.key: what is wrong, and what would be right`. Returns 0, or EXIT_BAD_INPUT with
+ * nothing allocated.
+ */
+int config_load(config *config, const char *path, char *const overrides[], int override_count,
+                const char *output_file, int quiet);
+
+void config_free(config *config);
+
+/* Where a key was set, for messages about its value that only a later step can find: prints
+ * "file:line: section.key: " (or "--set section.key: ") and then the formatted message and a newline. */
+void config_complain(const config *config, const char *section_and_key, const char *format, ...);
+
+#endif

@@ -1,0 +1,13 @@
+/* SPDX-FileCopyrightText: The gearmesh authors */
+/* SPDX-License-Identifier: BSD-3-Clause */
+
+/* The dynamic analysis: from quasi-static start to CSV, with progress and interruption. */
+#ifndef GEARSIM_DYNAMICS_H
+#define GEARSIM_DYNAMICS_H
+
+#include "gearbox.h"
+
+/* Returns an exit code, after a message on stderr if it is not EXIT_DONE. */
+int dynamics_run(const config *config, const gearbox *gearbox);
+
+#endif

@@ -1,0 +1,13 @@
+/* SPDX-FileCopyrightText: The gearmesh authors */
+/* SPDX-License-Identifier: BSD-3-Clause */
+
+/* The static analysis: loaded transmission error over the pinion angle. */
+#ifndef GEARSIM_STATICS_H
+#define GEARSIM_STATICS_H
+
+#include "gearbox.h"
+
+/* Returns an exit code, after a message on stderr if it is not EXIT_DONE. */
+int statics_run(const config *config, const gearbox *gearbox);
+
+#endif

@@ -1,0 +1,502 @@
+/* SPDX-FileCopyrightText: The gearmesh authors */
+/* SPDX-License-Identifier: BSD-3-Clause */
+
+/**
+ * @file gearmesh.h
+ * The open gear mesh element: contact of two real, measured, helical gears for any solver.
+ *
+ * The library answers one question: given the two rotation angles of an external pair of involute
+ * gears, how deep do the teeth press into each other, how does that change with both angles, and
+ * which force and wrench follow. Every tooth may have a measured flank of its own.
+ *
+ * ## The call
+ *
+ *     gm_pair_params params;
+ *     gm_pair_params_default(&params);
+ *     params.pinion_teeth = 45; ...                      // what the drawing says
+ *     gm_pair pair;
+ *     int status = gm_pair_init(&pair, &params);         // once
+ *
+ *     gm_state state = { .pinion_angle = 0.1, .wheel_angle = 0.11 };
+ *     gm_penetration result;                             // at every step, from any thread
+ *     status = gm_penetration_3d(&pair, NULL, NULL, &state, &result);
+ *
+ * ## Conventions (libgearmesh/docs/conventions.md has the sketch)
+ *
+ * - SI units and radians everywhere.
+ * - Pinion axis at the origin, +z along it, +x towards the wheel axis at x = center_distance.
+ *   `pinion_angle` > 0 counter-clockwise seen against +z; `wheel_angle` > 0 clockwise, so that both
+ *   are positive in the driven direction.
+ * - At zero angles pinion tooth 0 and a wheel tooth space stand on the centre line in the section
+ *   z = 0; the backlash is symmetric there.
+ * - Mesh coordinate x = r_bp phi_p - r_bw phi_w. The drive flanks touch for x > backlash / 2, the
+ *   coast flanks for x < -backlash / 2. The transmission error shown to users is -x.
+ * - helix_angle > 0: the pinion is right-handed (the wheel left-handed).
+ * - t1 = z / face_width in [0, 1]; t2 in [0, 1] is uniform in the roll angle from the start radius
+ *   to the tip radius. Flank deviation > 0: material added.
+ *
+ * ## Properties of every function here
+ *
+ * No heap, no input or output, no global state, no recursion; bounded work per call, whatever the
+ * angles and numbers of teeth. Same inputs, same bits, from any thread. Apart from the inputs marked
+ * `[out]` nothing is written. Functions return a status: 0 done, > 0 the state is at fault (a solver
+ * may try a smaller step), < 0 the call is at fault. On any other status than 0 outputs are NaN.
+ *
+ * ## Sources (equation by equation in libgearmesh/docs/equations.md)
+ *
+ * - [Paper] "Analytical gear mesh model using 3D gear geometry", Eqs. 1..25, with the corrections
+ *   that docs/equations.md lists and derives.
+ * - [ISO21771] ISO 21771-1 (geometry of cylindrical involute gears), terms and symbols.
+ */
+#ifndef GEARMESH_H
+#define GEARMESH_H
+
+#include <stddef.h>
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+/** Version of this header; gm_version() gives that of the library. */
+#define GM_VERSION_MAJOR  0
+#define GM_VERSION_MINOR  1
+#define GM_VERSION_PATCH  0
+#define GM_VERSION_STRING "0.1.0"
+
+#if defined(_WIN32) && defined(GEARMESH_SHARED)
+#ifdef GEARMESH_BUILDING
+#define GM_API __declspec(dllexport)
+#else
+#define GM_API __declspec(dllimport)
+#endif
+#elif defined(__GNUC__)
+#define GM_API __attribute__((visibility("default")))
+#else
+#define GM_API
+#endif
+
+/* ---------------------------------------------------------------------------------------------
+ * Status
+ * ------------------------------------------------------------------------------------------- */
+
+/**
+ * Status of a call: 0 done; > 0 recoverable, a smaller step may help; < 0 not recoverable. This is
+ * the contract of a SUNDIALS right-hand side, so that it can be handed through unchanged.
+ */
+enum gm_status {
+    GM_OK = 0,
+
+    GM_STATE_NOT_FINITE = 1, /**< an angle, speed or coordinate is NaN or infinite */
+    GM_STATE_OUT_OF_RANGE =
+        2,                 /**< |x| >= p_bt / 2 (a tooth would be skipped) or |angle| > 1e9 rad */
+    GM_NO_EQUILIBRIUM = 3, /**< no contact within |x| < p_bt / 2 carries the torque */
+    GM_UNDETERMINED = 4,   /**< no torque: any position within the backlash is in equilibrium */
+
+    GM_ERR_NULL = -1,      /**< a required pointer is NULL */
+    GM_ERR_PARAMETER = -2, /**< a parameter is out of its range, see gm_pair_params_check() */
+    GM_ERR_GEOMETRY = -3,  /**< each parameter is fine, but together they give no gear pair */
+    GM_ERR_MEMORY = -4,    /**< the memory provided is too small, or all table places are taken */
+    GM_ERR_TOOTH = -5,    /**< no such tooth or flank, or the flanks have another number of teeth */
+    GM_ERR_DEVIATION = -6 /**< a flank or pitch deviation is not finite */
+};
+
+/** Text of a status; never NULL, "unknown status" for any other integer. */
+GM_API const char *gm_status_text(int status);
+
+/** Version of the library, "major.minor.patch". */
+GM_API const char *gm_version(void);
+
+/* ---------------------------------------------------------------------------------------------
+ * Gear pair: what a drawing gives, and what follows from it
+ * ------------------------------------------------------------------------------------------- */
+
+/** How the base helix angle follows from the helix angle. */
+enum gm_base_helix {
+    GM_BASE_HELIX_ISO = 0, /**< tan(beta_b) = tan(beta) cos(alpha_t) [ISO21771]: right */
+    GM_BASE_HELIX_PAPER =
+        1 /**< tan(beta_b) = tan(beta) / cos(alpha_t) as printed in [Paper, Eq. 6]:
+                                 wrong, only there to reproduce the printed equation */
+};
+
+/**
+ * What a drawing gives of a gear pair. Fill with gm_pair_params_default(), then set at least the
+ * fields marked required. NaN in an optional field = derive it as stated.
+ */
+typedef struct gm_pair_params {
+    int pinion_teeth;             /**< z_p, 3 .. 100000, required */
+    int wheel_teeth;              /**< z_w, 3 .. 100000, required */
+    int base_helix;               /**< enum gm_base_helix [GM_BASE_HELIX_ISO] */
+    double normal_module;         /**< m_n, m, > 0, required */
+    double normal_pressure_angle; /**< alpha_n, rad, 0 < alpha_n < 45 deg, required */
+    double helix_angle;           /**< beta, rad, |beta| < 60 deg, > 0: right-handed pinion [0] */
+    double center_distance;       /**< d, m, > r_bp + r_bw, required */
+    double face_width;            /**< b, common to both gears, m, > 0, required */
+    double
+        pinion_profile_shift;   /**< x_p, 1 [NaN: half of the sum that gives zero backlash; the rest
+                                        of that sum if only the wheel's is given] */
+    double wheel_profile_shift; /**< x_w, 1 [NaN: as for the pinion] */
+    double backlash;            /**< transverse, along the line of action, m [NaN: from the tooth
+                                        thicknesses; else both normal thicknesses at the reference
+                                        circles are changed equally to give it]; may be negative */
+    double pinion_normal_thickness; /**< s_n at the reference circle, m, > 0 [NaN: from the profile
+                                        shift]; where given it wins over the shift */
+    double wheel_normal_thickness;  /**< as for the pinion */
+    double pinion_tip_radius;       /**< r_ap, m [NaN: reference radius + m_n (1 + x_p)] */
+    double wheel_tip_radius;        /**< r_aw, m [NaN: reference radius + m_n (1 + x_w)] */
+    double pinion_start_radius; /**< start of the active profile, m [NaN: the point that meets the
+                                        wheel's tip at zero penetration]; below the base circle it is
+                                        taken as the base circle */
+    double wheel_start_radius;  /**< as for the pinion */
+} gm_pair_params;
+
+/** What belongs to one gear alone, whatever its mate and pose. Read-only after gm_pair_init(). */
+typedef struct gm_gear {
+    int teeth;                  /**< z */
+    double profile_shift;       /**< x, nominal (1) */
+    double reference_radius;    /**< r (m) */
+    double base_radius;         /**< r_b (m) */
+    double tip_radius;          /**< r_a (m) */
+    double start_radius;        /**< start of the active profile (m) */
+    double normal_thickness;    /**< s_n at the reference circle, backlash included (m) */
+    double base_half_thickness; /**< psi_b, half tooth thickness angle on the base circle (rad) */
+    double start_roll_length;   /**< rho at the start radius = r_b chi_start (m) */
+    double tip_roll_length;     /**< rho at the tip radius = r_b chi_end (m) */
+    double pitch_angle;         /**< 2 pi / z, leading part (rad) */
+    double
+        pitch_angle_remainder; /**< 2 pi / z - pitch_angle, so that 1e6 rad cost one rounding (rad) */
+} gm_gear;
+
+/**
+ * A gear pair ready for evaluation. Filled by gm_pair_init(), read-only afterwards; plain data, may
+ * be copied. The second half depends on the pose (center distance), the first does not.
+ */
+typedef struct gm_pair {
+    gm_gear pinion;
+    gm_gear wheel;
+
+    double normal_module;             /**< m_n (m) */
+    double transverse_module;         /**< m_t (m) */
+    double normal_pressure_angle;     /**< alpha_n (rad) */
+    double transverse_pressure_angle; /**< alpha_t (rad) */
+    double helix_angle;               /**< beta, > 0: right-handed pinion (rad) */
+    double base_helix_angle;          /**< beta_b, sign of beta (rad) */
+    double transverse_base_pitch;     /**< p_bt (m) */
+    double face_width;                /**< b (m) */
+    double twist;                /**< b tan(beta_b): how far a contact line climbs along the line
+                                           of action over the face width, signed (m) */
+    double normal_to_transverse; /**< 1 / cos(beta_b): factor from a deviation along the surface
+                                           normal to one in the transverse section (1) */
+
+    double center_distance;           /**< d (m) */
+    double reference_center_distance; /**< r_p + r_w (m) */
+    double working_pressure_angle;    /**< alpha_wt (rad) */
+    double line_of_action;            /**< T0, between the base tangent points (m) */
+    double path_start;                /**< of the path of contact at zero penetration, from the
+                                           pinion's tangent point (m) */
+    double path_end;                  /**< end of it (m) */
+    double transverse_contact_ratio;  /**< eps_alpha (1) */
+    double overlap_ratio;             /**< eps_beta >= 0 (1) */
+    double total_contact_ratio;       /**< eps_gamma (1) */
+    double backlash;                  /**< transverse, along the line of action (m) */
+    double
+        phase_origin; /**< rho_p of tooth 0 at phi_p = 0, t1 = 0 = r_bp (alpha_wt + psi_bp) (m) */
+} gm_pair;
+
+/** Fills with NaN (optional: derive; required: missing), zero helix angle, ISO base helix, 0 teeth. */
+GM_API void gm_pair_params_default(gm_pair_params *params);
+
+/**
+ * Checks parameters without deriving a pair.
+ *
+ * @param[in]  params       the parameters
+ * @param[out] field        name of the offending field of gm_pair_params, a constant string; NULL if
+ *                          all is well. May be NULL.
+ * @param[out] requirement  what would be right, a constant string for people; NULL if all is well.
+ *                          May be NULL.
+ * @return GM_OK, GM_ERR_NULL, GM_ERR_PARAMETER, GM_ERR_GEOMETRY
+ */
+GM_API int gm_pair_params_check(const gm_pair_params *params, const char **field,
+                                const char **requirement);
+
+/**
+ * Derives a gear pair [Paper, Eqs. 4-8, 13-17, 23, corrected; ISO21771].
+ *
+ * @param[out] pair    the pair; on error every double in it is NaN and the numbers of teeth are 0
+ * @param[in]  params  the parameters
+ * @return GM_OK, GM_ERR_NULL, GM_ERR_PARAMETER, GM_ERR_GEOMETRY
+ *
+ * Valid for external cylindrical involute pairs on parallel axes.
+ */
+GM_API int gm_pair_init(gm_pair *pair, const gm_pair_params *params);
+
+/** Properties that do not forbid a run but that an engineer wants to hear of. */
+enum gm_pair_doubt {
+    GM_DOUBT_PINION_UNDERCUT = 1 << 0, /**< generating rack cuts below the pinion's base circle */
+    GM_DOUBT_WHEEL_UNDERCUT = 1 << 1,  /**< as for the pinion */
+    GM_DOUBT_PINION_TIP_LAND =
+        1 << 2,                       /**< normal tip thickness below 0.2 m_n, or a pointed tooth */
+    GM_DOUBT_WHEEL_TIP_LAND = 1 << 3, /**< as for the pinion */
+    GM_DOUBT_PINION_ROOT_FORM = 1 << 4, /**< start radius below the root form circle */
+    GM_DOUBT_WHEEL_ROOT_FORM = 1 << 5,  /**< as for the pinion */
+    GM_DOUBT_CONTACT_RATIO = 1 << 6,    /**< transverse contact ratio below 1 */
+    GM_DOUBT_BACKLASH = 1 << 7,         /**< negative backlash: both flanks touch */
+    GM_DOUBT_PINION_START_RADIUS =
+        1 << 8, /**< a start radius below the base circle was raised to it */
+    GM_DOUBT_WHEEL_START_RADIUS = 1 << 9 /**< as for the pinion */
+};
+
+/**
+ * Doubtful properties of a pair, as a sum of enum gm_pair_doubt; 0 = none, or a pointer is NULL.
+ *
+ * The root form and undercut are those of a rack whose straight part reaches 0.05 m_n deeper than
+ * the mate's tip needs: rho_Ff = r sin(alpha_t) - (h_Ff - x m_n) / sin(alpha_t), undercut where < 0.
+ */
+GM_API int gm_pair_doubts(const gm_pair *pair, const gm_pair_params *params);
+
+/* ---------------------------------------------------------------------------------------------
+ * Flanks: deviations of every tooth from the ideal involute helicoid
+ * ------------------------------------------------------------------------------------------- */
+
+enum gm_flank_side {
+    GM_DRIVE = 0, /**< flanks that touch when the pinion drives the wheel forward */
+    GM_COAST = 1  /**< the other flanks */
+};
+
+/** In place of a tooth number: all teeth of the gear. */
+#define GM_ALL_TEETH (-1)
+
+/** Sizes of the flank tables of one gear. A side without tables has 0 tables, nodes are ignored. */
+typedef struct gm_flanks_params {
+    int teeth;            /**< number of teeth of the gear */
+    int drive_tables;     /**< how many different tables the drive side can hold, 0 .. teeth + 1 */
+    int drive_face_nodes; /**< grid lines along the face (t1), 2 .. 10000 */
+    int drive_profile_nodes; /**< grid lines along the profile (t2), 2 .. 10000 */
+    int coast_tables;        /**< as for the drive side */
+    int coast_face_nodes;
+    int coast_profile_nodes;
+} gm_flanks_params;
+
+/** One side (drive or coast) of all teeth of a gear: views over the caller's memory. */
+typedef struct gm_flank_tables {
+    int face_nodes;     /**< grid lines along t1 */
+    int profile_nodes;  /**< grid lines along t2 */
+    int capacity;       /**< table places */
+    int count;          /**< table places taken */
+    double peak;        /**< most material of any tooth, pitch included (m) */
+    double *values;     /**< [capacity][face_nodes][profile_nodes][4]: node value, its second
+                             difference along t1, that along t2, 0 (m) */
+    double *table_peak; /**< [capacity] largest node value (m) */
+    double *pitch;      /**< [teeth] transverse pitch deviation, > 0 material added (m) */
+    int *table;         /**< [teeth] table of a tooth, -1 = ideal */
+} gm_flank_tables;
+
+/** The flanks of one gear. Prepared once by the functions below, read-only in evaluation. */
+typedef struct gm_flanks {
+    int teeth;
+    gm_flank_tables drive;
+    gm_flank_tables coast;
+} gm_flanks;
+
+/** Bytes of memory that gm_flanks_init() needs, 0 if the parameters are out of range or too large. */
+GM_API size_t gm_flanks_size(const gm_flanks_params *params);
+
+/**
+ * Prepares ideal flanks in memory of the caller; tables and pitch deviations are set afterwards.
+ *
+ * @param[out] flanks       the flanks; valid as long as the memory is, which must not move
+ * @param[in]  params       sizes
+ * @param[in]  memory       at least gm_flanks_size() bytes, aligned for double
+ * @param[in]  memory_size  bytes in memory
+ * @return GM_OK, GM_ERR_NULL, GM_ERR_PARAMETER, GM_ERR_MEMORY
+ */
+GM_API int gm_flanks_init(gm_flanks *flanks, const gm_flanks_params *params, void *memory,
+                          size_t memory_size);
+
+/**
+ * Gives one tooth, or all teeth, a table of deviations. Each call takes one table place; a later call
+ * for a tooth replaces the table of that tooth alone.
+ *
+ * @param[in,out] flanks     the flanks
+ * @param[in]     side       GM_DRIVE or GM_COAST
+ * @param[in]     tooth      0 .. teeth - 1, or GM_ALL_TEETH
+ * @param[in]     deviation  [face_nodes][profile_nodes] node values at t1 = k1 / (face_nodes - 1),
+ *                           t2 = k2 / (profile_nodes - 1), bilinear in between, > 0 material added (m)
+ * @param[in]     factor     multiplies every node: pair.normal_to_transverse for deviations along the
+ *                           surface normal (as measured), 1 for those in the transverse section
+ * @return GM_OK, GM_ERR_NULL, GM_ERR_TOOTH, GM_ERR_MEMORY (no place left), GM_ERR_DEVIATION; on an
+ *         error nothing is changed
+ */
+GM_API int gm_flanks_set_table(gm_flanks *flanks, int side, int tooth, const double *deviation,
+                               double factor);
+
+/**
+ * Sets the pitch deviation of one tooth, or of all teeth: a shift of the whole flank in the
+ * transverse section along the line of action, > 0 material added on that side (m).
+ *
+ * A tooth displaced by f along +phi_p has drive +f and coast -f; a wheel tooth displaced by f along
+ * +phi_w has drive -f and coast +f.
+ *
+ * @return GM_OK, GM_ERR_NULL, GM_ERR_TOOTH, GM_ERR_DEVIATION
+ */
+GM_API int gm_flanks_set_pitch(gm_flanks *flanks, int side, int tooth, double deviation);
+
+/* ---------------------------------------------------------------------------------------------
+ * Penetration
+ * ------------------------------------------------------------------------------------------- */
+
+/** What a solver knows: two angles and speeds in the driven direction. */
+typedef struct gm_state {
+    double pinion_angle; /**< phi_p (rad) */
+    double wheel_angle;  /**< phi_w (rad) */
+    double pinion_speed; /**< d phi_p / dt (rad/s) */
+    double wheel_speed;  /**< d phi_w / dt (rad/s) */
+} gm_state;
+
+/**
+ * The same with the angles reduced to teeth: what the evaluation really needs. A solver that
+ * integrates x itself (micrometres matter) fills it with gm_position_from_pinion_angle().
+ */
+typedef struct gm_position {
+    int pinion_tooth;   /**< pinion tooth whose phase it is, 0 .. z_p - 1 */
+    int wheel_tooth;    /**< wheel tooth that its drive flank meets, 0 .. z_w - 1 */
+    double phase;       /**< r_bp times the angle of that pinion tooth, in [0, p_bt) (m) */
+    double offset;      /**< x = r_bp phi_p - r_bw phi_w, |x| < p_bt / 2 (m) */
+    double offset_rate; /**< dx/dt (m/s) */
+} gm_position;
+
+/** Result of an evaluation. Net = drive - coast. */
+typedef struct gm_penetration {
+    double penetration; /**< net sum of Eq. 24 over all pairs (m) */
+    double rate;        /**< net approach speed dx/dt times the touching fraction (m/s) */
+    double drive;       /**< sum over the drive flanks, >= 0 (m) */
+    double coast;       /**< sum over the coast flanks, >= 0 (m) */
+    double drive_rate;  /**< rate of the drive flanks alone; rate = drive_rate - coast_rate (m/s) */
+    double coast_rate;  /**< rate of the coast flanks alone (m/s) */
+    double drive_contact;  /**< touching part of the face width, summed over drive pairs (1) */
+    double coast_contact;  /**< the same of the coast pairs (1) */
+    double d_pinion_angle; /**< partial derivative of penetration by phi_p, exact (m/rad) */
+    double d_wheel_angle;  /**< partial derivative of penetration by phi_w, exact (m/rad) */
+    int drive_pairs;       /**< drive pairs that touch */
+    int coast_pairs;       /**< coast pairs that touch */
+} gm_penetration;
+
+/**
+ * Reduces angles and speeds to a position. Costs one rounding of each angle and no more, up to
+ * 1e9 rad (Cody-Waite reduction with the pitch angle in two parts).
+ *
+ * @return GM_OK, GM_ERR_NULL, GM_STATE_NOT_FINITE, GM_STATE_OUT_OF_RANGE
+ */
+GM_API int gm_position_from_state(const gm_pair *pair, const gm_state *state,
+                                  gm_position *position);
+
+/**
+ * The same for a solver that integrates x = r_bp phi_p - r_bw phi_w instead of the wheel angle.
+ *
+ * @param[in]  pair          the pair
+ * @param[in]  pinion_angle  phi_p (rad)
+ * @param[in]  offset        x (m)
+ * @param[in]  offset_rate   dx/dt (m/s)
+ * @param[out] position      the position
+ * @return GM_OK, GM_ERR_NULL, GM_STATE_NOT_FINITE, GM_STATE_OUT_OF_RANGE
+ */
+GM_API int gm_position_from_pinion_angle(const gm_pair *pair, double pinion_angle, double offset,
+                                         double offset_rate, gm_position *position);
+
+/**
+ * Simple model: a spring with backlash [Paper, Eqs. 9-11, with |x| in Eq. 10]. One pair, no tooth
+ * engagement; drive = max(0, x - backlash / 2), coast = max(0, -x - backlash / 2).
+ *
+ * @return as gm_position_from_state(), but with any x
+ */
+GM_API int gm_penetration_simple(const gm_pair *pair, const gm_state *state,
+                                 gm_penetration *result);
+
+/**
+ * 3D model: exact integral of the penetration over all contact lines of both flanks [Paper, Eqs. 12-25,
+ * corrected].
+ *
+ * @param[in]  pair           the pair
+ * @param[in]  pinion_flanks  deviations of the pinion's teeth, NULL = ideal
+ * @param[in]  wheel_flanks   deviations of the wheel's teeth, NULL = ideal
+ * @param[in]  state          angles and speeds
+ * @param[out] result         all fields; NaN (pairs 0) on error
+ * @return GM_OK, GM_ERR_NULL, GM_ERR_TOOTH (flanks of another number of teeth), GM_STATE_NOT_FINITE,
+ *         GM_STATE_OUT_OF_RANGE
+ *
+ * Valid for |x| < p_bt / 2, where no tooth is skipped. The sum is continuous for helical gears and
+ * jumps for spur gears (helix angle 0) when a pair enters or leaves. Derivatives are one-sided on the
+ * countable kinks.
+ * Accuracy: 1e-10 relative plus what double precision loses in one rounding of the angles.
+ */
+GM_API int gm_penetration_3d(const gm_pair *pair, const gm_flanks *pinion_flanks,
+                             const gm_flanks *wheel_flanks, const gm_state *state,
+                             gm_penetration *result);
+
+/** As gm_penetration_3d(), from a reduced position: the hot entry, without trigonometry or division. */
+GM_API int gm_penetration_3d_at(const gm_pair *pair, const gm_flanks *pinion_flanks,
+                                const gm_flanks *wheel_flanks, const gm_position *position,
+                                gm_penetration *result);
+
+/** As gm_penetration_simple(), from x and dx/dt alone. */
+GM_API int gm_penetration_simple_at(const gm_pair *pair, double offset, double offset_rate,
+                                    gm_penetration *result);
+
+/* ---------------------------------------------------------------------------------------------
+ * Force, wrench, equilibrium
+ * ------------------------------------------------------------------------------------------- */
+
+/**
+ * Contact force along the transverse line of action, net = drive - coast [Paper, Eq. 3]:
+ * per flank max(0, stiffness * penetration + damping * rate), as teeth do not pull.
+ *
+ * @param[in] stiffness    K of one tooth pair over the full face width; K_simple for the simple model (N/m)
+ * @param[in] damping      D likewise (N s/m)
+ * @param[in] penetration  result of an evaluation
+ * @return F (N), > 0 drives the wheel forward; NaN if penetration is NULL or not finite.
+ *         I_p phi_p'' = M_p - F r_bp and I_w phi_w'' = -M_w + F r_bw [Paper, Eqs. 1-2, base radii].
+ */
+GM_API double gm_contact_force(double stiffness, double damping, const gm_penetration *penetration);
+
+/** Force and moment on both gears in the frame of the file comment. */
+typedef struct gm_wrench {
+    double pinion_force[3];  /**< on the pinion (N) */
+    double pinion_moment[3]; /**< on the pinion about its axis at z = 0 (N m) */
+    double wheel_force[3];   /**< on the wheel (N) */
+    double wheel_moment[3];  /**< on the wheel about its axis at z = 0 (N m) */
+} gm_wrench;
+
+/**
+ * Wrench of the contact forces, each line of contact taken where it is: with the tilting moments of
+ * helical gears and of partly touching flanks. Frictionless: forces along the surface normal.
+ *
+ * @return as gm_penetration_3d_at()
+ */
+GM_API int gm_wrench_3d_at(const gm_pair *pair, const gm_flanks *pinion_flanks,
+                           const gm_flanks *wheel_flanks, const gm_position *position,
+                           double stiffness, double damping, gm_wrench *wrench);
+
+/**
+ * Quasi-static equilibrium at one pinion angle: the smallest |x| beyond the clearance for which
+ * stiffness * r_bw * penetration(x) = torque.
+ *
+ * @param[in]  pair           the pair
+ * @param[in]  pinion_flanks  NULL = ideal
+ * @param[in]  wheel_flanks   NULL = ideal
+ * @param[in]  pinion_angle   phi_p (rad)
+ * @param[in]  stiffness      K of one tooth pair (N/m), > 0
+ * @param[in]  wheel_torque   load on the wheel, > 0 resists +phi_w and loads the drive flanks (N m)
+ * @param[out] offset         x; the transmission error is -x (m)
+ * @param[out] result         penetration there; may be NULL
+ * @return GM_OK, GM_ERR_NULL, GM_ERR_PARAMETER (stiffness), GM_ERR_TOOTH, GM_STATE_NOT_FINITE,
+ *         GM_STATE_OUT_OF_RANGE, GM_NO_EQUILIBRIUM, GM_UNDETERMINED (no torque within the backlash)
+ */
+GM_API int gm_static_equilibrium(const gm_pair *pair, const gm_flanks *pinion_flanks,
+                                 const gm_flanks *wheel_flanks, double pinion_angle,
+                                 double stiffness, double wheel_torque, double *offset,
+                                 gm_penetration *result);
+
+#ifdef __cplusplus
+}
+#endif
+
+#endif /* GEARMESH_H */
