@@ -1,0 +1,226 @@
+/* SPDX-FileCopyrightText: The gearmesh authors */
+/* SPDX-License-Identifier: BSD-3-Clause */
+
+/*
+ * Flank tables in memory of the caller, prepared for walking along a contact line: beside each node value
+ * stand its second differences along both grid directions, which are what slope and curvature of the
+ * bilinear surface change by where the line crosses a grid line. They are zero at the borders.
+ */
+#include "internal.h"
+
+#include <stdint.h>
+#include <string.h>
+
+#define LARGEST_NODES 10000
+#define LARGEST_TEETH 100000
+#define NODE_DOUBLES  4 /* value, second difference along t1, along t2, padding */
+
+static int check_side(int tables, int face_nodes, int profile_nodes, int teeth) {
+    if (tables < 0 || tables > teeth + 1)
+        return 0;
+    return tables == 0 || (face_nodes >= 2 && face_nodes <= LARGEST_NODES && profile_nodes >= 2 &&
+                           profile_nodes <= LARGEST_NODES);
+}
+
+static int check_params(const gm_flanks_params *p) {
+    return p->teeth >= 3 && p->teeth <= LARGEST_TEETH &&
+           check_side(p->drive_tables, p->drive_face_nodes, p->drive_profile_nodes, p->teeth) &&
+           check_side(p->coast_tables, p->coast_face_nodes, p->coast_profile_nodes, p->teeth);
+}
+
+/* Doubles of one side: the tables, their peaks, the pitch deviations. 64 bits hold the largest. */
+static uint64_t side_doubles(int tables, int face_nodes, int profile_nodes, int teeth) {
+    const uint64_t table =
+        tables == 0 ? 0 : (uint64_t)face_nodes * (uint64_t)profile_nodes * NODE_DOUBLES;
+    return (uint64_t)tables * (table + 1) + (uint64_t)teeth;
+}
+
+static uint64_t all_doubles(const gm_flanks_params *p) {
+    return side_doubles(p->drive_tables, p->drive_face_nodes, p->drive_profile_nodes, p->teeth) +
+           side_doubles(p->coast_tables, p->coast_face_nodes, p->coast_profile_nodes, p->teeth);
+}
+
+size_t gm_flanks_size(const gm_flanks_params *params) {
+    if (params == NULL || !check_params(params))
+        return 0;
+    const uint64_t bytes =
+        all_doubles(params) * sizeof(double) +
+        2 * (uint64_t)params->teeth * sizeof(int); /* tooth -> table, both sides */
+    return bytes <= SIZE_MAX / 2 ? (size_t)bytes : 0;
+}
+
+/* Lays one side out from `doubles` and `ints` on and returns the next free double. */
+static double *side_init(gm_flank_tables *side, int tables, int face_nodes, int profile_nodes,
+                         int teeth, double *doubles, int *ints) {
+    side->face_nodes = tables == 0 ? 0 : face_nodes;
+    side->profile_nodes = tables == 0 ? 0 : profile_nodes;
+    side->capacity = tables;
+    side->count = 0;
+    side->peak = 0.0;
+    side->values = doubles;
+    doubles +=
+        (size_t)tables * (size_t)side->face_nodes * (size_t)side->profile_nodes * NODE_DOUBLES;
+    side->table_peak = doubles;
+    doubles += tables;
+    side->pitch = doubles;
+    doubles += teeth;
+    side->table = ints;
+    for (int tooth = 0; tooth < teeth; ++tooth) {
+        side->pitch[tooth] = 0.0;
+        side->table[tooth] = -1;
+    }
+    return doubles;
+}
+
+int gm_flanks_init(gm_flanks *flanks, const gm_flanks_params *params, void *memory,
+                   size_t memory_size) {
+    if (flanks == NULL)
+        return GM_ERR_NULL;
+    memset(flanks, 0, sizeof *flanks);
+    if (params == NULL || memory == NULL)
+        return GM_ERR_NULL;
+    const size_t needed = gm_flanks_size(params);
+    if (needed == 0)
+        return GM_ERR_PARAMETER;
+    if (memory_size < needed)
+        return GM_ERR_MEMORY;
+
+    double *doubles = (double *)memory;
+    int *ints = (int *)(doubles + all_doubles(params));
+    flanks->teeth = params->teeth;
+    doubles = side_init(&flanks->drive, params->drive_tables, params->drive_face_nodes,
+                        params->drive_profile_nodes, params->teeth, doubles, ints);
+    (void)side_init(&flanks->coast, params->coast_tables, params->coast_face_nodes,
+                    params->coast_profile_nodes, params->teeth, doubles, ints + params->teeth);
+    return GM_OK;
+}
+
+static gm_flank_tables *side_of(gm_flanks *flanks, int side) {
+    return side == GM_DRIVE ? &flanks->drive : side == GM_COAST ? &flanks->coast : NULL;
+}
+
+static size_t table_doubles(const gm_flank_tables *side) {
+    return (size_t)side->face_nodes * (size_t)side->profile_nodes * NODE_DOUBLES;
+}
+
+/* Most material of one tooth: its highest node (bilinear surfaces peak at nodes) and its pitch. */
+static double tooth_peak(const gm_flank_tables *side, int tooth) {
+    const int table = side->table[tooth];
+    return side->pitch[tooth] + (table < 0 ? 0.0 : side->table_peak[table]);
+}
+
+static void update_peak(gm_flanks *flanks, gm_flank_tables *side) {
+    side->peak = tooth_peak(side, 0);
+    for (int tooth = 1; tooth < flanks->teeth; ++tooth) {
+        const double peak = tooth_peak(side, tooth);
+        if (peak > side->peak)
+            side->peak = peak;
+    }
+}
+
+static int check_deviation(const gm_flank_tables *side, const double *deviation, double factor) {
+    const size_t nodes = (size_t)side->face_nodes * (size_t)side->profile_nodes;
+    for (size_t k = 0; k < nodes; ++k) {
+        if (!gmi_is_finite(deviation[k] * factor))
+            return 0;
+    }
+    return 1;
+}
+
+/* w[k-1] - 2 w[k] + w[k+1] with nodes `stride` doubles apart; 0 at the ends of the grid. */
+static double second_difference(const double *node, size_t stride, int k, int count) {
+    return k == 0 || k == count - 1 ? 0.0 : (node[stride] - *node) - (*node - *(node - stride));
+}
+
+static void fill_table(const gm_flank_tables *side, double *table, const double *deviation,
+                       double factor) {
+    const size_t nodes = (size_t)side->face_nodes * (size_t)side->profile_nodes;
+    const size_t row = (size_t)side->profile_nodes * NODE_DOUBLES;
+    for (size_t k = 0; k < nodes; ++k)
+        table[k * NODE_DOUBLES] = deviation[k] * factor;
+    for (int face = 0; face < side->face_nodes; ++face) {
+        for (int profile = 0; profile < side->profile_nodes; ++profile) {
+            double *node = table + (size_t)face * row + (size_t)profile * NODE_DOUBLES;
+            node[1] = second_difference(node, row, face, side->face_nodes);
+            node[2] = second_difference(node, NODE_DOUBLES, profile, side->profile_nodes);
+            node[3] = 0.0;
+        }
+    }
+}
+
+static double table_maximum(const double *table, size_t doubles) {
+    double maximum = table[0];
+    for (size_t k = NODE_DOUBLES; k < doubles; k += NODE_DOUBLES) {
+        if (table[k] > maximum)
+            maximum = table[k];
+    }
+    return maximum;
+}
+
+int gm_flanks_set_table(gm_flanks *flanks, int side, int tooth, const double *deviation,
+                        double factor) {
+    if (flanks == NULL || deviation == NULL)
+        return GM_ERR_NULL;
+    gm_flank_tables *tables = side_of(flanks, side);
+    if (tables == NULL || tooth < GM_ALL_TEETH || tooth >= flanks->teeth)
+        return GM_ERR_TOOTH;
+    if (tables->count >= tables->capacity)
+        return GM_ERR_MEMORY;
+    if (!check_deviation(tables, deviation, factor))
+        return GM_ERR_DEVIATION;
+
+    const int place = tables->count++;
+    double *table = tables->values + (size_t)place * table_doubles(tables);
+    fill_table(tables, table, deviation, factor);
+    tables->table_peak[place] = table_maximum(table, table_doubles(tables));
+    if (tooth != GM_ALL_TEETH) {
+        tables->table[tooth] = place;
+    } else {
+        for (int k = 0; k < flanks->teeth; ++k)
+            tables->table[k] = place;
+    }
+    update_peak(flanks, tables);
+    return GM_OK;
+}
+
+int gm_flanks_set_pitch(gm_flanks *flanks, int side, int tooth, double deviation) {
+    if (flanks == NULL)
+        return GM_ERR_NULL;
+    gm_flank_tables *tables = side_of(flanks, side);
+    if (tables == NULL || tooth < GM_ALL_TEETH || tooth >= flanks->teeth)
+        return GM_ERR_TOOTH;
+    if (!gmi_is_finite(deviation))
+        return GM_ERR_DEVIATION;
+
+    if (tooth != GM_ALL_TEETH) {
+        tables->pitch[tooth] = deviation;
+    } else {
+        for (int k = 0; k < flanks->teeth; ++k)
+            tables->pitch[k] = deviation;
+    }
+    update_peak(flanks, tables);
+    return GM_OK;
+}
+
+gmi_flank gmi_flank_of(const gm_flanks *flanks, int side, int tooth) {
+    gmi_flank flank = {NULL, 0.0, 0.0, 0, 0};
+    if (flanks == NULL)
+        return flank;
+    const gm_flank_tables *tables = side == GM_DRIVE ? &flanks->drive : &flanks->coast;
+    const int table = tables->table[tooth];
+    flank.pitch = tables->pitch[tooth];
+    flank.peak = flank.pitch;
+    if (table >= 0) {
+        flank.values = tables->values + (size_t)table * table_doubles(tables);
+        flank.peak += tables->table_peak[table];
+        flank.face_nodes = tables->face_nodes;
+        flank.profile_nodes = tables->profile_nodes;
+    }
+    return flank;
+}
+
+double gmi_flanks_peak(const gm_flanks *flanks, int side) {
+    if (flanks == NULL)
+        return 0.0;
+    return side == GM_DRIVE ? flanks->drive.peak : flanks->coast.peak;
+}

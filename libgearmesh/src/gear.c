@@ -1,0 +1,60 @@
+/* SPDX-FileCopyrightText: The gearmesh authors */
+/* SPDX-License-Identifier: BSD-3-Clause */
+
+/*
+ * Geometry of one gear alone, in its transverse section. A point of the involute is named by its roll
+ * length rho = r_b chi, the length of the tangent from the point to the base circle, which is also its
+ * distance along the line of action from the base tangent point [Paper, Eqs. 13-17, 21-22].
+ */
+#include "internal.h"
+
+#include <math.h>
+
+double gmi_involute(double angle) {
+    return tan(angle) - angle; /* [Paper, Eq. 16] with chi = tan(angle) */
+}
+
+/* [Paper, Eqs. 14-15] times r_b; factored so that nothing cancels near the base circle. */
+double gmi_roll_length(double radius, double base_radius) {
+    return radius > base_radius ? sqrt((radius - base_radius) * (radius + base_radius)) : 0.0;
+}
+
+void gmi_gear_init(gm_gear *gear, int teeth, double transverse_module,
+                   double transverse_pressure_angle) {
+    const double number = (double)teeth;
+    gear->teeth = teeth;
+    gear->reference_radius = 0.5 * number * transverse_module;
+    gear->base_radius =
+        gear->reference_radius * cos(transverse_pressure_angle); /* [Paper, Eqs. 7-8] */
+
+    /* 2 pi / z to twice the precision: the remainder of the division and that of 2 pi itself. */
+    const double pitch = GMI_TWO_PI / number;
+    const double product = pitch * number;
+    const double remainder = (GMI_TWO_PI - product) - gmi_product_remainder(pitch, number, product);
+    gear->pitch_angle = pitch;
+    gear->pitch_angle_remainder = (remainder + GMI_TWO_PI_REMAINDER) / number;
+}
+
+void gmi_gear_set_tip(gm_gear *gear, double tip_radius) {
+    gear->tip_radius = tip_radius;
+    gear->tip_roll_length = gmi_roll_length(tip_radius, gear->base_radius);
+}
+
+void gmi_gear_set_start(gm_gear *gear, double start_radius) {
+    gear->start_radius = fmax(start_radius, gear->base_radius);
+    gear->start_roll_length = gmi_roll_length(start_radius, gear->base_radius);
+}
+
+void gmi_gear_set_start_roll_length(gm_gear *gear, double start_roll_length) {
+    gear->start_roll_length = fmax(start_roll_length, 0.0);
+    gear->start_radius = hypot(gear->base_radius, gear->start_roll_length);
+}
+
+/* psi_b = s_t / (2 r) + inv(alpha_t) [ISO21771, tooth thickness on the base circle]. */
+void gmi_gear_set_thickness(gm_gear *gear, double normal_thickness, double helix_angle,
+                            double transverse_pressure_angle) {
+    const double transverse_thickness = normal_thickness / cos(helix_angle);
+    gear->normal_thickness = normal_thickness;
+    gear->base_half_thickness = 0.5 * transverse_thickness / gear->reference_radius +
+                                gmi_involute(transverse_pressure_angle);
+}

@@ -1,0 +1,101 @@
+/* SPDX-FileCopyrightText: The gearmesh authors */
+/* SPDX-License-Identifier: BSD-3-Clause */
+
+/*
+ * What the sources of the core share and users never see. Dependencies run one way:
+ * gear -> pair -> position -> contact -> flank, trace -> penetration -> force -> wrench, equilibrium.
+ */
+#ifndef GEARMESH_INTERNAL_H
+#define GEARMESH_INTERNAL_H
+
+#include "gearmesh/gearmesh.h"
+
+#define GMI_PI 3.14159265358979323846
+/* 2 pi = GMI_TWO_PI + GMI_TWO_PI_REMAINDER to 32 digits. */
+#define GMI_TWO_PI           6.28318530717958647693
+#define GMI_TWO_PI_REMAINDER 2.44929359829470635e-16
+
+/* Angles beyond this are refused: at 1e9 rad one rounding already moves the flank by nanometres. */
+#define GMI_LARGEST_ANGLE 1e9
+
+double gmi_nan(void);
+int gmi_is_finite(double value);
+
+/* a * b = *product + return value, exactly (Dekker; no fused multiply-add needed). */
+double gmi_product_remainder(double a, double b, double product);
+
+/* gear.c: geometry of one gear. */
+double gmi_involute(double angle);
+double gmi_roll_length(double radius, double base_radius);
+void gmi_gear_init(gm_gear *gear, int teeth, double transverse_module,
+                   double transverse_pressure_angle);
+void gmi_gear_set_tip(gm_gear *gear, double tip_radius);
+void gmi_gear_set_start(gm_gear *gear, double start_radius);
+void gmi_gear_set_start_roll_length(gm_gear *gear, double start_roll_length);
+void gmi_gear_set_thickness(gm_gear *gear, double normal_thickness, double helix_angle,
+                            double transverse_pressure_angle);
+
+/* contact.c: which lines of contact exist on one side, and where. */
+
+/*
+ * The lines of contact of one side (drive or coast) on its plane of action. Line k follows
+ *     rho_p(t1) = origin + k p_bt + twist t1,
+ * the distance from the pinion's base tangent point, and exists where lower <= rho_p <= upper.
+ */
+typedef struct gmi_lines {
+    double delta;          /* ideal penetration, the same on every line (m) */
+    double origin;         /* (m) */
+    double twist;          /* (m) */
+    double lower, upper;   /* both tips and both start radii (m) */
+    double lower_by_delta; /* derivatives of the limits by delta, 0 or 1: */
+    double upper_by_delta; /* those set by the wheel move with the penetration */
+    int first, last;       /* lines that can exist, none if first > last */
+    int pinion_tooth;      /* teeth of line `first` */
+    int wheel_tooth;
+    int tooth_step; /* +1 or -1: teeth from line k to line k + 1 */
+} gmi_lines;
+
+void gmi_lines_find(const gm_pair *pair, int side, const gm_position *position, gmi_lines *lines);
+
+/* Part [*from, *to] of t1 in which line k exists; returns 0 if there is none. */
+int gmi_line_clip(const gmi_lines *lines, double rho_origin, double *from, double *to);
+
+/* flank.c: the deviations of one tooth flank. */
+typedef struct gmi_flank {
+    const double *values; /* [face_nodes][profile_nodes][4], NULL = no table */
+    double pitch;         /* (m) */
+    double peak;          /* most material, pitch included (m) */
+    int face_nodes, profile_nodes;
+} gmi_flank;
+
+gmi_flank gmi_flank_of(const gm_flanks *flanks, int side, int tooth);
+double gmi_flanks_peak(const gm_flanks *flanks, int side);
+
+/* penetration.c: the sums over all lines of one side. */
+
+/* What to compute beside sum, contact and pairs. */
+enum gmi_wanted { GMI_SUM = 0, GMI_DERIVATIVES = 1, GMI_MOMENTS = 2 };
+
+typedef struct gmi_side_sum {
+    double sum;     /* sum of the integrals of max(0, delta) dt1 (m) */
+    double contact; /* touching part of the face width, summed (1) */
+    int pairs;      /* lines that touch */
+
+    double by_origin; /* partial derivatives of sum by the origin of the lines ... */
+    double by_delta;  /* ... and by delta (GMI_DERIVATIVES) (1) */
+
+    double sum_t1;      /* first moments (GMI_MOMENTS): integrals of max(0, delta) t1 (m), */
+    double sum_rho;     /* of max(0, delta) rho_p (m2), */
+    double contact_t1;  /* of t1 (1) */
+    double contact_rho; /* and of rho_p over the touching part (m) */
+} gmi_side_sum;
+
+gmi_side_sum gmi_side_sum_3d(const gm_pair *pair, const gm_flanks *pinion_flanks,
+                             const gm_flanks *wheel_flanks, int side, const gm_position *position,
+                             int wanted);
+
+/* Status of what an evaluation is given, beyond the pair. */
+int gmi_check_evaluation(const gm_pair *pair, const gm_flanks *pinion_flanks,
+                         const gm_flanks *wheel_flanks, const gm_position *position);
+
+#endif

@@ -1,0 +1,386 @@
+/* SPDX-FileCopyrightText: The gearmesh authors */
+/* SPDX-License-Identifier: BSD-3-Clause */
+
+/*
+ * From a drawing to a pair ready for evaluation: checks, and the geometry of two gears in mesh
+ * [Paper, Eqs. 4-8, 13-17, 23, corrected; ISO21771]. Each step fills the part of gm_pair it is named after.
+ */
+#include "internal.h"
+
+#include <math.h>
+
+#define LARGEST_TEETH         100000
+#define LARGEST_CONTACT_RATIO 1000.0 /* keeps the work of an evaluation bounded */
+#define STRAIGHT_RACK_EXTRA                                                                        \
+    0.05                      /* straight flank of the assumed rack beyond the mate's tip, in m_n */
+#define SMALLEST_TIP_LAND 0.2 /* in m_n, below which case-hardened tips crack */
+
+/* What is wrong with the parameters; field NULL = nothing. */
+typedef struct problem {
+    int status;
+    const char *field;
+    const char *requirement;
+} problem;
+
+static const problem no_problem = {GM_OK, NULL, NULL};
+
+void gm_pair_params_default(gm_pair_params *params) {
+    if (params == NULL)
+        return;
+    const double missing = gmi_nan();
+    const gm_pair_params defaults = {
+        .base_helix = GM_BASE_HELIX_ISO,
+        .normal_module = missing,
+        .normal_pressure_angle = missing,
+        .helix_angle = 0.0,
+        .center_distance = missing,
+        .face_width = missing,
+        .pinion_profile_shift = missing,
+        .wheel_profile_shift = missing,
+        .backlash = missing,
+        .pinion_normal_thickness = missing,
+        .wheel_normal_thickness = missing,
+        .pinion_tip_radius = missing,
+        .wheel_tip_radius = missing,
+        .pinion_start_radius = missing,
+        .wheel_start_radius = missing,
+    };
+    *params = defaults;
+}
+
+static int is_teeth(int teeth) {
+    return teeth >= 3 && teeth <= LARGEST_TEETH;
+}
+
+static int is_positive(double value) {
+    return value > 0.0 && gmi_is_finite(value);
+}
+
+static int is_optional(double value) {
+    return isnan(value) || gmi_is_finite(value);
+}
+
+static int is_optional_positive(double value) {
+    return isnan(value) || is_positive(value);
+}
+
+/* Each parameter by itself. */
+static problem check_fields(const gm_pair_params *p) {
+    static const char teeth[] = "a whole number from 3 to 100000";
+    static const char positive[] = "a number > 0";
+    static const char finite[] = "a finite number";
+    const double degree = GMI_PI / 180.0;
+    const struct {
+        int valid;
+        const char *field;
+        const char *requirement;
+    } checks[] = {
+        {is_teeth(p->pinion_teeth), "pinion_teeth", teeth},
+        {is_teeth(p->wheel_teeth), "wheel_teeth", teeth},
+        {p->base_helix == GM_BASE_HELIX_ISO || p->base_helix == GM_BASE_HELIX_PAPER, "base_helix",
+         "GM_BASE_HELIX_ISO or GM_BASE_HELIX_PAPER"},
+        {is_positive(p->normal_module), "normal_module", positive},
+        {p->normal_pressure_angle > 0.0 && p->normal_pressure_angle < 45.0 * degree,
+         "normal_pressure_angle", "an angle between 0 and 45 degrees"},
+        {fabs(p->helix_angle) < 60.0 * degree, "helix_angle",
+         "an angle between -60 and 60 degrees"},
+        {is_positive(p->center_distance), "center_distance", positive},
+        {is_positive(p->face_width), "face_width", positive},
+        {is_optional(p->pinion_profile_shift), "pinion_profile_shift", finite},
+        {is_optional(p->wheel_profile_shift), "wheel_profile_shift", finite},
+        {is_optional(p->backlash), "backlash", finite},
+        {is_optional_positive(p->pinion_normal_thickness), "pinion_normal_thickness", positive},
+        {is_optional_positive(p->wheel_normal_thickness), "wheel_normal_thickness", positive},
+        {is_optional_positive(p->pinion_tip_radius), "pinion_tip_radius", positive},
+        {is_optional_positive(p->wheel_tip_radius), "wheel_tip_radius", positive},
+        {is_optional_positive(p->pinion_start_radius), "pinion_start_radius", positive},
+        {is_optional_positive(p->wheel_start_radius), "wheel_start_radius", positive},
+    };
+    for (size_t k = 0; k < sizeof checks / sizeof checks[0]; ++k) {
+        if (!checks[k].valid) {
+            const problem found = {GM_ERR_PARAMETER, checks[k].field, checks[k].requirement};
+            return found;
+        }
+    }
+    return no_problem;
+}
+
+static problem geometry_problem(const char *field, const char *requirement) {
+    const problem found = {GM_ERR_GEOMETRY, field, requirement};
+    return found;
+}
+
+/* Transverse section, base circles and base helix: what no mate and no pose changes. */
+static void derive_sections(gm_pair *pair, const gm_pair_params *p) {
+    const double cos_helix = cos(p->helix_angle);
+    const double tan_transverse = tan(p->normal_pressure_angle) / cos_helix; /* [Paper, Eq. 5] */
+    const double alpha_t = atan(tan_transverse);
+    pair->normal_module = p->normal_module;
+    pair->transverse_module = p->normal_module / cos_helix; /* [Paper, Eq. 4] */
+    pair->normal_pressure_angle = p->normal_pressure_angle;
+    pair->transverse_pressure_angle = alpha_t;
+    pair->helix_angle = p->helix_angle;
+    pair->face_width = p->face_width;
+
+    gmi_gear_init(&pair->pinion, p->pinion_teeth, pair->transverse_module, alpha_t);
+    gmi_gear_init(&pair->wheel, p->wheel_teeth, pair->transverse_module, alpha_t);
+    pair->transverse_base_pitch = GMI_PI * pair->transverse_module * cos(alpha_t);
+    pair->reference_center_distance = pair->pinion.reference_radius + pair->wheel.reference_radius;
+
+    /* [Paper, Eq. 6] divides by cos(alpha_t); right is the product [ISO21771]. */
+    const double cos_transverse = cos(alpha_t);
+    const double tan_base_helix = p->base_helix == GM_BASE_HELIX_PAPER
+                                      ? tan(p->helix_angle) / cos_transverse
+                                      : tan(p->helix_angle) * cos_transverse;
+    pair->base_helix_angle = atan(tan_base_helix);
+    pair->twist = p->face_width * tan_base_helix;
+    pair->normal_to_transverse = sqrt(1.0 + tan_base_helix * tan_base_helix);
+}
+
+/*
+ * Working pressure angle and line of action. Both are found from the small difference to the
+ * reference position, so that inv(alpha_wt) - inv(alpha_t) keeps its digits when they nearly agree.
+ * Returns inv(alpha_wt) - inv(alpha_t).
+ */
+static double derive_pose(gm_pair *pair, double center_distance) {
+    const double base_sum = pair->pinion.base_radius + pair->wheel.base_radius;
+    const double alpha_t = pair->transverse_pressure_angle;
+    pair->center_distance = center_distance;
+    pair->line_of_action =
+        sqrt((center_distance - base_sum) * (center_distance + base_sum)); /* [Paper, Eq. 23] */
+    const double alpha_w = atan2(pair->line_of_action, base_sum);
+
+    /* cos(alpha_t) - cos(alpha_wt) = 2 sin((alpha_wt + alpha_t) / 2) sin((alpha_wt - alpha_t) / 2) */
+    const double cos_difference =
+        cos(alpha_t) * ((center_distance - pair->reference_center_distance) / center_distance);
+    const double difference = 2.0 * asin(cos_difference / (2.0 * sin(0.5 * (alpha_w + alpha_t))));
+    pair->working_pressure_angle = alpha_w;
+    return sin(difference) / (cos(alpha_w) * cos(alpha_t)) - difference;
+}
+
+/*
+ * Profile shifts, tooth thicknesses and backlash along the line of action:
+ *     p_bt - 2 r_bp psi_p - 2 r_bw psi_w + 2 (r_bp + r_bw) inv(alpha_wt)
+ *   = 2 (r_bp + r_bw) (inv(alpha_wt) - inv(alpha_t)) - (s_np + s_nw - pi m_n) cos(alpha_t) / cos(beta),
+ * the second form without cancellation of the large terms.
+ */
+static problem derive_thickness(gm_pair *pair, const gm_pair_params *p,
+                                double involute_difference) {
+    gm_gear *pinion = &pair->pinion;
+    gm_gear *wheel = &pair->wheel;
+    const double tan_normal = tan(p->normal_pressure_angle);
+    const double shift_sum = (double)(p->pinion_teeth + p->wheel_teeth) * involute_difference /
+                             (2.0 * tan_normal); /* [ISO21771]: no backlash */
+    double x_p = p->pinion_profile_shift;
+    double x_w = p->wheel_profile_shift;
+    if (isnan(x_p) && isnan(x_w))
+        x_p = x_w = 0.5 * shift_sum;
+    else if (isnan(x_p))
+        x_p = shift_sum - x_w;
+    else if (isnan(x_w))
+        x_w = shift_sum - x_p;
+    pinion->profile_shift = x_p;
+    wheel->profile_shift = x_w;
+
+    /* Excess of the normal thickness over half a pitch, m_n pi / 2. */
+    const double half_pitch = 0.5 * GMI_PI * p->normal_module;
+    double excess_p = isnan(p->pinion_normal_thickness) ? 2.0 * p->normal_module * x_p * tan_normal
+                                                        : p->pinion_normal_thickness - half_pitch;
+    double excess_w = isnan(p->wheel_normal_thickness) ? 2.0 * p->normal_module * x_w * tan_normal
+                                                       : p->wheel_normal_thickness - half_pitch;
+    const double along_line = cos(pair->transverse_pressure_angle) / cos(p->helix_angle);
+    pair->backlash = 2.0 * (pinion->base_radius + wheel->base_radius) * involute_difference -
+                     (excess_p + excess_w) * along_line;
+    if (!isnan(p->backlash)) {
+        const double change = 0.5 * (pair->backlash - p->backlash) / along_line;
+        excess_p += change;
+        excess_w += change;
+        pair->backlash = p->backlash;
+    }
+
+    const double alpha_t = pair->transverse_pressure_angle;
+    gmi_gear_set_thickness(pinion, half_pitch + excess_p, p->helix_angle, alpha_t);
+    gmi_gear_set_thickness(wheel, half_pitch + excess_w, p->helix_angle, alpha_t);
+    pair->phase_origin =
+        pinion->base_radius * (pair->working_pressure_angle + pinion->base_half_thickness);
+
+    static const char thickness[] = "a value that leaves both teeth thicker than 0";
+    const int too_thin = !(pinion->normal_thickness > 0.0 && wheel->normal_thickness > 0.0);
+    if (too_thin && !isnan(p->backlash))
+        return geometry_problem("backlash", thickness);
+    if (!(pinion->normal_thickness > 0.0))
+        return geometry_problem("pinion_profile_shift", thickness);
+    if (!(wheel->normal_thickness > 0.0))
+        return geometry_problem("wheel_profile_shift", thickness);
+    return no_problem;
+}
+
+static double default_tip(const gm_gear *gear, double tip_radius, double normal_module) {
+    return isnan(tip_radius) ? gear->reference_radius + normal_module * (1.0 + gear->profile_shift)
+                             : tip_radius;
+}
+
+/* Flank ends [Paper, Eqs. 13-15]; a start radius that is not given meets the mate's tip. */
+static problem derive_flank_ends(gm_pair *pair, const gm_pair_params *p) {
+    gm_gear *pinion = &pair->pinion;
+    gm_gear *wheel = &pair->wheel;
+    gmi_gear_set_tip(pinion, default_tip(pinion, p->pinion_tip_radius, p->normal_module));
+    gmi_gear_set_tip(wheel, default_tip(wheel, p->wheel_tip_radius, p->normal_module));
+    static const char above_base[] = "a radius larger than the base radius";
+    if (!(pinion->tip_roll_length > 0.0))
+        return geometry_problem("pinion_tip_radius", above_base);
+    if (!(wheel->tip_roll_length > 0.0))
+        return geometry_problem("wheel_tip_radius", above_base);
+
+    if (isnan(p->pinion_start_radius))
+        gmi_gear_set_start_roll_length(pinion, pair->line_of_action - wheel->tip_roll_length);
+    else
+        gmi_gear_set_start(pinion, p->pinion_start_radius);
+    if (isnan(p->wheel_start_radius))
+        gmi_gear_set_start_roll_length(wheel, pair->line_of_action - pinion->tip_roll_length);
+    else
+        gmi_gear_set_start(wheel, p->wheel_start_radius);
+
+    static const char below_tip[] = "a radius smaller than the tip radius";
+    static const char reach[] = "a radius at which the tips of both gears reach each other";
+    const int pinion_ends = pinion->start_roll_length < pinion->tip_roll_length;
+    const int wheel_ends = wheel->start_roll_length < wheel->tip_roll_length;
+    if (!pinion_ends)
+        return isnan(p->pinion_start_radius) ? geometry_problem("pinion_tip_radius", reach)
+                                             : geometry_problem("pinion_start_radius", below_tip);
+    if (!wheel_ends)
+        return isnan(p->wheel_start_radius) ? geometry_problem("wheel_tip_radius", reach)
+                                            : geometry_problem("wheel_start_radius", below_tip);
+    return no_problem;
+}
+
+/* Path of contact at zero penetration and contact ratios [ISO21771]. */
+static problem derive_path(gm_pair *pair) {
+    pair->path_start =
+        fmax(pair->pinion.start_roll_length, pair->line_of_action - pair->wheel.tip_roll_length);
+    pair->path_end =
+        fmin(pair->pinion.tip_roll_length, pair->line_of_action - pair->wheel.start_roll_length);
+    pair->transverse_contact_ratio =
+        (pair->path_end - pair->path_start) / pair->transverse_base_pitch;
+    pair->overlap_ratio = fabs(pair->twist) / pair->transverse_base_pitch;
+    pair->total_contact_ratio = pair->transverse_contact_ratio + pair->overlap_ratio;
+
+    if (!(pair->path_end > pair->path_start))
+        return geometry_problem(
+            "pinion_tip_radius",
+            "a radius at which the active flanks of both gears reach each other");
+    if (!(pair->total_contact_ratio <= LARGEST_CONTACT_RATIO))
+        return geometry_problem("face_width",
+                                "a width that gives a total contact ratio below 1000");
+    return no_problem;
+}
+
+static problem derive(gm_pair *pair, const gm_pair_params *params) {
+    problem found = check_fields(params);
+    if (found.field != NULL)
+        return found;
+    derive_sections(pair, params);
+    if (!(params->center_distance > pair->pinion.base_radius + pair->wheel.base_radius))
+        return geometry_problem("center_distance",
+                                "a distance larger than the sum of the base radii");
+    const double involute_difference = derive_pose(pair, params->center_distance);
+    found = derive_thickness(pair, params, involute_difference);
+    if (found.field == NULL)
+        found = derive_flank_ends(pair, params);
+    if (found.field == NULL)
+        found = derive_path(pair);
+    return found;
+}
+
+static gm_gear gear_nan(void) {
+    const double nan = gmi_nan();
+    const gm_gear gear = {0, nan, nan, nan, nan, nan, nan, nan, nan, nan, nan, nan};
+    return gear;
+}
+
+static gm_pair pair_nan(void) {
+    const double nan = gmi_nan();
+    const gm_gear gear = gear_nan();
+    const gm_pair pair = {gear, gear, nan, nan, nan, nan, nan, nan, nan, nan, nan, nan,
+                          nan,  nan,  nan, nan, nan, nan, nan, nan, nan, nan, nan};
+    return pair;
+}
+
+int gm_pair_params_check(const gm_pair_params *params, const char **field,
+                         const char **requirement) {
+    problem found = {GM_ERR_NULL, NULL, NULL};
+    if (params != NULL) {
+        gm_pair pair = pair_nan();
+        found = derive(&pair, params);
+    }
+    if (field != NULL)
+        *field = found.field;
+    if (requirement != NULL)
+        *requirement = found.requirement;
+    return found.status;
+}
+
+int gm_pair_init(gm_pair *pair, const gm_pair_params *params) {
+    if (pair == NULL)
+        return GM_ERR_NULL;
+    *pair = pair_nan();
+    if (params == NULL)
+        return GM_ERR_NULL;
+    gm_pair derived = pair_nan();
+    const problem found = derive(&derived, params);
+    if (found.status == GM_OK)
+        *pair = derived;
+    return found.status;
+}
+
+/* Roll length of the root form point cut by the assumed rack; negative = undercut. */
+static double root_form_roll_length(const gm_pair *pair, const gm_gear *gear, const gm_gear *mate) {
+    const double m_n = pair->normal_module;
+    const double sin_transverse = sin(pair->transverse_pressure_angle);
+    const double mate_addendum =
+        (mate->tip_radius - mate->reference_radius) / m_n - mate->profile_shift;
+    const double depth = mate_addendum + STRAIGHT_RACK_EXTRA - gear->profile_shift;
+    return gear->reference_radius * sin_transverse - depth * m_n / sin_transverse;
+}
+
+static double normal_tip_land(const gm_pair *pair, const gm_gear *gear) {
+    const double tip_pressure_angle = atan2(gear->tip_roll_length, gear->base_radius);
+    const double transverse_land =
+        2.0 * gear->tip_radius * (gear->base_half_thickness - gmi_involute(tip_pressure_angle));
+    const double tip_helix =
+        atan(tan(pair->helix_angle) * gear->tip_radius / gear->reference_radius);
+    return transverse_land * cos(tip_helix);
+}
+
+int gm_pair_doubts(const gm_pair *pair, const gm_pair_params *params) {
+    if (pair == NULL || params == NULL)
+        return 0;
+    const gm_gear *pinion = &pair->pinion;
+    const gm_gear *wheel = &pair->wheel;
+    const double pinion_form = root_form_roll_length(pair, pinion, wheel);
+    const double wheel_form = root_form_roll_length(pair, wheel, pinion);
+    const double least_land = SMALLEST_TIP_LAND * pair->normal_module;
+
+    int doubts = 0;
+    if (pinion_form < 0.0)
+        doubts |= GM_DOUBT_PINION_UNDERCUT;
+    if (wheel_form < 0.0)
+        doubts |= GM_DOUBT_WHEEL_UNDERCUT;
+    if (normal_tip_land(pair, pinion) < least_land)
+        doubts |= GM_DOUBT_PINION_TIP_LAND;
+    if (normal_tip_land(pair, wheel) < least_land)
+        doubts |= GM_DOUBT_WHEEL_TIP_LAND;
+    if (pinion->start_roll_length < pinion_form)
+        doubts |= GM_DOUBT_PINION_ROOT_FORM;
+    if (wheel->start_roll_length < wheel_form)
+        doubts |= GM_DOUBT_WHEEL_ROOT_FORM;
+    if (pair->transverse_contact_ratio < 1.0)
+        doubts |= GM_DOUBT_CONTACT_RATIO;
+    if (pair->backlash < 0.0)
+        doubts |= GM_DOUBT_BACKLASH;
+    if (params->pinion_start_radius < pinion->base_radius)
+        doubts |= GM_DOUBT_PINION_START_RADIUS;
+    if (params->wheel_start_radius < wheel->base_radius)
+        doubts |= GM_DOUBT_WHEEL_START_RADIUS;
+    return doubts;
+}
