@@ -68,28 +68,51 @@ typedef struct config {
     int digits;
     char *columns; /* names separated by commas, NULL = all */
 
-    int quiet;
+    int quiet; /* no progress, notes and warnings on stderr; errors stay */
 
     /* Every key in effect, defaults included, as "section.key = value": what an output says of its origin. */
     char **provenance;
     int provenance_count;
+
+    struct key_entry *entries; /* [key_count] what was given, and where: see keys.h */
 } config;
 
 /* Exit codes of gearsim. */
 enum exit_code { EXIT_DONE = 0, EXIT_RUN_FAILED = 1, EXIT_BAD_INPUT = 2, EXIT_INTERRUPTED = 130 };
 
+enum config_purpose { CONFIG_FOR_RUN, CONFIG_FOR_GEOMETRY };
+
+/* What the command line asks for. */
+typedef struct config_request {
+    const char *path;       /* of the INI file */
+    char *const *overrides; /* "section.key=value" of each --set, in order */
+    int override_count;
+    const char *output_file;     /* of --output, NULL = not given */
+    int quiet;                   /* no progress, notes and warnings; errors stay */
+    enum config_purpose purpose; /* for geometry only [gears] is required */
+} config_request;
+
 /*
  * Reads and checks an INI file and the `--set section.key=value` overrides. Messages go to stderr as
- * `file:line: section.key: what is wrong, and what would be right`. Returns 0, or EXIT_BAD_INPUT with
- * nothing allocated.
+ * `file:line: section.key: what is wrong (got VALUE), and what would be right`. Returns 0, or
+ * EXIT_BAD_INPUT with nothing allocated.
+ *
+ * Paths in the INI file are relative to its folder, those of --set and --output, and the default output
+ * file, to the working folder.
  */
-int config_load(config *config, const char *path, char *const overrides[], int override_count,
-                const char *output_file, int quiet);
+int config_load(config *config, const config_request *request);
 
 void config_free(config *config);
 
 /* Where a key was set, for messages about its value that only a later step can find: prints
  * "file:line: section.key: " (or "--set section.key: ") and then the formatted message and a newline. */
 void config_complain(const config *config, const char *section_and_key, const char *format, ...);
+
+/* The same with "warning: " before the key; silent with --quiet. */
+void config_warn(const config *config, const char *section_and_key, const char *format, ...);
+
+/* The INI key "section.key" that sets a field of gm_pair_params, and the text it was given (NULL = none). */
+const char *config_key_of_field(const char *field);
+const char *config_text(const config *config, const char *section_and_key);
 
 #endif

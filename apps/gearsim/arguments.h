@@ -1,0 +1,25 @@
+/* SPDX-FileCopyrightText: The gearmesh authors */
+/* SPDX-License-Identifier: BSD-3-Clause */
+
+/* The command line of gearsim. */
+#ifndef GEARSIM_ARGUMENTS_H
+#define GEARSIM_ARGUMENTS_H
+
+#include "config.h"
+
+enum task { TASK_RUN, TASK_CHECK, TASK_GEOMETRY, TASK_HELP, TASK_VERSION };
+
+typedef struct arguments {
+    enum task task;
+    config_request request;
+    char **overrides; /* what request.overrides points to */
+} arguments;
+
+/* Returns 0, or EXIT_BAD_INPUT with nothing allocated after a message on stderr. */
+int arguments_parse(arguments *arguments, int count, char *const texts[]);
+void arguments_free(arguments *arguments);
+
+/* What --help prints. */
+void arguments_print_help(FILE *stream);
+
+#endif

@@ -1,0 +1,88 @@
+/* SPDX-FileCopyrightText: The gearmesh authors */
+/* SPDX-License-Identifier: BSD-3-Clause */
+
+/*
+ * gearsim: two gears on their shafts, driven and loaded, in contact through measured flanks.
+ *
+ *     I_p phi_p'' =  M_p - F r_bp        (or phi_p prescribed)
+ *     I_w phi_w'' = -M_w + F r_bw        F = contact force of libgearmesh
+ *
+ * `gearsim --help` says all of its use; the equations are in libgearmesh/docs/equations.md.
+ */
+#include "arguments.h"
+#include "dynamics.h"
+#include "gearbox.h"
+#include "output.h"
+#include "statics.h"
+
+#include <errno.h>
+#include <string.h>
+
+static int check_output(const config *conf) {
+    return conf->analysis == ANALYSIS_STATIC
+               ? output_check(conf, static_columns, static_column_count)
+               : output_check(conf, dynamic_columns, dynamic_column_count);
+}
+
+static int run(const config *conf, const gearbox *box) {
+    return conf->analysis == ANALYSIS_STATIC ? statics_run(conf, box) : dynamics_run(conf, box);
+}
+
+static int perform(enum task task, const config *conf, const gearbox *box) {
+    int status;
+
+    if (task == TASK_GEOMETRY) {
+        gearbox_print_geometry(box, conf, stdout);
+        return EXIT_DONE;
+    }
+    status = check_output(conf);
+    return status != 0 || task == TASK_CHECK ? status : run(conf, box);
+}
+
+static int load_and_perform(const arguments *args) {
+    config conf;
+    gearbox box;
+    int status = config_load(&conf, &args->request);
+
+    if (status != 0)
+        return status;
+    status = gearbox_open(&box, &conf);
+    if (status == 0) {
+        status = perform(args->task, &conf, &box);
+        gearbox_close(&box);
+    }
+    config_free(&conf);
+    return status;
+}
+
+static int do_task(const arguments *args) {
+    switch (args->task) {
+    case TASK_HELP:
+        arguments_print_help(stdout);
+        return EXIT_DONE;
+    case TASK_VERSION:
+        printf("gearsim %s\n", gm_version());
+        return EXIT_DONE;
+    default:
+        return load_and_perform(args);
+    }
+}
+
+/* A full disk behind stdout shows only when the text is written out. */
+static int finish_stdout(int status) {
+    if (fflush(stdout) == 0 && !ferror(stdout))
+        return status;
+    fprintf(stderr, "gearsim: cannot write to stdout: %s\n", strerror(errno));
+    return status == EXIT_DONE ? EXIT_RUN_FAILED : status;
+}
+
+int main(int argc, char *argv[]) {
+    arguments args;
+    int status = arguments_parse(&args, argc, argv);
+
+    if (status == 0) {
+        status = do_task(&args);
+        arguments_free(&args);
+    }
+    return finish_stdout(status);
+}
