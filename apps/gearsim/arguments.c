@@ -36,8 +36,9 @@ static const char options_help[] =
     "\n"
     "PARAMS.ini is UTF-8 text: `[section]` lines, `key = value` lines and comments behind `;` or "
     "`#`.\n"
-    "All keys, with [default]; the keys of [gears] without one are required, the others for a run\n"
-    "that uses them:\n"
+    "All keys, with [default], meaning, range and need; keys that the chosen kind, type or model "
+    "does\n"
+    "not use are accepted with a warning; --geometry needs [gears] alone:\n"
     "\n";
 
 enum option_value { NO_VALUE, TAKES_VALUE };

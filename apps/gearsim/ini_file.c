@@ -36,6 +36,14 @@ static void stop(line_source *source, const char *text) {
     report(source, text);
 }
 
+static void stop_unreadable(line_source *source) {
+    char text[256];
+
+    snprintf(text, sizeof text, "cannot be read (%s), expected an INI file", strerror(errno));
+    source->line = 0;
+    stop(source, text);
+}
+
 static int is_blank(char c) {
     return c == ' ' || c == '\t';
 }
@@ -148,8 +156,7 @@ static void read_stream(line_source *source) {
     const int result = ini_parse_stream(next_line, source, take_value, source);
 
     if (ferror(source->file)) {
-        source->line = 0;
-        stop(source, strerror(errno));
+        stop_unreadable(source);
     } else if (result != 0 && !source->stopped) {
         source->line = result > 0 ? result : 0;
         report(source, result > 0
@@ -164,7 +171,7 @@ void ini_file_read(const char *path, const ini_events *events) {
 
     source.file = fopen(path, "r");
     if (source.file == NULL) {
-        stop(&source, strerror(errno));
+        stop_unreadable(&source);
         return;
     }
     if (fstat(fileno(source.file), &status) == 0 && S_ISDIR(status.st_mode))

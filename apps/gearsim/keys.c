@@ -54,14 +54,12 @@ const key_spec keys[] = {
     {NAME("gears", "face_width_mm"), NUMBER(UNIT_MM, ABOVE_ZERO), INTO_GEARS(face_width),
      .required = FOR_ALL, .help = "face width common to both gears"},
     {NAME("gears", "pinion_profile_shift"), NUMBER(UNIT_SI, ANY), INTO_GEARS(pinion_profile_shift),
-     .derived = "half of the sum without backlash, or the rest of it",
-     .help = "profile shift coefficient"},
+     .derived = "half, or rest, of the zero-backlash sum", .help = "profile shift coefficient"},
     {NAME("gears", "wheel_profile_shift"), NUMBER(UNIT_SI, ANY), INTO_GEARS(wheel_profile_shift),
-     .derived = "half of the sum without backlash, or the rest of it",
-     .help = "profile shift coefficient"},
+     .derived = "half, or rest, of the zero-backlash sum", .help = "profile shift coefficient"},
     {NAME("gears", "backlash_um"), NUMBER(UNIT_UM, ANY), INTO_GEARS(backlash),
      .derived = "from the tooth thicknesses",
-     .help = "along the line of action; both teeth are thinned equally to it"},
+     .help = "along the line of action, by thinning both teeth"},
     {NAME("gears", "pinion_tip_diameter_mm"), NUMBER(UNIT_MM_DIAMETER, ABOVE_ZERO),
      INTO_GEARS(pinion_tip_radius), .derived = "reference diameter + 2 m_n (1 + x)", .help = "tip circle"},
     {NAME("gears", "wheel_tip_diameter_mm"), NUMBER(UNIT_MM_DIAMETER, ABOVE_ZERO),
@@ -88,9 +86,9 @@ const key_spec keys[] = {
     {NAME("flanks", "deviation_direction"), CHOICE("normal transverse"), INTO(deviation_direction),
      .standard = "normal", .used = FOR_3D, .help = "in which deviations are measured"},
     {NAME("flanks", "profile_from"), NUMBER(UNIT_SI, BETWEEN(0, 1)), INTO(profile_from),
-     .standard = "0", .used = FOR_3D, .help = "deviations, not pitch, count from here on (start 0, tip 1)"},
+     .standard = "0", .used = FOR_3D, .help = "deviations (not pitch) count from here (start 0, tip 1)"},
     {NAME("flanks", "profile_to"), NUMBER(UNIT_SI, BETWEEN(0, 1)), INTO(profile_to),
-     .standard = "1", .used = FOR_3D, .help = "... up to here"},
+     .standard = "1", .used = FOR_3D, .help = "to here"},
     {NAME("flanks", "profile_blend"), NUMBER(UNIT_SI, NOT_NEGATIVE), INTO(profile_blend),
      .standard = "0.1", .used = FOR_3D, .help = "width of the ramps to zero outside that range"},
 
@@ -101,7 +99,7 @@ const key_spec keys[] = {
     {NAME("mesh", "damping_Ns_per_m"), NUMBER(UNIT_SI, NOT_NEGATIVE), INTO(damping),
      .standard = "0", .used = FOR_DYNAMIC, .help = "of one tooth pair"},
     {NAME("mesh", "simple_stiffness_N_per_m"), NUMBER(UNIT_SI, ABOVE_ZERO), INTO(simple_stiffness),
-     .derived = "stiffness_N_per_m times the transverse contact ratio", .used = FOR_SIMPLE,
+     .derived = "stiffness_N_per_m * eps_alpha", .used = FOR_SIMPLE,
      .help = "of the simple model"},
 
     {NAME("bodies", "pinion_inertia_kg_m2"), NUMBER(UNIT_SI, ABOVE_ZERO), INTO(pinion_inertia),
@@ -114,7 +112,7 @@ const key_spec keys[] = {
      .used = FOR_DYNAMIC, .help = "what is prescribed at the pinion"},
     {NAME("drive", "start_rpm"), NUMBER(UNIT_RPM, ANY), INTO(start_speed), .standard = "0",
      .used = FOR_DYNAMIC, .required = FOR_RUN | FOR_DYNAMIC | FOR_SPEED,
-     .help = "pinion speed at the start (required for kind = speed)"},
+     .help = "pinion speed at the start"},
     {NAME("drive", "end_rpm"), NUMBER(UNIT_RPM, ANY), INTO(end_speed),
      .used = FOR_DYNAMIC | FOR_SPEED, .required = FOR_RUN | FOR_DYNAMIC | FOR_SPEED,
      .help = "pinion speed at the end, linear in time"},
@@ -125,11 +123,11 @@ const key_spec keys[] = {
     {NAME("load", "mean_Nm"), NUMBER(UNIT_SI, ANY), INTO(mean_load),
      .required = FOR_RUN, .help = "on the wheel, > 0 resists its driven direction"},
     {NAME("load", "noise_amplitude_Nm"), NUMBER(UNIT_SI, NOT_NEGATIVE), INTO(noise_amplitude),
-     .standard = "0", .used = FOR_DYNAMIC, .help = "uniform in +- amplitude"},
+     .standard = "0", .used = FOR_DYNAMIC, .help = "noise on the load, uniform in +- amplitude"},
     {NAME("load", "noise_interval_s"), NUMBER(UNIT_SI, ABOVE_ZERO), INTO(noise_interval),
-     .standard = "1e-5", .used = FOR_DYNAMIC, .help = "one independent value each, cubic in between"},
+     .standard = "1e-5", .used = FOR_DYNAMIC, .help = "time between independent values, cubic in between"},
     {NAME("load", "seed"), .kind = KEY_SEED, INTO(seed),
-     .standard = "1", .used = FOR_DYNAMIC, .help = "of the noise: same seed, same run"},
+     .standard = "1", .used = FOR_DYNAMIC, .help = "of the noise; same seed, same run"},
 
     {NAME("analysis", "type"), CHOICE("dynamic static"), INTO(analysis), .standard = "dynamic",
      .help = "static: transmission error under load (model 3d)"},
@@ -138,7 +136,7 @@ const key_spec keys[] = {
     {NAME("analysis", "positions"), COUNT(1, 100000000), INTO(positions),
      .standard = "200", .used = FOR_STATIC, .help = "equal steps over the period"},
     {NAME("analysis", "period"), CHOICE("mesh pinion hunting"), INTO(period),
-     .standard = "mesh", .used = FOR_STATIC, .help = "one tooth, one turn, or until the same teeth meet again"},
+     .standard = "mesh", .used = FOR_STATIC, .help = "one tooth, one turn, or until the same teeth meet"},
 
     {NAME("solver", "method"), CHOICE("bdf adams"), INTO(method), .standard = "adams",
      .used = FOR_DYNAMIC, .help = "of CVODE"},
@@ -150,7 +148,7 @@ const key_spec keys[] = {
      .standard = "0", .used = FOR_DYNAMIC, .help = "longest step, 0 = no limit"},
 
     {NAME("output", "file"), .kind = KEY_PATH, INTO(output_file),
-     .derived = "name of the INI file with .csv, in the working folder", .help = "result"},
+     .derived = "name of the INI file, .csv", .help = "result"},
     {NAME("output", "rate_Hz"), NUMBER(UNIT_SI, ABOVE_ZERO), INTO(output_rate),
      .standard = "25600", .used = FOR_DYNAMIC, .help = "rows per simulated second"},
     {NAME("output", "oversampling"), COUNT(1, 64), INTO(oversampling),
@@ -528,19 +526,33 @@ static void describe_values(const key_spec *key, char *text, size_t size) {
         describe_range(&key->range, text, size);
 }
 
+/* When the file must have the key, or NULL. */
+static const char *describe_need(const key_spec *key) {
+    if (key->required & FOR_SPEED)
+        return "required for kind = speed";
+    if (key->required & FOR_TORQUE)
+        return "required for kind = torque";
+    if (key->required & FOR_DYNAMIC)
+        return "required for a dynamic run";
+    if (key->required & FOR_RUN)
+        return "required for a run";
+    return key->required ? "required" : NULL;
+}
+
 static void print_key(const key_spec *key, FILE *stream) {
+    const char *standard = key->standard != NULL ? key->standard : key->derived;
+    const char *need = describe_need(key);
     char values[80];
-    const char *standard = key->standard != NULL  ? key->standard
-                           : key->derived != NULL ? key->derived
-                                                  : NULL;
 
     describe_values(key, values, sizeof values);
     fprintf(stream, "  %-25s ", key->name);
     if (standard != NULL)
         fprintf(stream, "[%s] ", standard);
-    fprintf(stream, "%s", key->help);
+    fputs(key->help, stream);
     if (*values != '\0')
         fprintf(stream, "; %s", values);
+    if (need != NULL)
+        fprintf(stream, "; %s", need);
     fputc('\n', stream);
 }
 
