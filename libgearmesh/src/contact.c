@@ -42,21 +42,24 @@ static void find_limits(const gm_pair *pair, gmi_lines *lines) {
         wheel_start < pair->pinion.tip_roll_length ? wheel_start : pair->pinion.tip_roll_length;
 }
 
+double gmi_ideal_penetration(const gm_pair *pair, int side, double offset) {
+    return (side == GM_DRIVE ? offset : -offset) - 0.5 * pair->backlash;
+}
+
 void gmi_lines_find(const gm_pair *pair, int side, const gm_position *position, gmi_lines *lines) {
-    const double half_backlash = 0.5 * pair->backlash;
     int wheel_tooth = position->wheel_tooth;
     if (side == GM_DRIVE) {
-        lines->delta = position->offset - half_backlash;
         lines->origin = pair->phase_origin + position->phase;
         lines->twist = pair->twist;
         lines->tooth_step = 1;
     } else {
-        lines->delta = -position->offset - half_backlash;
         lines->origin = pair->phase_origin - position->phase;
         lines->twist = -pair->twist;
         lines->tooth_step = -1;
         wheel_tooth -= 1; /* the coast flank of pinion tooth i meets wheel tooth i - 1 */
     }
+    lines->per_twist = 1.0 / lines->twist;
+    lines->delta = gmi_ideal_penetration(pair, side, position->offset);
     find_limits(pair, lines);
 
     /* Lines whose rho_p reaches into [lower, upper] for some t1 in [0, 1]. */
@@ -69,23 +72,4 @@ void gmi_lines_find(const gm_pair *pair, int side, const gm_position *position, 
         wrap_tooth(position->pinion_tooth + lines->tooth_step * lines->first, pair->pinion.teeth);
     lines->wheel_tooth =
         wrap_tooth(wheel_tooth + lines->tooth_step * lines->first, pair->wheel.teeth);
-}
-
-int gmi_line_clip(const gmi_lines *lines, double rho_origin, double *from, double *to) {
-    const double below = lines->lower - rho_origin;
-    const double above = lines->upper - rho_origin;
-    *from = 0.0;
-    *to = 1.0;
-    if (lines->twist == 0.0) /* spur: the line is inside as a whole, or not at all */
-        return below <= 0.0 && above >= 0.0;
-
-    const double t_lower = below / lines->twist;
-    const double t_upper = above / lines->twist;
-    const double enter = lines->twist > 0.0 ? t_lower : t_upper;
-    const double leave = lines->twist > 0.0 ? t_upper : t_lower;
-    if (enter > 0.0)
-        *from = enter;
-    if (leave < 1.0)
-        *to = leave;
-    return *from < *to;
 }

@@ -29,8 +29,14 @@ static double residual(const problem *p, double offset, gm_penetration *result) 
     return result->penetration - p->target;
 }
 
+static double peak_of(const gm_flanks *flanks, int side) {
+    const gm_flank_tables *tables = gmi_flanks_side(flanks, side);
+    return tables == NULL ? 0.0 : tables->peak;
+}
+
+/* No contact on a side whose ideal penetration is below minus this. */
 static double sum_peak(const problem *p, int side) {
-    return gmi_flanks_peak(p->pinion_flanks, side) + gmi_flanks_peak(p->wheel_flanks, side);
+    return peak_of(p->pinion_flanks, side) + peak_of(p->wheel_flanks, side);
 }
 
 /* Just inside |x| < p_bt / 2. */

@@ -13,7 +13,6 @@
 
 #define LARGEST_NODES 10000
 #define LARGEST_TEETH 100000
-#define NODE_DOUBLES  4 /* value, second difference along t1, along t2, padding */
 
 static int check_side(int tables, int face_nodes, int profile_nodes, int teeth) {
     if (tables < 0 || tables > teeth + 1)
@@ -31,7 +30,7 @@ static int check_params(const gm_flanks_params *p) {
 /* Doubles of one side: the tables, their peaks, the pitch deviations. 64 bits hold the largest. */
 static uint64_t side_doubles(int tables, int face_nodes, int profile_nodes, int teeth) {
     const uint64_t table =
-        tables == 0 ? 0 : (uint64_t)face_nodes * (uint64_t)profile_nodes * NODE_DOUBLES;
+        tables == 0 ? 0 : (uint64_t)face_nodes * (uint64_t)profile_nodes * GMI_NODE_DOUBLES;
     return (uint64_t)tables * (table + 1) + (uint64_t)teeth;
 }
 
@@ -59,7 +58,7 @@ static double *side_init(gm_flank_tables *side, int tables, int face_nodes, int 
     side->peak = 0.0;
     side->values = doubles;
     doubles +=
-        (size_t)tables * (size_t)side->face_nodes * (size_t)side->profile_nodes * NODE_DOUBLES;
+        (size_t)tables * (size_t)side->face_nodes * (size_t)side->profile_nodes * GMI_NODE_DOUBLES;
     side->table_peak = doubles;
     doubles += tables;
     side->pitch = doubles;
@@ -100,7 +99,7 @@ static gm_flank_tables *side_of(gm_flanks *flanks, int side) {
 }
 
 static size_t table_doubles(const gm_flank_tables *side) {
-    return (size_t)side->face_nodes * (size_t)side->profile_nodes * NODE_DOUBLES;
+    return (size_t)side->face_nodes * (size_t)side->profile_nodes * GMI_NODE_DOUBLES;
 }
 
 /* Most material of one tooth: its highest node (bilinear surfaces peak at nodes) and its pitch. */
@@ -135,14 +134,15 @@ static double second_difference(const double *node, size_t stride, int k, int co
 static void fill_table(const gm_flank_tables *side, double *table, const double *deviation,
                        double factor) {
     const size_t nodes = (size_t)side->face_nodes * (size_t)side->profile_nodes;
-    const size_t row = (size_t)side->profile_nodes * NODE_DOUBLES;
+    const size_t row = (size_t)side->profile_nodes * GMI_NODE_DOUBLES;
     for (size_t k = 0; k < nodes; ++k)
-        table[k * NODE_DOUBLES] = deviation[k] * factor;
+        table[k * GMI_NODE_DOUBLES] = deviation[k] * factor;
     for (int face = 0; face < side->face_nodes; ++face) {
         for (int profile = 0; profile < side->profile_nodes; ++profile) {
-            double *node = table + (size_t)face * row + (size_t)profile * NODE_DOUBLES;
-            node[1] = second_difference(node, row, face, side->face_nodes);
-            node[2] = second_difference(node, NODE_DOUBLES, profile, side->profile_nodes);
+            double *node = table + (size_t)face * row + (size_t)profile * GMI_NODE_DOUBLES;
+            node[GMI_NODE_FACE] = second_difference(node, row, face, side->face_nodes);
+            node[GMI_NODE_PROFILE] =
+                second_difference(node, GMI_NODE_DOUBLES, profile, side->profile_nodes);
             node[3] = 0.0;
         }
     }
@@ -150,7 +150,7 @@ static void fill_table(const gm_flank_tables *side, double *table, const double 
 
 static double table_maximum(const double *table, size_t doubles) {
     double maximum = table[0];
-    for (size_t k = NODE_DOUBLES; k < doubles; k += NODE_DOUBLES) {
+    for (size_t k = GMI_NODE_DOUBLES; k < doubles; k += GMI_NODE_DOUBLES) {
         if (table[k] > maximum)
             maximum = table[k];
     }
@@ -202,25 +202,20 @@ int gm_flanks_set_pitch(gm_flanks *flanks, int side, int tooth, double deviation
     return GM_OK;
 }
 
-gmi_flank gmi_flank_of(const gm_flanks *flanks, int side, int tooth) {
-    gmi_flank flank = {NULL, 0.0, 0.0, 0, 0};
-    if (flanks == NULL)
+const gm_flank_tables *gmi_flanks_side(const gm_flanks *flanks, int side) {
+    return flanks == NULL ? NULL : side == GM_DRIVE ? &flanks->drive : &flanks->coast;
+}
+
+gmi_flank gmi_flank_of(const gm_flank_tables *tables, int tooth) {
+    gmi_flank flank = {NULL, 0.0, 0.0};
+    if (tables == NULL)
         return flank;
-    const gm_flank_tables *tables = side == GM_DRIVE ? &flanks->drive : &flanks->coast;
     const int table = tables->table[tooth];
     flank.pitch = tables->pitch[tooth];
     flank.peak = flank.pitch;
     if (table >= 0) {
         flank.values = tables->values + (size_t)table * table_doubles(tables);
         flank.peak += tables->table_peak[table];
-        flank.face_nodes = tables->face_nodes;
-        flank.profile_nodes = tables->profile_nodes;
     }
     return flank;
-}
-
-double gmi_flanks_peak(const gm_flanks *flanks, int side) {
-    if (flanks == NULL)
-        return 0.0;
-    return side == GM_DRIVE ? flanks->drive.peak : flanks->coast.peak;
 }

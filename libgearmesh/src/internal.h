@@ -3,7 +3,7 @@
 
 /*
  * What the sources of the core share and users never see. Dependencies run one way:
- * gear -> pair -> position -> contact -> flank, trace -> penetration -> force -> wrench, equilibrium.
+ * gear -> pair -> position -> contact -> flank -> line -> penetration -> force -> wrench, equilibrium.
  */
 #ifndef GEARMESH_INTERNAL_H
 #define GEARMESH_INTERNAL_H
@@ -46,6 +46,7 @@ typedef struct gmi_lines {
     double delta;          /* ideal penetration, the same on every line (m) */
     double origin;         /* (m) */
     double twist;          /* (m) */
+    double per_twist;      /* its inverse; infinite for spur gears (1/m) */
     double lower, upper;   /* both tips and both start radii (m) */
     double lower_by_delta; /* derivatives of the limits by delta, 0 or 1: */
     double upper_by_delta; /* those set by the wheel move with the penetration */
@@ -55,27 +56,87 @@ typedef struct gmi_lines {
     int tooth_step; /* +1 or -1: teeth from line k to line k + 1 */
 } gmi_lines;
 
+/* Ideal penetration of one side at x: x - backlash / 2, or -x - backlash / 2 [Paper, Eqs. 10, 20]. */
+double gmi_ideal_penetration(const gm_pair *pair, int side, double offset);
+
 void gmi_lines_find(const gm_pair *pair, int side, const gm_position *position, gmi_lines *lines);
 
-/* Part [*from, *to] of t1 in which line k exists; returns 0 if there is none. */
-int gmi_line_clip(const gmi_lines *lines, double rho_origin, double *from, double *to);
+/* Part of t1 in which a line exists; empty if from >= to. */
+typedef struct gmi_interval {
+    double from, to;
+} gmi_interval;
+
+/* The part of the line that begins at rho_p = rho_origin. */
+static inline gmi_interval gmi_line_clip(const gmi_lines *lines, double rho_origin) {
+    const double below = lines->lower - rho_origin;
+    const double above = lines->upper - rho_origin;
+    gmi_interval part = {0.0, 1.0};
+    if (lines->twist == 0.0) { /* spur: the line is inside as a whole, or not at all */
+        part.to = below <= 0.0 && above >= 0.0 ? 1.0 : 0.0;
+        return part;
+    }
+    const double t_lower = below * lines->per_twist;
+    const double t_upper = above * lines->per_twist;
+    const double enter = lines->twist > 0.0 ? t_lower : t_upper;
+    const double leave = lines->twist > 0.0 ? t_upper : t_lower;
+    part.from = enter > 0.0 ? enter : 0.0;
+    part.to = leave < 1.0 ? leave : 1.0;
+    return part;
+}
 
 /* flank.c: the deviations of one tooth flank. */
+
+/* Doubles per node of a table: value, second difference along t1, along t2, padding. */
+enum gmi_node { GMI_NODE_VALUE, GMI_NODE_FACE, GMI_NODE_PROFILE, GMI_NODE_DOUBLES = 4 };
+
 typedef struct gmi_flank {
     const double *values; /* [face_nodes][profile_nodes][4], NULL = no table */
     double pitch;         /* (m) */
     double peak;          /* most material, pitch included (m) */
-    int face_nodes, profile_nodes;
 } gmi_flank;
 
-gmi_flank gmi_flank_of(const gm_flanks *flanks, int side, int tooth);
-double gmi_flanks_peak(const gm_flanks *flanks, int side);
-
-/* penetration.c: the sums over all lines of one side. */
+gmi_flank gmi_flank_of(const gm_flank_tables *tables, int tooth);
+const gm_flank_tables *gmi_flanks_side(const gm_flanks *flanks, int side);
 
 /* What to compute beside sum, contact and pairs. */
 enum gmi_wanted { GMI_SUM = 0, GMI_DERIVATIVES = 1, GMI_MOMENTS = 2 };
 
+/* line.c: the integral along one line of contact. */
+
+/* How the lines of one side run through the tables of one gear: the same for all its teeth. */
+typedef struct gmi_grid {
+    int face_nodes; /* 0 = the gear has no tables on this side */
+    int profile_nodes;
+    double rate;     /* d v2 / d t1, with v2 = (profile_nodes - 1) t2 */
+    double per_rate; /* its inverse */
+} gmi_grid;
+
+/* One line: t1 from `from` to `to`, with f = gap + deviations of both flanks. */
+typedef struct gmi_line {
+    double from, to;
+    double gap;           /* delta and both pitch deviations (m) */
+    const double *pinion; /* table, NULL = none */
+    const double *wheel;
+    double pinion_profile; /* v2 of the pinion's table at t1 = 0 */
+    double wheel_profile;
+} gmi_line;
+
+/* Integrals over the part of a line where f > 0. */
+typedef struct gmi_line_sum {
+    double sum;        /* of f (m) */
+    double contact;    /* of 1 (1) */
+    double pinion;     /* of the pinion's d deviation / d v2 (GMI_DERIVATIVES) (m) */
+    double wheel;      /* of the wheel's (m) */
+    double sum_t1;     /* of f t1 (GMI_MOMENTS) (m) */
+    double contact_t1; /* of t1 (1) */
+    double at_from;    /* f itself at both ends (m) */
+    double at_to;
+} gmi_line_sum;
+
+void gmi_line_integrate(const gmi_line *line, const gmi_grid *pinion, const gmi_grid *wheel,
+                        int wanted, gmi_line_sum *result);
+
+/* penetration.c: the sums over all lines of one side. */
 typedef struct gmi_side_sum {
     double sum;     /* sum of the integrals of max(0, delta) dt1 (m) */
     double contact; /* touching part of the face width, summed (1) */
@@ -90,9 +151,9 @@ typedef struct gmi_side_sum {
     double contact_rho; /* and of rho_p over the touching part (m) */
 } gmi_side_sum;
 
-gmi_side_sum gmi_side_sum_3d(const gm_pair *pair, const gm_flanks *pinion_flanks,
-                             const gm_flanks *wheel_flanks, int side, const gm_position *position,
-                             int wanted);
+void gmi_side_sum_3d(const gm_pair *pair, const gm_flanks *pinion_flanks,
+                     const gm_flanks *wheel_flanks, int side, const gm_position *position,
+                     int wanted, gmi_side_sum *total);
 
 /* Status of what an evaluation is given, beyond the pair. */
 int gmi_check_evaluation(const gm_pair *pair, const gm_flanks *pinion_flanks,

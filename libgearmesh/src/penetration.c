@@ -4,199 +4,134 @@
 /*
  * The penetration models: simple [Paper, Eqs. 9-11] and 3D [Paper, Eqs. 12-25].
  *
- * 3D: the sum over all lines of the integral of max(0, delta + deviations) over t1. Along a line the integrand is
- * a quadratic between grid-line crossings (trace.h); each piece is integrated in closed form, split at its roots
- * where its sign changes. No slices, no quadrature error.
+ * 3D: the sum over all lines of the integral of max(0, delta + deviations) over t1. Between ideal flanks that is delta
+ * times the clipped length; with tables line.c integrates along each line. No slices, no quadrature error.
  */
 #include "internal.h"
-#include "trace.h"
 
+#include <float.h>
 #include <math.h>
 
-/* The integrals over the touching part of one line. */
-typedef struct line_sum {
-    double sum;        /* of f = max(0, delta) (m) */
-    double contact;    /* of 1 (1) */
-    double pinion;     /* of the pinion flank's d deviation / d v2 (m) */
-    double wheel;      /* of the wheel flank's (m) */
-    double sum_t1;     /* of f t1 (m) */
-    double contact_t1; /* of t1 (1) */
-} line_sum;
+static const gmi_side_sum no_contact = {0.0, 0.0, 0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0};
 
-/* Two traces and their sum at t1, where a piece begins. */
-typedef struct line_walk {
-    double t1;
-    gmi_quadratic f;
-    gmi_trace pinion;
-    gmi_trace wheel;
-} line_walk;
+/* One side at one position: everything its lines have in common. */
+typedef struct side_view {
+    gmi_lines lines;
+    const gm_flank_tables *pinion_tables; /* NULL = ideal */
+    const gm_flank_tables *wheel_tables;
+    gmi_grid pinion_grid;
+    gmi_grid wheel_grid;
+    double pinion_per_rho; /* d v2 / d rho of the pinion's tables (1/m) */
+    double wheel_per_rho;  /* of the wheel's (1/m) */
+    double wheel_reach;    /* rho_w - start of the wheel's flank = wheel_reach - rho_p (m) */
+} side_view;
 
-/* Adds the part [begin, end] (from the start of the piece) where f > 0. */
-static inline void add_touching(const line_walk *walk, double begin, double end, int wanted,
-                                line_sum *total) {
-    const gmi_quadratic f = walk->f;
-    const double length = end - begin;
-    const double middle = 0.5 * (begin + end);
-    /* Integral of the quadratic about the middle: exact, and no differences of cubes. */
-    const double at_middle = f.value + middle * (f.slope + middle * f.curvature);
-    const double second = length * length * (1.0 / 12.0);
-    const double integral = length * (at_middle + f.curvature * second);
-    total->sum += integral;
-    total->contact += length;
-    if (wanted & GMI_DERIVATIVES) {
-        total->pinion += length * gmi_trace_profile_slope(&walk->pinion, middle);
-        total->wheel += length * gmi_trace_profile_slope(&walk->wheel, middle);
-    }
-    if (wanted & GMI_MOMENTS) {
-        const double t1 = walk->t1 + middle;
-        const double slope_at_middle = f.slope + 2.0 * middle * f.curvature;
-        total->sum_t1 += t1 * integral + length * second * slope_at_middle;
-        total->contact_t1 += t1 * length;
-    }
+static void find_grid(const gm_flank_tables *tables, const gm_gear *gear, double climb,
+                      gmi_grid *grid, double *per_rho) {
+    const int profile_nodes = tables == NULL ? 0 : tables->profile_nodes;
+    grid->face_nodes = profile_nodes == 0 ? 0 : tables->face_nodes;
+    grid->profile_nodes = profile_nodes;
+    *per_rho = profile_nodes == 0 ? 0.0
+                                  : (double)(profile_nodes - 1) /
+                                        (gear->tip_roll_length - gear->start_roll_length);
+    grid->rate = climb * *per_rho;
+    grid->per_rate = 1.0 / grid->rate;
 }
 
-/* A piece in which f changes its sign: splits it at the roots of the quadratic. */
-static void add_split_piece(const line_walk *walk, double length, int wanted, line_sum *total) {
-    const gmi_quadratic f = walk->f;
-    const double discriminant = f.slope * f.slope - 4.0 * f.curvature * f.value;
-    double cuts[4] = {0.0, 0.0, 0.0, length};
-    if (discriminant > 0.0) {
-        const double q = -0.5 * (f.slope + copysign(sqrt(discriminant), f.slope));
-        const double root_1 = fmin(fmax(q / f.curvature, 0.0), length);
-        const double root_2 = fmin(fmax(f.value / q, 0.0), length);
-        cuts[1] = fmin(root_1, root_2);
-        cuts[2] = fmax(root_1, root_2);
-    }
-    for (int k = 0; k < 3; ++k) {
-        const double middle = 0.5 * (cuts[k] + cuts[k + 1]);
-        if (cuts[k + 1] > cuts[k] && f.value + middle * (f.slope + middle * f.curvature) > 0.0)
-            add_touching(walk, cuts[k], cuts[k + 1], wanted, total);
-    }
-}
-
-/* One piece. A quadratic stays within the hull of its three Bezier points, so most need no roots. */
-static inline void add_piece(const line_walk *walk, double length, double end_value, int wanted,
-                             line_sum *total) {
-    const double start_value = walk->f.value;
-    const double control = start_value + 0.5 * length * walk->f.slope;
-    if (start_value <= 0.0 && control <= 0.0 && end_value <= 0.0)
-        return;
-    if (start_value >= 0.0 && control >= 0.0 && end_value >= 0.0)
-        add_touching(walk, 0.0, length, wanted, total);
-    else
-        add_split_piece(walk, length, wanted, total);
-}
-
-/* Walks from walk->t1 to `to`, piece by piece. On return walk->f.value is f at `to`. */
-static inline void walk_line(line_walk *walk, double to, int wanted, line_sum *total) {
-    for (;;) {
-        const double next_pinion = fmin(walk->pinion.next_face, walk->pinion.next_profile);
-        const double next_wheel = fmin(walk->wheel.next_face, walk->wheel.next_profile);
-        const double crossing = fmin(next_pinion, next_wheel);
-        const double end = fmin(crossing, to);
-        const double length = end - walk->t1;
-        if (length > 0.0) {
-            const gmi_quadratic f = walk->f;
-            const double end_value = f.value + length * (f.slope + length * f.curvature);
-            add_piece(walk, length, end_value, wanted, total);
-            walk->f.value = end_value;
-            walk->f.slope = f.slope + 2.0 * length * f.curvature;
-            walk->pinion.profile_slope = gmi_trace_profile_slope(&walk->pinion, length);
-            walk->wheel.profile_slope = gmi_trace_profile_slope(&walk->wheel, length);
-            walk->t1 = end;
-        }
-        if (crossing >= to)
-            return;
-        if (walk->pinion.next_face == crossing)
-            gmi_trace_cross_face(&walk->pinion, crossing, &walk->f);
-        if (walk->pinion.next_profile == crossing)
-            gmi_trace_cross_profile(&walk->pinion, crossing, &walk->f);
-        if (walk->wheel.next_face == crossing)
-            gmi_trace_cross_face(&walk->wheel, crossing, &walk->f);
-        if (walk->wheel.next_profile == crossing)
-            gmi_trace_cross_profile(&walk->wheel, crossing, &walk->f);
-    }
-}
-
-/* How t2 of both flanks follows from rho_p; the same on all lines of a side. */
-typedef struct profile_maps {
-    double pinion_per_rho; /* d t2 / d rho of the pinion (1/m) */
-    double wheel_per_rho;  /* of the wheel (1/m) */
-    double
-        wheel_reach; /* rho_p + rho_w - start of the wheel: rho_w - start = wheel_reach - rho_p (m) */
-} profile_maps;
-
-static profile_maps maps_of(const gm_pair *pair, double delta) {
-    const gm_gear *pinion = &pair->pinion;
-    const gm_gear *wheel = &pair->wheel;
-    const profile_maps maps = {1.0 / (pinion->tip_roll_length - pinion->start_roll_length),
-                               1.0 / (wheel->tip_roll_length - wheel->start_roll_length),
-                               pair->line_of_action + delta - wheel->start_roll_length};
-    return maps;
+static void find_grids(const gm_pair *pair, side_view *view) {
+    const double twist = view->lines.twist;
+    find_grid(view->pinion_tables, &pair->pinion, twist, &view->pinion_grid, &view->pinion_per_rho);
+    find_grid(view->wheel_tables, &pair->wheel, -twist, &view->wheel_grid, &view->wheel_per_rho);
+    view->wheel_reach = pair->line_of_action + view->lines.delta - pair->wheel.start_roll_length;
 }
 
 /*
- * Derivatives of one line's sum. Inside, f depends on the line's origin and on delta through both look-up
- * points; at an end that a limit of the flanks sets, the end itself moves (Leibniz):
- *     t1_end = (limit - rho_origin) / twist.
+ * The ends of a line that a limit of the flanks sets move with the line's origin and with delta:
+ *     t1_end = (limit - rho_origin) / twist,
+ * and each takes f there into the sum or out of it (Leibniz).
  */
-static void add_derivatives(const gmi_lines *lines, const profile_maps *maps, double pinion_scale,
-                            double wheel_scale, const line_sum *line, double from, double to,
-                            double f_from, double f_to, gmi_side_sum *side) {
-    const double by_pinion = line->pinion * pinion_scale * maps->pinion_per_rho;
-    const double by_wheel = line->wheel * wheel_scale * maps->wheel_per_rho;
-    side->by_origin += by_pinion - by_wheel;
-    side->by_delta += line->contact + by_wheel;
-
+static inline void add_end_derivatives(const gmi_lines *lines, gmi_interval part, double f_from,
+                                       double f_to, gmi_side_sum *side) {
     const int upwards = lines->twist > 0.0;
-    if (from > 0.0 && f_from > 0.0) {
-        const double limit_by_delta = upwards ? lines->lower_by_delta : lines->upper_by_delta;
-        side->by_origin += f_from / lines->twist;
-        side->by_delta -= f_from * limit_by_delta / lines->twist;
+    if (part.from > 0.0 && f_from > 0.0) {
+        const double flow = f_from * lines->per_twist;
+        side->by_origin += flow;
+        side->by_delta -= flow * (upwards ? lines->lower_by_delta : lines->upper_by_delta);
     }
-    if (to < 1.0 && f_to > 0.0) {
-        const double limit_by_delta = upwards ? lines->upper_by_delta : lines->lower_by_delta;
-        side->by_origin -= f_to / lines->twist;
-        side->by_delta += f_to * limit_by_delta / lines->twist;
+    if (part.to < 1.0 && f_to > 0.0) {
+        const double flow = f_to * lines->per_twist;
+        side->by_origin -= flow;
+        side->by_delta += flow * (upwards ? lines->upper_by_delta : lines->lower_by_delta);
     }
 }
 
-static inline void add_line(const gm_pair *pair, const gmi_lines *lines, const profile_maps *maps,
-                            const gmi_flank *pinion, const gmi_flank *wheel, double rho_origin,
-                            int wanted, gmi_side_sum *side) {
-    double from, to;
-    if (!gmi_line_clip(lines, rho_origin, &from, &to))
+static void add_moments(const gmi_lines *lines, double rho_origin, const gmi_line_sum *line,
+                        gmi_side_sum *side) {
+    side->sum_t1 += line->sum_t1;
+    side->sum_rho += rho_origin * line->sum + lines->twist * line->sum_t1;
+    side->contact_t1 += line->contact_t1;
+    side->contact_rho += rho_origin * line->contact + lines->twist * line->contact_t1;
+}
+
+/* A line between ideal flanks: f is the same all along. */
+static inline void add_ideal_line(const gmi_lines *lines, double rho_origin, int wanted,
+                                  gmi_side_sum *side) {
+    const gmi_interval part = gmi_line_clip(lines, rho_origin);
+    const double length = part.to - part.from;
+    if (!(length > 0.0))
         return;
-
-    line_walk walk = {.t1 = from, .f = {lines->delta + pinion->pitch + wheel->pitch, 0.0, 0.0}};
-    gmi_trace_none(&walk.pinion);
-    gmi_trace_none(&walk.wheel);
-    if (pinion->values != NULL)
-        gmi_trace_begin(&walk.pinion, pinion, from,
-                        (rho_origin - pair->pinion.start_roll_length) * maps->pinion_per_rho,
-                        lines->twist * maps->pinion_per_rho, &walk.f);
-    if (wheel->values != NULL)
-        gmi_trace_begin(&walk.wheel, wheel, from,
-                        (maps->wheel_reach - rho_origin) * maps->wheel_per_rho,
-                        -lines->twist * maps->wheel_per_rho, &walk.f);
-
-    const double f_from = walk.f.value;
-    line_sum line = {0.0, 0.0, 0.0, 0.0, 0.0, 0.0};
-    walk_line(&walk, to, wanted, &line);
-
-    side->sum += line.sum;
-    side->contact += line.contact;
-    side->pairs += line.contact > 0.0;
+    side->contact += length;
+    side->pairs += 1;
     if (wanted & GMI_DERIVATIVES)
-        add_derivatives(lines, maps, (double)(pinion->profile_nodes - 1),
-                        (double)(wheel->profile_nodes - 1), &line, from, to, f_from, walk.f.value,
-                        side);
+        add_end_derivatives(lines, part, lines->delta, lines->delta, side);
     if (wanted & GMI_MOMENTS) {
-        side->sum_t1 += line.sum_t1;
-        side->sum_rho += rho_origin * line.sum + lines->twist * line.sum_t1;
-        side->contact_t1 += line.contact_t1;
-        side->contact_rho += rho_origin * line.contact + lines->twist * line.contact_t1;
+        const double length_t1 = 0.5 * length * (part.from + part.to);
+        const gmi_line_sum line = {.sum = lines->delta * length,
+                                   .contact = length,
+                                   .sum_t1 = lines->delta * length_t1,
+                                   .contact_t1 = length_t1};
+        add_moments(lines, rho_origin, &line, side);
     }
+}
+
+static void sum_ideal(const gm_pair *pair, const gmi_lines *lines, int wanted, gmi_side_sum *side) {
+    for (int k = lines->first; k <= lines->last; ++k)
+        add_ideal_line(lines, lines->origin + (double)k * pair->transverse_base_pitch, wanted,
+                       side);
+    side->sum = lines->delta * side->contact;
+    side->by_delta += side->contact;
+}
+
+static void add_line(const gm_pair *pair, const side_view *view, const gmi_flank *pinion,
+                     const gmi_flank *wheel, double rho_origin, int wanted, gmi_side_sum *side) {
+    const gmi_interval part = gmi_line_clip(&view->lines, rho_origin);
+    if (!(part.from < part.to))
+        return;
+    const gmi_line line = {
+        part.from,
+        part.to,
+        view->lines.delta + pinion->pitch + wheel->pitch,
+        pinion->values,
+        wheel->values,
+        (rho_origin - pair->pinion.start_roll_length) * view->pinion_per_rho,
+        (view->wheel_reach - rho_origin) * view->wheel_per_rho,
+    };
+    gmi_line_sum sum;
+    gmi_line_integrate(&line, &view->pinion_grid, &view->wheel_grid, wanted, &sum);
+
+    side->sum += sum.sum;
+    side->contact += sum.contact;
+    side->pairs += sum.contact > 0.0;
+    if (wanted & GMI_DERIVATIVES) {
+        /* Inside, f follows the line's origin and delta through both points looked up. */
+        const double by_pinion = sum.pinion * view->pinion_per_rho;
+        const double by_wheel = sum.wheel * view->wheel_per_rho;
+        side->by_origin += by_pinion - by_wheel;
+        side->by_delta += sum.contact + by_wheel;
+        add_end_derivatives(&view->lines, part, sum.at_from, sum.at_to, side);
+    }
+    if (wanted & GMI_MOMENTS)
+        add_moments(&view->lines, rho_origin, &sum, side);
 }
 
 static int next_tooth(int tooth, int step, int teeth) {
@@ -204,32 +139,44 @@ static int next_tooth(int tooth, int step, int teeth) {
     return next < 0 ? teeth - 1 : next == teeth ? 0 : next;
 }
 
-gmi_side_sum gmi_side_sum_3d(const gm_pair *pair, const gm_flanks *pinion_flanks,
-                             const gm_flanks *wheel_flanks, int side, const gm_position *position,
-                             int wanted) {
-    gmi_side_sum total = {0.0, 0.0, 0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0};
-    gmi_lines lines;
-    gmi_lines_find(pair, side, position, &lines);
+static void sum_tables(const gm_pair *pair, side_view *view, int wanted, gmi_side_sum *side) {
+    const gmi_lines *lines = &view->lines;
+    find_grids(pair, view);
+    int pinion_tooth = lines->pinion_tooth;
+    int wheel_tooth = lines->wheel_tooth;
+    for (int k = lines->first; k <= lines->last; ++k) {
+        const gmi_flank pinion = gmi_flank_of(view->pinion_tables, pinion_tooth);
+        const gmi_flank wheel = gmi_flank_of(view->wheel_tables, wheel_tooth);
+        if (lines->delta + pinion.peak + wheel.peak > 0.0)
+            add_line(pair, view, &pinion, &wheel,
+                     lines->origin + (double)k * pair->transverse_base_pitch, wanted, side);
+        pinion_tooth = next_tooth(pinion_tooth, lines->tooth_step, pair->pinion.teeth);
+        wheel_tooth = next_tooth(wheel_tooth, lines->tooth_step, pair->wheel.teeth);
+    }
+}
+
+void gmi_side_sum_3d(const gm_pair *pair, const gm_flanks *pinion_flanks,
+                     const gm_flanks *wheel_flanks, int side, const gm_position *position,
+                     int wanted, gmi_side_sum *total) {
+    side_view view;
+    view.pinion_tables = gmi_flanks_side(pinion_flanks, side);
+    view.wheel_tables = gmi_flanks_side(wheel_flanks, side);
+    *total = no_contact;
 
     /* Nothing reaches across the gap: the usual state of one of both sides. */
-    if (lines.delta + gmi_flanks_peak(pinion_flanks, side) + gmi_flanks_peak(wheel_flanks, side) <=
-        0.0)
-        return total;
+    double reach = gmi_ideal_penetration(pair, side, position->offset);
+    if (view.pinion_tables != NULL)
+        reach += view.pinion_tables->peak;
+    if (view.wheel_tables != NULL)
+        reach += view.wheel_tables->peak;
+    if (reach <= 0.0)
+        return;
 
-    const profile_maps maps = maps_of(pair, lines.delta);
-    int pinion_tooth = lines.pinion_tooth;
-    int wheel_tooth = lines.wheel_tooth;
-    for (int k = lines.first; k <= lines.last; ++k) {
-        const gmi_flank pinion = gmi_flank_of(pinion_flanks, side, pinion_tooth);
-        const gmi_flank wheel = gmi_flank_of(wheel_flanks, side, wheel_tooth);
-        if (lines.delta + pinion.peak + wheel.peak > 0.0) {
-            const double rho_origin = lines.origin + (double)k * pair->transverse_base_pitch;
-            add_line(pair, &lines, &maps, &pinion, &wheel, rho_origin, wanted, &total);
-        }
-        pinion_tooth = next_tooth(pinion_tooth, lines.tooth_step, pair->pinion.teeth);
-        wheel_tooth = next_tooth(wheel_tooth, lines.tooth_step, pair->wheel.teeth);
-    }
-    return total;
+    gmi_lines_find(pair, side, position, &view.lines);
+    if (view.pinion_tables == NULL && view.wheel_tables == NULL)
+        sum_ideal(pair, &view.lines, wanted, total);
+    else
+        sum_tables(pair, &view, wanted, total);
 }
 
 static gm_penetration penetration_nan(void) {
@@ -277,13 +224,14 @@ int gmi_check_evaluation(const gm_pair *pair, const gm_flanks *pinion_flanks,
     if ((pinion_flanks != NULL && pinion_flanks->teeth != pair->pinion.teeth) ||
         (wheel_flanks != NULL && wheel_flanks->teeth != pair->wheel.teeth))
         return GM_ERR_TOOTH;
-    if (!gmi_is_finite(position->phase) || !gmi_is_finite(position->offset) ||
-        !gmi_is_finite(position->offset_rate))
-        return GM_STATE_NOT_FINITE;
-    /* One base pitch of slack: a phase may be rounded up to p_bt. */
-    if (fabs(position->offset) >= 0.5 * pair->transverse_base_pitch ||
-        fabs(position->phase) > 2.0 * pair->transverse_base_pitch)
-        return GM_STATE_OUT_OF_RANGE;
+    /* Negated, so that NaN is caught; a phase may be rounded up to p_bt. */
+    if (!(fabs(position->offset) < 0.5 * pair->transverse_base_pitch) ||
+        !(fabs(position->phase) < 1.5 * pair->transverse_base_pitch) ||
+        !(fabs(position->offset_rate) <= DBL_MAX))
+        return gmi_is_finite(position->offset) && gmi_is_finite(position->phase) &&
+                       gmi_is_finite(position->offset_rate)
+                   ? GM_STATE_OUT_OF_RANGE
+                   : GM_STATE_NOT_FINITE;
     if (position->pinion_tooth < 0 || position->pinion_tooth >= pair->pinion.teeth ||
         position->wheel_tooth < 0 || position->wheel_tooth >= pair->wheel.teeth)
         return GM_ERR_TOOTH;
@@ -312,10 +260,9 @@ int gm_penetration_3d_at(const gm_pair *pair, const gm_flanks *pinion_flanks,
     if (status != GM_OK)
         return status;
 
-    const gmi_side_sum drive =
-        gmi_side_sum_3d(pair, pinion_flanks, wheel_flanks, GM_DRIVE, position, GMI_DERIVATIVES);
-    const gmi_side_sum coast =
-        gmi_side_sum_3d(pair, pinion_flanks, wheel_flanks, GM_COAST, position, GMI_DERIVATIVES);
+    gmi_side_sum drive, coast;
+    gmi_side_sum_3d(pair, pinion_flanks, wheel_flanks, GM_DRIVE, position, GMI_DERIVATIVES, &drive);
+    gmi_side_sum_3d(pair, pinion_flanks, wheel_flanks, GM_COAST, position, GMI_DERIVATIVES, &coast);
     result->drive = drive.sum;
     result->coast = coast.sum;
     result->drive_contact = drive.contact;

@@ -85,10 +85,9 @@ int gm_wrench_3d_at(const gm_pair *pair, const gm_flanks *pinion_flanks,
     if (status != GM_OK)
         return status;
 
-    const gmi_side_sum drive =
-        gmi_side_sum_3d(pair, pinion_flanks, wheel_flanks, GM_DRIVE, position, GMI_MOMENTS);
-    const gmi_side_sum coast =
-        gmi_side_sum_3d(pair, pinion_flanks, wheel_flanks, GM_COAST, position, GMI_MOMENTS);
+    gmi_side_sum drive, coast;
+    gmi_side_sum_3d(pair, pinion_flanks, wheel_flanks, GM_DRIVE, position, GMI_MOMENTS, &drive);
+    gmi_side_sum_3d(pair, pinion_flanks, wheel_flanks, GM_COAST, position, GMI_MOMENTS, &coast);
     const side_force drive_force = force_of(&drive, position->offset_rate, stiffness, damping);
     const side_force coast_force = force_of(&coast, -position->offset_rate, stiffness, damping);
     memset(wrench, 0, sizeof *wrench);
