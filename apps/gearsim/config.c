@@ -88,7 +88,7 @@ static void tell(const config *conf, const char *section_and_key, const char *ki
         print_place(conf, conf->entries[index].origin, conf->entries[index].line);
     else
         print_place(conf, ORIGIN_DEFAULT, 0);
-    fprintf(stderr, "%s%s: ", kind, section_and_key);
+    fprintf(stderr, "%s: %s", section_and_key, kind);
     vfprintf(stderr, format, arguments);
     fputc('\n', stderr);
 }

@@ -108,7 +108,7 @@ void config_free(config *config);
  * "file:line: section.key: " (or "--set section.key: ") and then the formatted message and a newline. */
 void config_complain(const config *config, const char *section_and_key, const char *format, ...);
 
-/* The same with "warning: " before the key; silent with --quiet. */
+/* The same with "warning: " behind the key; silent with --quiet. */
 void config_warn(const config *config, const char *section_and_key, const char *format, ...);
 
 /* The INI key "section.key" that sets a field of gm_pair_params, and the text it was given (NULL = none). */

@@ -13,21 +13,48 @@ static const double pi = 3.14159265358979323846;
  * The pair
  * ------------------------------------------------------------------------------------------- */
 
+/* The library speaks of radii, the file of diameters. */
+static void speak_of_diameters(const char *requirement, char *text, size_t size) {
+    const char *radius;
+    size_t length = 0;
+
+    *text = '\0';
+    while ((radius = strstr(requirement, "radius")) != NULL && length < size) {
+        length += (size_t)snprintf(text + length, size - length, "%.*sdiameter",
+                                   (int)(radius - requirement), requirement);
+        requirement = radius + strlen("radius");
+    }
+    if (length < size)
+        snprintf(text + length, size - length, "%s", requirement);
+}
+
+/* What most geometry faults are measured against; needs nothing but teeth, module and angles (m). */
+static double base_diameter(const gm_pair_params *gears, int teeth) {
+    const double cos_helix = cos(gears->helix_angle);
+    const double transverse_pressure_angle = atan(tan(gears->normal_pressure_angle) / cos_helix);
+
+    return teeth * gears->normal_module / cos_helix * cos(transverse_pressure_angle);
+}
+
 /* A geometry that cannot be, said of the key that sets the field at fault. */
 static int refuse_geometry(const config *conf, int status) {
     const char *field = NULL;
     const char *requirement = NULL;
-    const char *key;
+    const char *key = "gears";
     const char *text;
+    char wanted[256];
 
-    if (gm_pair_params_check(&conf->gears, &field, &requirement) == GM_OK || field == NULL) {
-        config_complain(conf, "gears", "%s", gm_status_text(status));
-        return EXIT_BAD_INPUT;
-    }
-    key = config_key_of_field(field);
+    (void)gm_pair_params_check(&conf->gears, &field, &requirement);
+    if (field != NULL)
+        key = config_key_of_field(field);
     text = config_text(conf, key);
-    config_complain(conf, key, "no such gear pair (got %s), %s", text == NULL ? "no value" : text,
-                    requirement == NULL ? "see the other keys of [gears]" : requirement);
+    speak_of_diameters(requirement != NULL ? requirement : gm_status_text(status), wanted,
+                       sizeof wanted);
+    config_complain(conf, key,
+                    "gives no gear pair (got %s), must be %s (base diameters %.9g and %.9g mm)",
+                    text != NULL ? text : "none, so it is derived", wanted,
+                    1e3 * base_diameter(&conf->gears, conf->gears.pinion_teeth),
+                    1e3 * base_diameter(&conf->gears, conf->gears.wheel_teeth));
     return EXIT_BAD_INPUT;
 }
 
