@@ -1,0 +1,43 @@
+/* SPDX-FileCopyrightText: The gearmesh authors */
+/* SPDX-License-Identifier: BSD-3-Clause */
+
+/**
+ * @file deviation_rows.h
+ * The rows of a deviation file as they come, in any order, kept until their grid is known.
+ */
+#ifndef GEARMESH_DEVIATION_ROWS_H
+#define GEARMESH_DEVIATION_ROWS_H
+
+/** Axes of a flank: t1 along the face, t2 along the profile. */
+enum { GMI_FACE = 0, GMI_PROFILE = 1 };
+
+typedef struct gmi_row {
+    double position[2]; /**< t1, t2 */
+    double value;       /**< deviation (m) */
+    long line;
+    int slot; /**< which tooth and flank, see flank_slot.h */
+} gmi_row;
+
+typedef struct gmi_row_block gmi_row_block;
+
+/** All rows, in a list of blocks: nothing is moved as it grows. Empty = all zero. */
+typedef struct gmi_rows {
+    gmi_row_block *first;
+    gmi_row_block *last;
+} gmi_rows;
+
+/** A place in the rows: `for (row = gmi_rows_first(&at, rows); row; row = gmi_rows_next(&at))`. */
+typedef struct gmi_rows_place {
+    const gmi_row_block *block;
+    int index;
+} gmi_rows_place;
+
+/** Appends a copy; 0 if there is no memory for it. */
+int gmi_rows_append(gmi_rows *rows, const gmi_row *row);
+
+const gmi_row *gmi_rows_first(gmi_rows_place *place, const gmi_rows *rows);
+const gmi_row *gmi_rows_next(gmi_rows_place *place);
+
+void gmi_rows_free(gmi_rows *rows);
+
+#endif /* GEARMESH_DEVIATION_ROWS_H */

@@ -1,0 +1,285 @@
+/* SPDX-FileCopyrightText: The gearmesh authors */
+/* SPDX-License-Identifier: BSD-3-Clause */
+
+/*
+ * From the contents of flank files to the prepared flanks of a gear: which set serves which tooth, what
+ * scale and profile window make of its nodes.
+ */
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "deviation_file.h"
+#include "flank_slot.h"
+#include "io_error.h"
+#include "pitch_file.h"
+
+/* What all steps of one build share. */
+typedef struct builder {
+    gm_flanks *flanks;
+    const gm_deviations *deviations; /* NULL = none */
+    const int *set_of_slot;          /* set of every slot, -1 = none */
+    const gm_flanks_options *options;
+    double *nodes; /* [face_nodes][profile_nodes] one table as it is handed to the core */
+    gm_io_error *error;
+} builder;
+
+static int fail_memory(gm_io_error *error) {
+    return gmi_error_set(error, GM_IO_ERR_MEMORY, 0, "out of memory");
+}
+
+void gm_flanks_options_default(gm_flanks_options *options) {
+    if (options != NULL) {
+        options->scale = 1.0;
+        options->normal_factor = 1.0;
+        options->profile_from = 0.0;
+        options->profile_to = 1.0;
+        options->profile_blend = 0.1;
+    }
+}
+
+static int check_options(const gm_flanks_options *options, gm_io_error *error) {
+    const char *wrong = NULL;
+    if (!isfinite(options->scale)) {
+        wrong = "the scale is not finite";
+    }
+    if (!(options->normal_factor > 0.0) || !isfinite(options->normal_factor)) {
+        wrong = "the normal factor must be finite and above 0";
+    }
+    if (!isfinite(options->profile_from) || !isfinite(options->profile_to) ||
+        !(options->profile_from < options->profile_to)) {
+        wrong = "the profile window must be finite and begin before it ends";
+    }
+    if (!(options->profile_blend >= 0.0) || !isfinite(options->profile_blend)) {
+        wrong = "the profile blend must be finite and not below 0";
+    }
+    return wrong == NULL ? GM_IO_OK
+                         : gmi_error_set(error, GM_IO_ERR_OPTION, 0, "flank options: %s", wrong);
+}
+
+/* ---------------------------------------------------------------------------------------------
+ * Which set serves which tooth
+ * ------------------------------------------------------------------------------------------- */
+
+/* The set of the tooth's own, -1 = none. */
+static int own_set(const builder *build, int tooth, int side) {
+    const int set = build->set_of_slot[gmi_slot_candidate(tooth, side, 0)];
+    return set >= 0 ? set : build->set_of_slot[gmi_slot_candidate(tooth, side, 1)];
+}
+
+/* The set that all teeth without one of their own share, -1 = none. */
+static int shared_set(const builder *build, int side) {
+    const int set = build->set_of_slot[gmi_slot(GMI_ALL, side)];
+    return set >= 0 ? set : build->set_of_slot[gmi_slot(GMI_ALL, GMI_ALL)];
+}
+
+/* A shared set takes one place, however many teeth it serves. */
+static int count_tables(const builder *build, int teeth, int side) {
+    if (build->deviations == NULL) {
+        return 0;
+    }
+    int own = 0;
+    for (int tooth = 0; tooth < teeth; tooth++) {
+        own += own_set(build, tooth, side) >= 0 ? 1 : 0;
+    }
+    return own + (shared_set(build, side) >= 0 ? 1 : 0);
+}
+
+/* ---------------------------------------------------------------------------------------------
+ * What becomes of a table
+ * ------------------------------------------------------------------------------------------- */
+
+/* 1 inside the profile window, falling linearly to 0 over the width of the blend outside. */
+static double window_weight(const gm_flanks_options *options, double t2) {
+    const double below = options->profile_from - t2;
+    const double above = t2 - options->profile_to;
+    const double outside = below > above ? below : above;
+    if (outside <= 0.0) {
+        return 1.0;
+    }
+    return outside < options->profile_blend ? 1.0 - outside / options->profile_blend : 0.0;
+}
+
+static void fill_nodes(const builder *build, const double *values) {
+    const int face_nodes = build->deviations->face_nodes;
+    const int profile_nodes = build->deviations->profile_nodes;
+    for (int profile = 0; profile < profile_nodes; profile++) {
+        const double t2 = (double)profile / (profile_nodes - 1);
+        const double factor = build->options->scale * window_weight(build->options, t2);
+        for (int face = 0; face < face_nodes; face++) {
+            const size_t node = (size_t)face * (size_t)profile_nodes + (size_t)profile;
+            build->nodes[node] = factor * values[node];
+        }
+    }
+}
+
+static int set_table(const builder *build, int side, int tooth, int set) {
+    fill_nodes(build, build->deviations->sets[set].values);
+    const int status = gm_flanks_set_table(build->flanks, side, tooth, build->nodes,
+                                           build->options->normal_factor);
+    if (status == GM_OK) {
+        return GM_IO_OK;
+    }
+    return gmi_error_set(build->error, GM_IO_ERR_OPTION, 0,
+                         "set %d of the deviations cannot be used with these options: %s", set,
+                         gm_status_text(status));
+}
+
+static int set_tables(const builder *build, int side) {
+    if (build->deviations == NULL) {
+        return GM_IO_OK;
+    }
+    int status = GM_IO_OK;
+    const int shared = shared_set(build, side);
+    if (shared >= 0) {
+        status = set_table(build, side, GM_ALL_TEETH, shared);
+    }
+    for (int tooth = 0; status == GM_IO_OK && tooth < build->flanks->teeth; tooth++) {
+        const int own = own_set(build, tooth, side);
+        if (own >= 0) {
+            status = set_table(build, side, tooth, own);
+        }
+    }
+    return status;
+}
+
+static int set_pitch(const builder *build, int side, const double *deviation, const int *set) {
+    for (int tooth = 0; tooth < build->flanks->teeth; tooth++) {
+        if (!set[tooth]) {
+            continue;
+        }
+        const int status = gm_flanks_set_pitch(build->flanks, side, tooth,
+                                               build->options->scale * deviation[tooth]);
+        if (status != GM_OK) {
+            return gmi_error_set(build->error, GM_IO_ERR_OPTION, 0,
+                                 "the pitch deviation of tooth %d cannot be used with this scale: "
+                                 "%s",
+                                 tooth, gm_status_text(status));
+        }
+    }
+    return GM_IO_OK;
+}
+
+/* ---------------------------------------------------------------------------------------------
+ * The build
+ * ------------------------------------------------------------------------------------------- */
+
+static gm_flanks_params sizes_of(const builder *build, int teeth) {
+    gm_flanks_params params;
+    memset(&params, 0, sizeof params);
+    params.teeth = teeth;
+    if (build->deviations != NULL) {
+        params.drive_tables = count_tables(build, teeth, GM_DRIVE);
+        params.coast_tables = count_tables(build, teeth, GM_COAST);
+        params.drive_face_nodes = params.coast_face_nodes = build->deviations->face_nodes;
+        params.drive_profile_nodes = params.coast_profile_nodes = build->deviations->profile_nodes;
+    }
+    return params;
+}
+
+/* Allocates the memory of the flanks and prepares them as ideal. */
+static int make_ideal(const builder *build, int teeth, void **memory) {
+    const gm_flanks_params params = sizes_of(build, teeth);
+    const size_t size = gm_flanks_size(&params);
+    if (size == 0) {
+        return gmi_error_set(build->error, GM_IO_ERR_OPTION, 0,
+                             "the flank tables of %d teeth are too large for this machine", teeth);
+    }
+    *memory = malloc(size);
+    if (*memory == NULL) {
+        return fail_memory(build->error);
+    }
+    const int status = gm_flanks_init(build->flanks, &params, *memory, size);
+    return status == GM_OK
+               ? GM_IO_OK
+               : gmi_error_set(build->error, GM_IO_ERR_OPTION, 0,
+                               "the flanks cannot be prepared: %s", gm_status_text(status));
+}
+
+static int fill_flanks(builder *build, const gm_pitch *pitch) {
+    int status = GM_IO_OK;
+    if (build->deviations != NULL) {
+        build->nodes = malloc((size_t)build->deviations->face_nodes *
+                              (size_t)build->deviations->profile_nodes * sizeof *build->nodes);
+        status = build->nodes != NULL ? GM_IO_OK : fail_memory(build->error);
+    }
+    if (status == GM_IO_OK) {
+        status = set_tables(build, GM_DRIVE);
+    }
+    if (status == GM_IO_OK) {
+        status = set_tables(build, GM_COAST);
+    }
+    if (status == GM_IO_OK && pitch != NULL) {
+        status = set_pitch(build, GM_DRIVE, pitch->drive, pitch->drive_set);
+    }
+    if (status == GM_IO_OK && pitch != NULL) {
+        status = set_pitch(build, GM_COAST, pitch->coast, pitch->coast_set);
+    }
+    free(build->nodes);
+    build->nodes = NULL;
+    return status;
+}
+
+static int check_same_teeth(int teeth, int got, const char *what, gm_io_error *error) {
+    return got == teeth ? GM_IO_OK
+                        : gmi_error_set(error, GM_IO_ERR_OPTION, 0,
+                                        "the %s deviations are for %d teeth; the gear has %d", what,
+                                        got, teeth);
+}
+
+static int check_inputs(int teeth, const gm_deviations *deviations, const gm_pitch *pitch,
+                        const gm_flanks_options *options, gm_io_error *error) {
+    int status = gmi_check_teeth(teeth, error);
+    if (status == GM_IO_OK) {
+        status = check_options(options, error);
+    }
+    if (status == GM_IO_OK && deviations != NULL) {
+        status = check_same_teeth(teeth, deviations->teeth, "flank", error);
+    }
+    if (status == GM_IO_OK && pitch != NULL) {
+        status = check_same_teeth(teeth, pitch->teeth, "pitch", error);
+    }
+    return status == GM_IO_OK && pitch != NULL ? gmi_pitch_check(pitch, error) : status;
+}
+
+int gm_flanks_build(gm_flanks *flanks, void **memory, int teeth, const gm_deviations *deviations,
+                    const gm_pitch *pitch, const gm_flanks_options *options, gm_io_error *error) {
+    gmi_error_begin(error, NULL);
+    if (flanks != NULL) {
+        memset(flanks, 0, sizeof *flanks);
+    }
+    if (memory != NULL) {
+        *memory = NULL;
+    }
+    if (flanks == NULL || memory == NULL) {
+        return gmi_error_set(error, GM_IO_ERR_NULL, 0, "a required pointer is NULL");
+    }
+    gm_flanks_options defaults;
+    gm_flanks_options_default(&defaults);
+
+    int *set_of_slot = NULL;
+    builder build = {flanks, deviations, NULL, options != NULL ? options : &defaults, NULL, error};
+    int status = check_inputs(teeth, deviations, pitch, build.options, error);
+    if (status == GM_IO_OK && deviations != NULL) {
+        status = gmi_deviations_index(deviations, &set_of_slot, error);
+        build.set_of_slot = set_of_slot;
+    }
+    if (status == GM_IO_OK) {
+        status = make_ideal(&build, teeth, memory);
+    }
+    if (status == GM_IO_OK) {
+        status = fill_flanks(&build, pitch);
+    }
+    free(set_of_slot);
+    if (status != GM_IO_OK) {
+        free(*memory);
+        *memory = NULL;
+        memset(flanks, 0, sizeof *flanks);
+    }
+    return status;
+}
+
+void gm_flanks_memory_free(void *memory) {
+    free(memory);
+}

@@ -1,0 +1,313 @@
+/* SPDX-FileCopyrightText: The gearmesh authors */
+/* SPDX-License-Identifier: BSD-3-Clause */
+
+/* Reads tidy CSV. Whatever the file is, no more than one line of it is kept. */
+
+#include "table_reader.h"
+
+#include <errno.h>
+#include <limits.h>
+#include <string.h>
+
+#include "flank_slot.h"
+#include "io_error.h"
+#include "number_text.h"
+
+/* ---------------------------------------------------------------------------------------------
+ * Lines
+ * ------------------------------------------------------------------------------------------- */
+
+static int is_blank(char c) {
+    return c == ' ' || c == '\t';
+}
+
+static char *skip_blanks(char *text) {
+    while (is_blank(*text)) {
+        text++;
+    }
+    return text;
+}
+
+static int is_comment(gmi_table *table) {
+    return *skip_blanks(table->text) == '#';
+}
+
+static int fail(const gmi_table *table, const char *message) {
+    return gmi_error_set(table->error, GM_IO_ERR_FORMAT, table->line, "%s", message);
+}
+
+/* Takes the characters of a line up to its end; a comment may be longer than what is kept of it. */
+static int read_characters(gmi_table *table, int c, size_t *length) {
+    *length = 0;
+    for (; c != '\n' && c != EOF; c = getc(table->file)) {
+        if (c == '\0') {
+            return fail(table, "the file holds a zero byte, so it is not plain text; a UTF-8 text "
+                               "file with comma separated values is right");
+        }
+        if (*length < GMI_LINE_LENGTH) {
+            table->text[(*length)++] = (char)c;
+        } else if (!is_comment(table)) {
+            return gmi_error_set(table->error, GM_IO_ERR_FORMAT, table->line,
+                                 "the line is longer than %d characters; one short row per line, "
+                                 "ended by LF or CRLF, is right",
+                                 GMI_LINE_LENGTH);
+        }
+    }
+    return ferror(table->file) ? gmi_error_file(table->error, table->line, "read", errno) : 0;
+}
+
+static void drop_byte_order_mark(char *text) {
+    if (strncmp(text, "\xEF\xBB\xBF", 3) == 0) {
+        memmove(text, text + 3, strlen(text + 3) + 1);
+    }
+}
+
+/* Reads one line into text, without its end: 1 = a line, 0 = end of the file, < 0 = gm_io_status. */
+static int read_line(gmi_table *table) {
+    errno = 0;
+    const int first = getc(table->file);
+    if (first == EOF) {
+        return ferror(table->file) ? gmi_error_file(table->error, 0, "read", errno) : 0;
+    }
+    table->line++;
+
+    size_t length = 0;
+    const int status = read_characters(table, first, &length);
+    if (status != 0) {
+        return status;
+    }
+    if (length > 0 && table->text[length - 1] == '\r') {
+        length--;
+    }
+    table->text[length] = '\0';
+    if (strchr(table->text, '\r') != NULL) {
+        return fail(table, "a carriage return stands within the line; lines ended by LF or CRLF "
+                           "are right");
+    }
+    if (table->line == 1) {
+        drop_byte_order_mark(table->text);
+    }
+    return 1;
+}
+
+/* Reads the next line that is neither blank nor a comment. */
+static int read_content(gmi_table *table) {
+    for (;;) {
+        const int status = read_line(table);
+        if (status <= 0) {
+            return status;
+        }
+        const char begin = *skip_blanks(table->text);
+        if (begin != '\0' && begin != '#') {
+            return 1;
+        }
+    }
+}
+
+/* ---------------------------------------------------------------------------------------------
+ * Fields
+ * ------------------------------------------------------------------------------------------- */
+
+static char *trim(char *field) {
+    field = skip_blanks(field);
+    size_t length = strlen(field);
+    while (length > 0 && is_blank(field[length - 1])) {
+        length--;
+    }
+    field[length] = '\0';
+    return field;
+}
+
+/* Cuts the line at its commas and returns the number of fields, also where they are too many. */
+static int split_fields(gmi_table *table) {
+    int count = 0;
+    for (char *field = table->text; field != NULL; count++) {
+        char *comma = strchr(field, ',');
+        if (comma != NULL) {
+            *comma = '\0';
+        }
+        if (count < table->column_count) {
+            table->fields[count] = trim(field);
+        }
+        field = comma != NULL ? comma + 1 : NULL;
+    }
+    return count;
+}
+
+/* The names of all columns as they stand in a header. */
+static const char *header_text(const gmi_table *table, char text[GMI_LINE_LENGTH]) {
+    text[0] = '\0';
+    for (int i = 0; i < table->column_count; i++) {
+        strcat(text, i > 0 ? "," : "");
+        strcat(text, table->columns[i]);
+    }
+    return text;
+}
+
+/* A delimiter that is used in place of the comma, as spreadsheets of some countries do; or NULL. */
+static const char *other_delimiter(const char *line) {
+    if (strchr(line, ';') != NULL) {
+        return "semicolons";
+    }
+    if (strchr(line, ',') == NULL && strchr(line, '\t') != NULL) {
+        return "tabs";
+    }
+    return NULL;
+}
+
+static int fail_delimiter(const gmi_table *table, const char *delimiter) {
+    return gmi_error_set(table->error, GM_IO_ERR_FORMAT, table->line,
+                         "the fields are separated by %s; commas, with a point as decimal sign, "
+                         "are right",
+                         delimiter);
+}
+
+static int fail_field_count(const gmi_table *table, int count) {
+    char header[GMI_LINE_LENGTH];
+    return gmi_error_set(
+        table->error, GM_IO_ERR_FORMAT, table->line, "the row has %d %s, but %d are right: %s%s",
+        count, count == 1 ? "field" : "fields", table->column_count, header_text(table, header),
+        count > table->column_count ? " (a decimal comma makes two fields of one number: write 1.5)"
+                                    : "");
+}
+
+int gmi_table_next(gmi_table *table) {
+    const int status = read_content(table);
+    if (status <= 0) {
+        return status;
+    }
+    const char *delimiter = other_delimiter(table->text);
+    if (delimiter != NULL) {
+        return fail_delimiter(table, delimiter);
+    }
+    const int count = split_fields(table);
+    if (count != table->column_count) {
+        return fail_field_count(table, count);
+    }
+    return 1;
+}
+
+/* ---------------------------------------------------------------------------------------------
+ * Header
+ * ------------------------------------------------------------------------------------------- */
+
+static int fail_header(const gmi_table *table, const char *line) {
+    const char *delimiter = other_delimiter(line);
+    if (delimiter != NULL) {
+        return fail_delimiter(table, delimiter);
+    }
+    char header[GMI_LINE_LENGTH];
+    char quoted[GMI_QUOTE_SIZE];
+    const int is_row = strchr("*+-.0123456789", line[0]) != NULL;
+    return gmi_error_set(table->error, GM_IO_ERR_FORMAT, table->line,
+                         is_row ? "the header line is missing before %s; %s is right"
+                                : "the header is %s; %s is right",
+                         gmi_quote(quoted, line), header_text(table, header));
+}
+
+static int read_header(gmi_table *table) {
+    const int status = read_content(table);
+    if (status < 0) {
+        return status;
+    }
+    if (status == 0) {
+        char header[GMI_LINE_LENGTH];
+        return gmi_error_set(table->error, GM_IO_ERR_FORMAT, table->line,
+                             "the file is empty; the header line %s and rows below it are right",
+                             header_text(table, header));
+    }
+    char line[GMI_LINE_LENGTH + 1]; /* as it was before it is cut into fields */
+    strcpy(line, skip_blanks(table->text));
+
+    int same = split_fields(table) == table->column_count;
+    for (int i = 0; same && i < table->column_count; i++) {
+        same = strcmp(table->fields[i], table->columns[i]) == 0;
+    }
+    return same ? GM_IO_OK : fail_header(table, line);
+}
+
+int gmi_table_open(gmi_table *table, const char *path, const char *const *columns, int column_count,
+                   gm_io_error *error) {
+    table->error = error;
+    table->columns = columns;
+    table->column_count = column_count;
+    table->line = 0;
+    table->text[GMI_LINE_LENGTH] = '\0';
+
+    errno = 0;
+    table->file = fopen(path, "rb");
+    if (table->file == NULL) {
+        return gmi_error_file(error, 0, "opened", errno);
+    }
+    return read_header(table);
+}
+
+void gmi_table_close(gmi_table *table) {
+    if (table->file != NULL) {
+        fclose(table->file); /* only read from: nothing can be lost */
+        table->file = NULL;
+    }
+}
+
+/* ---------------------------------------------------------------------------------------------
+ * Values
+ * ------------------------------------------------------------------------------------------- */
+
+/* Reads digits and nothing else; a number beyond int becomes INT_MAX. */
+static int parse_whole_number(const char *text, int *value) {
+    if (*text == '\0') {
+        return 0;
+    }
+    *value = 0;
+    for (; *text >= '0' && *text <= '9'; text++) {
+        const int digit = *text - '0';
+        *value = *value > (INT_MAX - digit) / 10 ? INT_MAX : 10 * *value + digit;
+    }
+    return *text == '\0';
+}
+
+int gmi_table_tooth(const gmi_table *table, int column, int teeth, int *tooth) {
+    const char *field = table->fields[column];
+    if (strcmp(field, "*") == 0) {
+        *tooth = GMI_ALL;
+        return GM_IO_OK;
+    }
+    int value = 0;
+    if (!parse_whole_number(field, &value) || value >= teeth) {
+        char quoted[GMI_QUOTE_SIZE];
+        return gmi_error_set(table->error, GM_IO_ERR_FORMAT, table->line,
+                             "%s is %s; a whole number from 0 to %d (the gear has %d teeth), or * "
+                             "for all teeth, is right",
+                             table->columns[column], gmi_quote(quoted, field), teeth - 1, teeth);
+    }
+    *tooth = value;
+    return GM_IO_OK;
+}
+
+int gmi_table_flank(const gmi_table *table, int column, int *side) {
+    const char *field = table->fields[column];
+    for (int candidate = GMI_ALL; candidate <= GM_COAST; candidate++) {
+        if (strcmp(field, gmi_side_name(candidate)) == 0) {
+            *side = candidate;
+            return GM_IO_OK;
+        }
+    }
+    char quoted[GMI_QUOTE_SIZE];
+    return gmi_error_set(table->error, GM_IO_ERR_FORMAT, table->line,
+                         "%s is %s; drive, coast, or * for both is right", table->columns[column],
+                         gmi_quote(quoted, field));
+}
+
+int gmi_table_number(const gmi_table *table, int column, int exponent, double *value) {
+    const char *field = table->fields[column];
+    const int status = gmi_number_parse(field, exponent, value);
+    if (status == GMI_NUMBER_OK) {
+        return GM_IO_OK;
+    }
+    char quoted[GMI_QUOTE_SIZE];
+    return gmi_error_set(table->error, GM_IO_ERR_FORMAT, table->line,
+                         status == GMI_NUMBER_TOO_LARGE
+                             ? "%s is %s, which is too large; a finite number like 1.5 is right"
+                             : "%s is %s; a number like 1.5 or -2e-3 is right",
+                         table->columns[column], gmi_quote(quoted, field));
+}

@@ -1,0 +1,51 @@
+/* SPDX-FileCopyrightText: The gearmesh authors */
+/* SPDX-License-Identifier: BSD-3-Clause */
+
+/**
+ * @file table_reader.h
+ * Reads a tidy CSV table line by line, in bounded memory whatever the file is.
+ *
+ * One header line, fields separated by commas, white space around a field is dropped. Blank lines and
+ * lines that begin with `#` are skipped; CRLF and a UTF-8 byte order mark are accepted.
+ */
+#ifndef GEARMESH_TABLE_READER_H
+#define GEARMESH_TABLE_READER_H
+
+#include <stdio.h>
+
+#include "gearmesh/gearmesh_io.h"
+
+/** Longest line that is not a comment; real ones are shorter than 80. */
+#define GMI_LINE_LENGTH 1000
+
+#define GMI_MAX_COLUMNS 5
+
+typedef struct gmi_table {
+    FILE *file;
+    gm_io_error *error;
+    const char *const *columns; /**< [column_count] names in the header */
+    int column_count;
+    long line;                     /**< line last read, from 1 */
+    char *fields[GMI_MAX_COLUMNS]; /**< [column_count] of the row last read, within text */
+    char text[GMI_LINE_LENGTH + 1];
+} gmi_table;
+
+/** Opens a file and reads its header. Needs gmi_table_close() whatever it returns. */
+int gmi_table_open(gmi_table *table, const char *path, const char *const *columns, int column_count,
+                   gm_io_error *error);
+
+/** Reads the next row into fields: 1 = a row, 0 = end of the file, < 0 = gm_io_status. */
+int gmi_table_next(gmi_table *table);
+
+void gmi_table_close(gmi_table *table);
+
+/** A field of the row as tooth number 0 .. teeth - 1, or GMI_ALL. */
+int gmi_table_tooth(const gmi_table *table, int column, int teeth, int *tooth);
+
+/** A field of the row as GM_DRIVE, GM_COAST or GMI_ALL. */
+int gmi_table_flank(const gmi_table *table, int column, int *side);
+
+/** A field of the row as a number times 10^exponent. */
+int gmi_table_number(const gmi_table *table, int column, int exponent, double *value);
+
+#endif /* GEARMESH_TABLE_READER_H */
