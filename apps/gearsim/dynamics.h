@@ -8,6 +8,6 @@
 #include "gearbox.h"
 
 /* Returns an exit code, after a message on stderr if it is not EXIT_DONE. */
-int dynamics_run(const config *config, const gearbox *gearbox);
+int dynamics_run(const config *conf, const gearbox *gears);
 
 #endif

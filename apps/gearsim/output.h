@@ -3,30 +3,34 @@
 
 /*
  * The result file: `FILE.part` while it grows, renamed to FILE when it is whole. Provenance lines, one
- * header line, rows. A run that ends early leaves FILE.part with whole lines and a last line
- * `# incomplete: why`.
+ * header line, rows. A run that ends early leaves FILE.part with whole lines and, where the disk lets
+ * it, a last line `# incomplete: why`.
  */
 #ifndef GEARSIM_OUTPUT_H
 #define GEARSIM_OUTPUT_H
 
 #include "config.h"
 
-typedef struct output output;
+typedef struct output_file output_file;
 
 /* Checks that the columns asked for exist among `names` and that the file can be written, without
  * touching an existing FILE. Used by --check as well. Returns 0, EXIT_BAD_INPUT after a message. */
-int output_check(const config *config, const char *const names[], int name_count);
+int output_check(const config *conf, const char *const names[], int name_count);
 
 /* Opens FILE.part and writes provenance and header. NULL after a message (exit code in *exit_code). */
-output *output_open(const config *config, const char *const names[], int name_count,
-                    int *exit_code);
+output_file *output_open(const config *conf, const char *const names[], int name_count,
+                         int *exit_code);
 
-/* Writes one row: a value for each name, those not asked for are skipped. 0, or EXIT_RUN_FAILED (disk). */
-int output_row(output *output, const double values[]);
+/* Whether this one of the names is among the columns asked for. */
+int output_wants(const output_file *output, int name);
+
+/* Writes one row: a value for each name, those not asked for are skipped. 0, or EXIT_RUN_FAILED (disk)
+ * after a message. */
+int output_row(output_file *output, const double values[]);
 
 /* Ends the file and frees it: `incomplete` NULL = whole, rename; otherwise keep .part and say why.
  * Returns 0, or EXIT_RUN_FAILED after a message. */
-int output_close(output *output, const char *incomplete);
+int output_close(output_file *output, const char *incomplete);
 
 /* Names of the columns of the two analyses. */
 extern const char *const dynamic_columns[];

@@ -1,0 +1,101 @@
+/* SPDX-FileCopyrightText: The gearmesh authors */
+/* SPDX-License-Identifier: BSD-3-Clause */
+#include "columns.h"
+#include "output.h"
+
+#include <string.h>
+
+static const char key[] = "output.columns";
+
+const char *const dynamic_columns[] = {
+    "time_s",          "pinion_speed_rpm", "wheel_speed_rpm",  "pinion_angle_rad",
+    "wheel_angle_rad", "dte_um",           "penetration_um",   "penetration_rate_um_per_s",
+    "contact_force_N", "load_torque_Nm",   "pairs_in_contact",
+};
+const int dynamic_column_count = sizeof dynamic_columns / sizeof dynamic_columns[0];
+
+const char *const static_columns[] = {
+    "pinion_angle_rad", "te_um", "mesh_stiffness_N_per_um", "contact_length_mm", "pairs_in_contact",
+};
+const int static_column_count = sizeof static_columns / sizeof static_columns[0];
+
+static const char blanks[] = " \t";
+
+/* Place of a name in the list, -1 if it is not there. */
+static int find(const char *text, size_t length, const char *const names[], int name_count) {
+    for (int i = 0; i < name_count; ++i) {
+        if (strlen(names[i]) == length && memcmp(names[i], text, length) == 0) {
+            return i;
+        }
+    }
+    return -1;
+}
+
+static int contains(const column_list *columns, int name) {
+    for (int i = 0; i < columns->count; ++i) {
+        if (columns->name[i] == name) {
+            return 1;
+        }
+    }
+    return 0;
+}
+
+/* All names of the analysis, for the message about a wrong one. */
+static void join(char *text, size_t size, const char *const names[], int name_count) {
+    size_t used = 0;
+
+    for (int i = 0; i < name_count; ++i) {
+        const int written = snprintf(text + used, size - used, "%s%s", i > 0 ? ", " : "", names[i]);
+        if (written < 0 || (size_t)written >= size - used) {
+            return;
+        }
+        used += (size_t)written;
+    }
+}
+
+static int add(column_list *columns, const config *conf, const char *text, size_t length,
+               const char *const names[], int name_count) {
+    const int name = find(text, length, names, name_count);
+    char known[512];
+
+    if (name < 0) {
+        join(known, sizeof known, names, name_count);
+        config_complain(conf, key, "no such column '%.*s'; this analysis has %s", (int)length, text,
+                        known);
+        return EXIT_BAD_INPUT;
+    }
+    if (contains(columns, name)) {
+        config_complain(conf, key, "column '%s' is named twice; name it once", names[name]);
+        return EXIT_BAD_INPUT;
+    }
+    columns->name[columns->count++] = name;
+    return 0;
+}
+
+int columns_select(column_list *columns, const config *conf, const char *const names[],
+                   int name_count) {
+    columns->count = 0;
+    if (conf->columns == NULL) {
+        for (int i = 0; i < name_count; ++i) {
+            columns->name[columns->count++] = i;
+        }
+        return 0;
+    }
+
+    const char *text = conf->columns;
+    for (;;) {
+        text += strspn(text, blanks);
+        const size_t field = strcspn(text, ",");
+        size_t length = field;
+        while (length > 0 && strchr(blanks, text[length - 1]) != NULL) {
+            --length;
+        }
+        if (add(columns, conf, text, length, names, name_count) != 0) {
+            return EXIT_BAD_INPUT;
+        }
+        if (text[field] == '\0') {
+            return 0;
+        }
+        text += field + 1;
+    }
+}

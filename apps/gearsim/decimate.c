@@ -1,0 +1,148 @@
+/* SPDX-FileCopyrightText: The gearmesh authors */
+/* SPDX-License-Identifier: BSD-3-Clause */
+#include "decimate.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+static const double pi = 3.14159265358979323846;
+
+/*
+ * Kaiser's formulas for 90 dB and a transition of 0.2 of the row's rate: half width
+ * (90 - 7.95) / (2 * 2.285 * 2 pi 0.2) = 14.3 rows, beta = 0.1102 (90 - 8.7) = 8.96. A little more of
+ * both leaves a margin.
+ */
+enum { HALF_WIDTH_ROWS = 15 };
+static const double kaiser_beta = 9.1;
+
+struct decimator {
+    int channels;
+    int half;        /* samples on each side of the middle */
+    int length;      /* 2 half + 1 */
+    int next;        /* place of the next sample */
+    int started;     /* the first sample fills the past */
+    int *filtered;   /* [channels] */
+    double *weights; /* [length] */
+    double
+        *samples; /* [channels][2 length]: a ring written twice, so that the last `length` samples
+                        are always contiguous, from `next` on */
+};
+
+/* Modified Bessel function of order 0, by its power series. */
+static double bessel_i0(double x) {
+    double term = 1.0, sum = 1.0;
+
+    for (int k = 1; term > 1e-17 * sum; ++k) {
+        term *= (0.5 * x / k) * (0.5 * x / k);
+        sum += term;
+    }
+    return sum;
+}
+
+static double sinc(double x) {
+    return x == 0.0 ? 1.0 : sin(pi * x) / (pi * x);
+}
+
+/* Ideal low-pass at half the row's rate under a Kaiser window, scaled to the sum 1. */
+static void design(double weights[], int half, int factor) {
+    double sum = 0.0;
+
+    for (int i = -half; i <= half; ++i) {
+        const double reach = half > 0 ? (double)i / (half + 1) : 0.0;
+        weights[half + i] =
+            sinc((double)i / factor) * bessel_i0(kaiser_beta * sqrt(1.0 - reach * reach));
+        sum += weights[half + i];
+    }
+    for (int i = 0; i <= 2 * half; ++i) {
+        weights[i] /= sum;
+    }
+}
+
+decimator *decimator_create(int factor, int channels, const int filtered[]) {
+    decimator *const created = calloc(1, sizeof *created);
+    if (created == NULL) {
+        return NULL;
+    }
+
+    const size_t count = (size_t)channels;
+    created->channels = channels;
+    created->half = factor > 1 ? HALF_WIDTH_ROWS * factor : 0;
+    created->length = 2 * created->half + 1;
+    created->filtered = malloc(count * sizeof *created->filtered);
+    created->weights = malloc((size_t)created->length * sizeof *created->weights);
+    created->samples = malloc(count * 2 * (size_t)created->length * sizeof *created->samples);
+    if (created->filtered == NULL || created->weights == NULL || created->samples == NULL) {
+        decimator_free(created);
+        return NULL;
+    }
+
+    memcpy(created->filtered, filtered, count * sizeof *filtered);
+    design(created->weights, created->half, factor);
+    return created;
+}
+
+void decimator_free(decimator *filter) {
+    if (filter != NULL) {
+        free(filter->filtered);
+        free(filter->weights);
+        free(filter->samples);
+        free(filter);
+    }
+}
+
+int decimator_delay(const decimator *filter) {
+    return filter->half;
+}
+
+const double *decimator_weights(const decimator *filter) {
+    return filter->weights;
+}
+
+static void hold(decimator *filter, const double values[]) {
+    const int size = 2 * filter->length;
+
+    for (int channel = 0; channel < filter->channels; ++channel) {
+        double *const ring = filter->samples + (size_t)channel * (size_t)size;
+        for (int i = 0; i < size; ++i) {
+            ring[i] = values[channel];
+        }
+    }
+    filter->started = 1;
+}
+
+void decimator_push(decimator *filter, const double values[]) {
+    const size_t length = (size_t)filter->length;
+    double *place = filter->samples + filter->next;
+
+    if (!filter->started) {
+        hold(filter, values);
+    }
+    for (int channel = 0; channel < filter->channels; ++channel) {
+        place[0] = values[channel];
+        place[length] = values[channel];
+        place += 2 * length;
+    }
+    filter->next = filter->next + 1 < filter->length ? filter->next + 1 : 0;
+}
+
+/* The weights are symmetric: the samples at equal distances from the middle share one. */
+static double weighted_sum(const double *samples, const double *weights, int half) {
+    double sum = weights[half] * samples[half];
+
+    for (int i = 0; i < half; ++i) {
+        sum += weights[i] * (samples[i] + samples[2 * half - i]);
+    }
+    return sum;
+}
+
+void decimator_values(const decimator *filter, double values[]) {
+    const double *samples = filter->samples + filter->next;
+
+    for (int channel = 0; channel < filter->channels; ++channel) {
+        values[channel] = filter->filtered[channel]
+                              ? weighted_sum(samples, filter->weights, filter->half)
+                              : samples[filter->half];
+        samples += 2 * (size_t)filter->length;
+    }
+}

@@ -1,0 +1,24 @@
+/* SPDX-FileCopyrightText: The gearmesh authors */
+/* SPDX-License-Identifier: BSD-3-Clause */
+#include "drive.h"
+
+pinion_drive drive_create(const config *conf) {
+    pinion_drive created = {.kind = conf->drive, .start_speed = conf->start_speed};
+
+    if (conf->drive == DRIVE_SPEED) {
+        created.acceleration = (conf->end_speed - conf->start_speed) / conf->duration;
+    } else {
+        created.torque = conf->drive_torque;
+    }
+
+    return created;
+}
+
+drive_motion drive_at(const pinion_drive *drive, double time) {
+    const drive_motion motion = {
+        .angle = time * (drive->start_speed + 0.5 * drive->acceleration * time),
+        .speed = drive->start_speed + drive->acceleration * time,
+    };
+
+    return motion;
+}

@@ -1,0 +1,48 @@
+/* SPDX-FileCopyrightText: The gearmesh authors */
+/* SPDX-License-Identifier: BSD-3-Clause */
+
+/*
+ * Integration of a model in time by CVODE, with values at any time wanted from its own interpolation. It
+ * is started once and never restarted: the load is smooth.
+ */
+#ifndef GEARSIM_INTEGRATE_H
+#define GEARSIM_INTEGRATE_H
+
+#include "model.h"
+
+typedef struct integrator integrator;
+
+typedef struct integrator_options {
+    enum solver_method method;
+    double relative_tolerance;
+    double absolute_tolerance; /* of x (m) */
+    double max_step;           /* s, 0 = none */
+} integrator_options;
+
+typedef struct integrator_statistics {
+    long steps;
+    long derivatives; /* evaluations of the right-hand side */
+    long jacobians;
+    long rejected; /* steps repeated because their error was too large */
+} integrator_statistics;
+
+/* The model must stay where it is. NULL: out of memory, or options that CVODE refuses. */
+integrator *integrator_create(const gear_model *model, const integrator_options *options,
+                              const double start[]);
+void integrator_free(integrator *solver);
+
+/*
+ * State at a time, which must not be before that of the call before by more than a step. Returns 0,
+ * EXIT_RUN_FAILED (see integrator_failure()) or EXIT_INTERRUPTED.
+ */
+int integrator_advance(integrator *solver, double time, double state[]);
+
+/* How far the integration has come (s). */
+double integrator_time(const integrator *solver);
+
+/* Why and where it failed. */
+const char *integrator_failure(const integrator *solver);
+
+integrator_statistics integrator_counts(const integrator *solver);
+
+#endif

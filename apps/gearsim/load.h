@@ -1,0 +1,31 @@
+/* SPDX-FileCopyrightText: The gearmesh authors */
+/* SPDX-License-Identifier: BSD-3-Clause */
+
+/*
+ * The load torque on the wheel: a mean and seeded noise.
+ *
+ * Noise value k, at the time k * interval, is a pure function of seed and k: no state, any order of
+ * calls, the same on every machine. Between the values runs a cubic (Catmull-Rom), which is C1, so that
+ * a solver need not be restarted at every value; it overshoots the values by up to a quarter.
+ */
+#ifndef GEARSIM_LOAD_H
+#define GEARSIM_LOAD_H
+
+#include "config.h"
+
+typedef struct load_signal {
+    double mean;      /* N m */
+    double amplitude; /* noise values are uniform in +- amplitude, N m */
+    double interval;  /* between noise values, s */
+    uint64_t stream;  /* what the seed has been mixed to */
+} load_signal;
+
+load_signal load_create(double mean, double amplitude, double interval, uint64_t seed);
+
+/* M_w(t), constant cost at any t (N m). */
+double load_torque(const load_signal *load, double time);
+
+/* Noise value k as a share of the amplitude, uniform in (-1, 1). */
+double load_noise_value(const load_signal *load, int64_t k);
+
+#endif

@@ -1,0 +1,292 @@
+/* SPDX-FileCopyrightText: The gearmesh authors */
+/* SPDX-License-Identifier: BSD-3-Clause */
+#include "model.h"
+
+#include <math.h>
+
+static const double micrometre = 1e-6;
+
+/*
+ * Absolute tolerance of x' / w0 in terms of that of x. Force errors come from x; x' only has to be good
+ * enough not to spoil it. Between 10 and 30 the number of steps is smallest at the same error.
+ */
+static const double speed_tolerance_factor = 20.0;
+
+/*
+ * Absolute tolerance of the pinion's arc in terms of that of x. A shift of the phase moves the lines of
+ * contact along the flanks, where form and contact length change by some um over some mm: a hundredth of
+ * the same shift of x, and less.
+ */
+static const double arc_tolerance_factor = 10.0;
+
+static double square(double value) {
+    return value * value;
+}
+
+static void init_mesh(gear_model *model, const config *conf) {
+    const gearbox *const gears = model->gears;
+
+    if (model->mesh == MODEL_SIMPLE) {
+        model->stiffness = gears->simple_stiffness;
+        model->damping = gears->simple_damping;
+        model->mean_stiffness = gears->simple_stiffness;
+    } else {
+        model->stiffness = conf->stiffness;
+        model->damping = conf->damping;
+        model->mean_stiffness = conf->stiffness * gears->pair.transverse_contact_ratio;
+    }
+}
+
+static void init_bodies(gear_model *model, const config *conf) {
+    const double r_bp = model->gears->pair.pinion.base_radius;
+    const double r_bw = model->gears->pair.wheel.base_radius;
+
+    model->wheel_mobility = square(r_bw) / conf->wheel_inertia;
+    model->torque_to_offset = r_bw / conf->wheel_inertia;
+
+    if (model->drive.kind == DRIVE_SPEED) {
+        /* A prescribed speed is an infinite inertia. */
+        model->pinion_mobility = 0.0;
+        model->drive_to_offset = r_bp * model->drive.acceleration;
+        model->states = 2;
+    } else {
+        model->pinion_mobility = square(r_bp) / conf->pinion_inertia;
+        model->drive_to_offset = r_bp * model->drive.torque / conf->pinion_inertia;
+        model->states = 4;
+    }
+}
+
+static double mobility(const gear_model *model) {
+    return model->pinion_mobility + model->wheel_mobility;
+}
+
+void model_init(gear_model *model, const config *conf, const gearbox *gears) {
+    model->gears = gears;
+    model->mesh = conf->model;
+    model->drive = drive_create(conf);
+    model->load =
+        load_create(conf->mean_load, conf->noise_amplitude, conf->noise_interval, conf->seed);
+    init_mesh(model, conf);
+    init_bodies(model, conf);
+
+    model->natural_frequency = sqrt(model->mean_stiffness * mobility(model));
+}
+
+/* ---------------------------------------------------------------------------------------------
+ * Quasi-static start
+ * ------------------------------------------------------------------------------------------- */
+
+/* Smallest |x| for which the spring with backlash carries the force. */
+static double simple_equilibrium(const gear_model *model, double force) {
+    const double clearance = 0.5 * model->gears->pair.backlash;
+    const double compression = fabs(force) / model->stiffness;
+
+    /* Negative backlash: both flanks touch up to |x| = -clearance and push against each other. */
+    const double size =
+        compression < -2.0 * clearance ? 0.5 * compression : clearance + compression;
+
+    return copysign(size, force);
+}
+
+static int equilibrium(const gear_model *model, double force, double *offset) {
+    const gearbox *const gears = model->gears;
+
+    /* Nothing to carry: the middle of the backlash. */
+    if (force == 0.0 && gears->pair.backlash >= 0.0) {
+        *offset = 0.0;
+        return GM_OK;
+    }
+    if (model->mesh == MODEL_SIMPLE) {
+        *offset = simple_equilibrium(model, force);
+        return GM_OK;
+    }
+    return gm_static_equilibrium(&gears->pair, gears->pinion_flanks, gears->wheel_flanks, 0.0,
+                                 model->stiffness, force * gears->pair.wheel.base_radius, offset,
+                                 NULL);
+}
+
+int model_quasi_static_start(const gear_model *model, double state[]) {
+    /* x'' = 0: the force that balances drive and load, acceleration torque included. */
+    const double applied = model->drive_to_offset + model->torque_to_offset * model->load.mean;
+    double offset = 0.0;
+    const int status = equilibrium(model, applied / mobility(model), &offset);
+
+    state[STATE_OFFSET] = offset / micrometre;
+    state[STATE_OFFSET_RATE] = 0.0;
+    if (model->states == STATES_MAX) {
+        const double r_bp = model->gears->pair.pinion.base_radius;
+
+        state[STATE_PINION_ARC] = 0.0;
+        state[STATE_PINION_SPEED] =
+            r_bp * model->drive.start_speed / (model->natural_frequency * micrometre);
+    }
+    return status;
+}
+
+/* ---------------------------------------------------------------------------------------------
+ * Right-hand side
+ * ------------------------------------------------------------------------------------------- */
+
+gear_motion model_motion(const gear_model *model, double time, const double state[]) {
+    const double speed_unit = model->natural_frequency * micrometre;
+    gear_motion motion = {
+        .offset = state[STATE_OFFSET] * micrometre,
+        .offset_rate = state[STATE_OFFSET_RATE] * speed_unit,
+    };
+
+    if (model->states == STATES_MAX) {
+        const double r_bp = model->gears->pair.pinion.base_radius;
+
+        motion.pinion_angle = state[STATE_PINION_ARC] * micrometre / r_bp;
+        motion.pinion_speed = state[STATE_PINION_SPEED] * speed_unit / r_bp;
+    } else {
+        const drive_motion prescribed = drive_at(&model->drive, time);
+
+        motion.pinion_angle = prescribed.angle;
+        motion.pinion_speed = prescribed.speed;
+    }
+    return motion;
+}
+
+int model_penetration(const gear_model *model, const gear_motion *motion,
+                      gm_penetration *penetration) {
+    const gearbox *const gears = model->gears;
+
+    if (model->mesh == MODEL_SIMPLE) {
+        return gm_penetration_simple_at(&gears->pair, motion->offset, motion->offset_rate,
+                                        penetration);
+    }
+
+    gm_position position;
+    const int status = gm_position_from_pinion_angle(
+        &gears->pair, motion->pinion_angle, motion->offset, motion->offset_rate, &position);
+    if (status != GM_OK) {
+        return status;
+    }
+    return gm_penetration_3d_at(&gears->pair, gears->pinion_flanks, gears->wheel_flanks, &position,
+                                penetration);
+}
+
+double model_force(const gear_model *model, const gm_penetration *penetration) {
+    return gm_contact_force(model->stiffness, model->damping, penetration);
+}
+
+int model_derivative(const gear_model *model, double time, const double state[],
+                     double derivative[]) {
+    const gear_motion motion = model_motion(model, time, state);
+    gm_penetration penetration;
+    const int status = model_penetration(model, &motion, &penetration);
+    if (status != GM_OK) {
+        return status;
+    }
+
+    const double w0 = model->natural_frequency;
+    const double to_state = 1.0 / (w0 * micrometre);
+    const double force = model_force(model, &penetration);
+    const double applied =
+        model->drive_to_offset + model->torque_to_offset * load_torque(&model->load, time);
+
+    derivative[STATE_OFFSET] = w0 * state[STATE_OFFSET_RATE];
+    derivative[STATE_OFFSET_RATE] = (applied - mobility(model) * force) * to_state;
+
+    if (model->states == STATES_MAX) {
+        derivative[STATE_PINION_ARC] = w0 * state[STATE_PINION_SPEED];
+        derivative[STATE_PINION_SPEED] =
+            (model->drive_to_offset - model->pinion_mobility * force) * to_state;
+    }
+    return GM_OK;
+}
+
+/* ---------------------------------------------------------------------------------------------
+ * Jacobian
+ * ------------------------------------------------------------------------------------------- */
+
+typedef struct force_gradient {
+    double by_offset;      /* dF/dx at fixed phi_p (N/m) */
+    double by_offset_rate; /* dF/dx' (N s/m) */
+    double by_arc;         /* dF/d(r_bp phi_p) at fixed x (N/m) */
+} force_gradient;
+
+/*
+ * At fixed phi_p a change of x is one of -phi_w; at fixed x, phi_w follows phi_p by r_bp / r_bw. How the
+ * touching width, and with it the damping, changes with x is left out: it is of second order in the
+ * motion, and Newton's iteration corrects it.
+ */
+static force_gradient gradient(const gear_model *model, const gm_penetration *penetration) {
+    const gm_pair *const pair = &model->gears->pair;
+    const double k = model->stiffness;
+    const double d = model->damping;
+
+    /* A flank that would have to pull gives no force, and no derivative. */
+    const int drive = k * penetration->drive + d * penetration->drive_rate > 0.0;
+    const int coast = k * penetration->coast + d * penetration->coast_rate > 0.0;
+    const double stiffness = drive || coast ? k : 0.0;
+
+    const force_gradient result = {
+        .by_offset = -stiffness * penetration->d_wheel_angle / pair->wheel.base_radius,
+        .by_offset_rate = d * ((drive ? penetration->drive_contact : 0.0) +
+                               (coast ? penetration->coast_contact : 0.0)),
+        .by_arc = stiffness * (penetration->d_pinion_angle / pair->pinion.base_radius +
+                               penetration->d_wheel_angle / pair->wheel.base_radius),
+    };
+    return result;
+}
+
+/* Row of a speed on which the force acts with the given mobility. */
+static void speed_row(double jacobian[STATES_MAX][STATES_MAX], int row, const gear_model *model,
+                      double row_mobility, const force_gradient *force) {
+    const double w0 = model->natural_frequency;
+
+    jacobian[STATE_OFFSET][row] = -row_mobility * force->by_offset / w0;
+    jacobian[STATE_OFFSET_RATE][row] = -row_mobility * force->by_offset_rate;
+    jacobian[STATE_PINION_ARC][row] = -row_mobility * force->by_arc / w0;
+    jacobian[STATE_PINION_SPEED][row] = 0.0;
+}
+
+/* Row of a coordinate: its derivative is w0 times its speed. */
+static void coordinate_row(double jacobian[STATES_MAX][STATES_MAX], int row, int speed, double w0) {
+    for (int column = 0; column < STATES_MAX; ++column) {
+        jacobian[column][row] = column == speed ? w0 : 0.0;
+    }
+}
+
+int model_jacobian(const gear_model *model, double time, const double state[],
+                   double jacobian[STATES_MAX][STATES_MAX]) {
+    const gear_motion motion = model_motion(model, time, state);
+    gm_penetration penetration;
+    const int status = model_penetration(model, &motion, &penetration);
+    if (status != GM_OK) {
+        return status;
+    }
+
+    const double w0 = model->natural_frequency;
+    const force_gradient force = gradient(model, &penetration);
+
+    coordinate_row(jacobian, STATE_OFFSET, STATE_OFFSET_RATE, w0);
+    speed_row(jacobian, STATE_OFFSET_RATE, model, mobility(model), &force);
+    coordinate_row(jacobian, STATE_PINION_ARC, STATE_PINION_SPEED, w0);
+    speed_row(jacobian, STATE_PINION_SPEED, model, model->pinion_mobility, &force);
+
+    return GM_OK;
+}
+
+/* ---------------------------------------------------------------------------------------------
+ * Tolerances
+ * ------------------------------------------------------------------------------------------- */
+
+void model_error_weights(const gear_model *model, double relative_tolerance,
+                         double absolute_tolerance, const double state[], double weights[]) {
+    const double offset_tolerance = absolute_tolerance / micrometre;
+    const double speed_tolerance = speed_tolerance_factor * offset_tolerance;
+
+    weights[STATE_OFFSET] =
+        1.0 / (relative_tolerance * fabs(state[STATE_OFFSET]) + offset_tolerance);
+    weights[STATE_OFFSET_RATE] =
+        1.0 / (relative_tolerance * fabs(state[STATE_OFFSET_RATE]) + speed_tolerance);
+
+    /* The angle grows without end; a tolerance relative to it would soon be wider than a tooth. */
+    if (model->states == STATES_MAX) {
+        weights[STATE_PINION_ARC] = 1.0 / (arc_tolerance_factor * offset_tolerance);
+        weights[STATE_PINION_SPEED] = 1.0 / (arc_tolerance_factor * speed_tolerance);
+    }
+}

@@ -1,0 +1,83 @@
+/* SPDX-FileCopyrightText: The gearmesh authors */
+/* SPDX-License-Identifier: BSD-3-Clause */
+
+/*
+ * The equations of motion as a first-order system, and their Jacobian.
+ *
+ *     x  = r_bp phi_p - r_bw phi_w
+ *     x'' = r_bp alpha_p + r_bw M_w / I_w - F r_bw^2 / I_w
+ *
+ * with the prescribed alpha_p, or alpha_p = (M_p - F r_bp) / I_p if the pinion is driven by a torque.
+ * Both cases read x'' = a(t) - mobility F, where a(t) is what drive and load would do to x without
+ * contact, and the mobility is what a force of 1 N along the line of action does.
+ *
+ * The solver's state is scaled to the size of the vibration: micrometres, and micrometres times the
+ * natural frequency. With an absolute wheel angle of thousands of radians as state, its tolerance
+ * would swallow the whole penetration.
+ */
+#ifndef GEARSIM_MODEL_H
+#define GEARSIM_MODEL_H
+
+#include "drive.h"
+#include "gearbox.h"
+#include "load.h"
+
+/* Places in the state vector. A prescribed speed needs the first two only. */
+enum model_state {
+    STATE_OFFSET,       /* x / 1 um */
+    STATE_OFFSET_RATE,  /* x' / (w0 1 um) */
+    STATE_PINION_ARC,   /* r_bp phi_p / 1 um */
+    STATE_PINION_SPEED, /* r_bp phi_p' / (w0 1 um) */
+    STATES_MAX
+};
+
+typedef struct gear_model {
+    const gearbox *gears;
+    enum mesh_model mesh;
+    pinion_drive drive;
+    load_signal load;
+    double stiffness;         /* of the mesh model in use (N/m) */
+    double damping;           /* likewise (N s/m) */
+    double mean_stiffness;    /* of the mesh, over all pairs that touch on average (N/m) */
+    double pinion_mobility;   /* r_bp^2 / I_p, 0 if its speed is prescribed (1/kg) */
+    double wheel_mobility;    /* r_bw^2 / I_w (1/kg) */
+    double torque_to_offset;  /* r_bw / I_w: from the load to x'' (1/(kg m)) */
+    double drive_to_offset;   /* x'' that the drive alone causes (m/s2) */
+    double natural_frequency; /* w0 (rad/s) */
+    int states;
+} gear_model;
+
+/* Motion in SI units. */
+typedef struct gear_motion {
+    double pinion_angle;
+    double pinion_speed;
+    double offset;      /* x (m) */
+    double offset_rate; /* x' (m/s) */
+} gear_motion;
+
+void model_init(gear_model *model, const config *conf, const gearbox *gears);
+
+/* State in which x' = x'' = 0 at the mean load. Returns a library status. */
+int model_quasi_static_start(const gear_model *model, double state[]);
+
+gear_motion model_motion(const gear_model *model, double time, const double state[]);
+
+/* Penetration of the flanks. Returns a library status. */
+int model_penetration(const gear_model *model, const gear_motion *motion,
+                      gm_penetration *penetration);
+
+double model_force(const gear_model *model, const gm_penetration *penetration);
+
+/* d state / dt. Returns a library status: > 0 a smaller step may help, < 0 it cannot. */
+int model_derivative(const gear_model *model, double time, const double state[],
+                     double derivative[]);
+
+/* jacobian[column][row] = d derivative[row] / d state[column]. Returns a library status. */
+int model_jacobian(const gear_model *model, double time, const double state[],
+                   double jacobian[STATES_MAX][STATES_MAX]);
+
+/* Reciprocals of the errors that the solver may make in one step; absolute tolerance of x in m. */
+void model_error_weights(const gear_model *model, double relative_tolerance,
+                         double absolute_tolerance, const double state[], double weights[]);
+
+#endif

@@ -1,0 +1,16 @@
+/* SPDX-FileCopyrightText: The gearmesh authors */
+/* SPDX-License-Identifier: BSD-3-Clause */
+
+/*
+ * Numbers as text, the same as printf("%.*g") but several times faster: writing numbers would
+ * otherwise cost as much as computing them.
+ */
+#ifndef GEARSIM_NUMBER_H
+#define GEARSIM_NUMBER_H
+
+enum { NUMBER_TEXT_SIZE = 32 };
+
+/* Writes `value` with 1 to 17 significant digits, '\0' at the end. Returns the length of the text. */
+int number_format(char text[NUMBER_TEXT_SIZE], double value, int digits);
+
+#endif

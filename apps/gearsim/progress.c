@@ -1,0 +1,64 @@
+/* SPDX-FileCopyrightText: The gearmesh authors */
+/* SPDX-License-Identifier: BSD-3-Clause */
+#define _POSIX_C_SOURCE 200809L
+
+#include "progress.h"
+
+#include <stdio.h>
+#include <time.h>
+#include <unistd.h>
+
+/* Between two looks at the clock; a sample takes some microseconds. */
+enum { CALLS_PER_LOOK = 256 };
+
+static const double seconds_between_updates = 0.2;
+static const double rpm = 60.0 / 6.283185307179586; /* of 1 rad/s */
+
+static double now(void) {
+    struct timespec time;
+
+    clock_gettime(CLOCK_MONOTONIC, &time);
+    return (double)time.tv_sec + 1e-9 * (double)time.tv_nsec;
+}
+
+void progress_start(progress *line, double end, int quiet) {
+    const double start = now();
+
+    *line = (progress){
+        .shown = !quiet && isatty(STDERR_FILENO),
+        .quiet = quiet,
+        .end = end,
+        .started = start,
+        .updated = start,
+    };
+}
+
+double progress_elapsed(const progress *line) {
+    return now() - line->started;
+}
+
+int progress_due(progress *line) {
+    if (!line->shown || ++line->calls < CALLS_PER_LOOK) {
+        return 0;
+    }
+    line->calls = 0;
+    return now() - line->updated >= seconds_between_updates;
+}
+
+void progress_update(progress *line, const progress_state *state) {
+    const double elapsed = progress_elapsed(line);
+    const double left = state->time > 0.0 ? elapsed * (line->end / state->time - 1.0) : 0.0;
+
+    line->updated = now();
+    /* \033[K: the rest of a longer line before is wiped. */
+    fprintf(stderr, "\r%.3f of %g s, %.0f rpm, %ld steps, %.0f s left\033[K", state->time,
+            line->end, state->speed * rpm, state->steps, left);
+    fflush(stderr);
+}
+
+void progress_clear(const progress *line) {
+    if (line->shown) {
+        fprintf(stderr, "\r\033[K");
+        fflush(stderr);
+    }
+}
