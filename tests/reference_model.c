@@ -335,11 +335,14 @@ void model_evaluate(const model_pair *pair, const model_flanks *pinion, const mo
     const long double phi_p = reduce(pinion_angle, z_p, &turns_p);
     const long double phi_w = reduce(wheel_angle, z_w, &turns_w);
 
+    /* Teeth far beyond both ends of the lines of action of all sections. */
+    const long long reach = 2 * z_p + (long long)ceill(2 * fabsl(pair->twist) / pair->base_pitch);
+
     *result = (model_result){0};
     result->offset = r_bp * phi_p - r_bw * phi_w + pair->base_pitch * (turns_p - turns_w);
     for (int side = 0; side < 2; side++) {
         const int s = side == 0 ? 1 : -1;
-        for (long long i = -2 * z_p; i <= 2 * z_p; i++) {
+        for (long long i = -reach; i <= reach; i++) {
             /* Drive: wheel tooth j = i; coast: j = i - 1; both counted before the reduction. */
             const long long j = i - turns_p + turns_w - side;
             const int tooth_p = modulo(i - turns_p, z_p);
