@@ -1,0 +1,205 @@
+/* SPDX-FileCopyrightText: The gearmesh authors */
+/* SPDX-License-Identifier: BSD-3-Clause */
+
+/*
+ * Any bytes as drawing, flanks and state: every result is finite, or there is a status and every result is
+ * NaN. The first byte says which of the numbers are raw bits and which lie near a real gear pair, as raw bits
+ * alone hardly ever get beyond the checks.
+ */
+#include "fuzz.h"
+
+#include <gearmesh/gearmesh.h>
+#include <math.h>
+
+enum raw_numbers { RAW_PARAMS = 1, RAW_STATE = 2, RAW_DEVIATIONS = 4, RAW_TEETH = 8, EXTREME = 16 };
+
+static void take_params(fuzz_bytes *bytes, int how, gm_pair_params *params) {
+    gm_pair_params_default(params);
+    if (how & RAW_TEETH) {
+        fuzz_take(bytes, &params->pinion_teeth, sizeof params->pinion_teeth);
+        fuzz_take(bytes, &params->wheel_teeth, sizeof params->wheel_teeth);
+        fuzz_take(bytes, &params->base_helix, sizeof params->base_helix);
+    } else {
+        params->pinion_teeth = 3 + fuzz_byte(bytes);
+        params->wheel_teeth = 3 + fuzz_byte(bytes);
+        params->base_helix = fuzz_byte(bytes) & 1;
+    }
+
+    double *const fields[] = {
+        &params->normal_module,
+        &params->normal_pressure_angle,
+        &params->helix_angle,
+        &params->center_distance,
+        &params->face_width,
+        &params->pinion_profile_shift,
+        &params->wheel_profile_shift,
+        &params->backlash,
+        &params->pinion_normal_thickness,
+        &params->wheel_normal_thickness,
+        &params->pinion_tip_radius,
+        &params->wheel_tip_radius,
+        &params->pinion_start_radius,
+        &params->wheel_start_radius,
+    };
+    if (how & RAW_PARAMS) {
+        for (size_t k = 0; k < sizeof fields / sizeof *fields; ++k)
+            *fields[k] = fuzz_any(bytes);
+        return;
+    }
+
+    /* Near a real pair; lengths scale with the module, optional fields are mostly left out. */
+    const double m = how & EXTREME ? pow(10.0, fuzz_between(bytes, -60.0, 60.0)) : 1e-3;
+    const double helix = fuzz_byte(bytes) & 1 ? 0.0 : fuzz_between(bytes, -1.0, 1.0);
+    const double rp = 0.5 * m * params->pinion_teeth / cos(helix);
+    const double rw = 0.5 * m * params->wheel_teeth / cos(helix);
+    const uint8_t given = fuzz_byte(bytes);
+    params->normal_module = m;
+    params->normal_pressure_angle = fuzz_between(bytes, 0.01, 0.78);
+    params->helix_angle = helix;
+    params->center_distance = (rp + rw) * fuzz_between(bytes, 0.9, 1.1);
+    params->face_width = m * fuzz_between(bytes, 0.01, 40.0);
+    if (given & 1)
+        params->pinion_profile_shift = fuzz_between(bytes, -1.0, 1.5);
+    if (given & 2)
+        params->wheel_profile_shift = fuzz_between(bytes, -1.0, 1.5);
+    if (given & 4)
+        params->backlash = m * fuzz_between(bytes, -0.2, 0.5);
+    if (given & 8)
+        params->pinion_tip_radius = rp + m * fuzz_between(bytes, -1.0, 2.0);
+    if (given & 16)
+        params->wheel_tip_radius = rw + m * fuzz_between(bytes, -1.0, 2.0);
+    if (given & 32)
+        params->pinion_start_radius = rp + m * fuzz_between(bytes, -3.0, 1.0);
+    if (given & 64)
+        params->wheel_start_radius = rw + m * fuzz_between(bytes, -3.0, 1.0);
+    if (given & 128)
+        params->pinion_normal_thickness = m * fuzz_between(bytes, 0.5, 2.5);
+}
+
+/* A few tables and pitch deviations; NULL if the bytes ask for ideal flanks. */
+static void *take_flanks(fuzz_bytes *bytes, int how, int teeth, double m, gm_flanks *flanks) {
+    const gm_flanks_params params = {
+        .teeth = teeth,
+        .drive_tables = fuzz_byte(bytes) % 4,
+        .drive_face_nodes = 2 + fuzz_byte(bytes) % 4,
+        .drive_profile_nodes = 2 + fuzz_byte(bytes) % 4,
+        .coast_tables = fuzz_byte(bytes) % 4,
+        .coast_face_nodes = 2 + fuzz_byte(bytes) % 4,
+        .coast_profile_nodes = 2 + fuzz_byte(bytes) % 4,
+    };
+    const size_t memory_size = gm_flanks_size(&params);
+    void *memory = memory_size > 0 ? malloc(memory_size) : NULL;
+    if (memory == NULL || gm_flanks_init(flanks, &params, memory, memory_size) != GM_OK) {
+        free(memory);
+        return NULL;
+    }
+    for (int calls = fuzz_byte(bytes) % 8; calls > 0; --calls) {
+        double values[25];
+        for (int k = 0; k < 25; ++k)
+            values[k] =
+                how & RAW_DEVIATIONS ? fuzz_any(bytes) : m * fuzz_between(bytes, -0.02, 0.02);
+        const int side = fuzz_byte(bytes) % 3;
+        const int tooth = fuzz_byte(bytes) - 1;
+        const int status = fuzz_byte(bytes) & 1
+                               ? gm_flanks_set_table(flanks, side, tooth, values, 1.0)
+                               : gm_flanks_set_pitch(flanks, side, tooth, values[0]);
+        FUZZ_CLAIM(status == GM_OK || status == GM_ERR_TOOTH || status == GM_ERR_MEMORY ||
+                   status == GM_ERR_DEVIATION);
+    }
+    return memory;
+}
+
+/* All finite on success, all NaN on any error. */
+static void claim_numbers(int status, const double *numbers, size_t count) {
+    for (size_t k = 0; k < count; ++k)
+        FUZZ_CLAIM(status == GM_OK ? isfinite(numbers[k]) : isnan(numbers[k]));
+}
+
+static void claim_penetration(int status, const gm_penetration *result) {
+    const double numbers[] = {
+        result->penetration,    result->rate,          result->drive,         result->coast,
+        result->drive_rate,     result->coast_rate,    result->drive_contact, result->coast_contact,
+        result->d_pinion_angle, result->d_wheel_angle,
+    };
+    claim_numbers(status, numbers, sizeof numbers / sizeof *numbers);
+    if (status == GM_OK) {
+        FUZZ_CLAIM(result->drive >= 0.0 && result->coast >= 0.0);
+        FUZZ_CLAIM(result->drive_contact >= 0.0 && result->coast_contact >= 0.0);
+        FUZZ_CLAIM(result->drive_pairs >= 0 && result->coast_pairs >= 0);
+        FUZZ_CLAIM(!isnan(gm_contact_force(1e8, 1e3, result))); /* may overflow */
+    } else {
+        FUZZ_CLAIM(result->drive_pairs == 0 && result->coast_pairs == 0);
+        FUZZ_CLAIM(isnan(gm_contact_force(1e8, 1e3, result)));
+    }
+}
+
+int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size) {
+    fuzz_bytes bytes = {data, size};
+    const int how = fuzz_byte(&bytes);
+
+    gm_pair_params params;
+    take_params(&bytes, how, &params);
+    const char *field = "", *requirement = "";
+    gm_pair pair;
+    const int checked = gm_pair_params_check(&params, &field, &requirement);
+    const int status = gm_pair_init(&pair, &params);
+    FUZZ_CLAIM(checked == status);
+    FUZZ_CLAIM((status == GM_OK) == (field == NULL));
+    FUZZ_CLAIM((status == GM_OK) == (isfinite(pair.line_of_action) != 0));
+    (void)gm_pair_doubts(&pair, &params);
+
+    gm_flanks pinion_flanks, wheel_flanks;
+    void *pinion_memory = NULL, *wheel_memory = NULL;
+    const double m = params.normal_module;
+    if (status == GM_OK && fuzz_byte(&bytes) & 1) {
+        pinion_memory = take_flanks(&bytes, how, params.pinion_teeth, m, &pinion_flanks);
+        wheel_memory = take_flanks(&bytes, how, params.wheel_teeth, m, &wheel_flanks);
+    }
+    const gm_flanks *pinion = pinion_memory != NULL ? &pinion_flanks : NULL;
+    const gm_flanks *wheel = wheel_memory != NULL ? &wheel_flanks : NULL;
+
+    gm_state state;
+    gm_penetration result;
+    if (how & RAW_STATE) {
+        fuzz_take(&bytes, &state, sizeof state);
+    } else {
+        const double x = pair.transverse_base_pitch * fuzz_between(&bytes, -0.6, 0.6);
+        state.pinion_angle = fuzz_between(&bytes, -100.0, 100.0);
+        state.wheel_angle =
+            (pair.pinion.base_radius * state.pinion_angle - x) / pair.wheel.base_radius;
+        state.pinion_speed = fuzz_between(&bytes, -1000.0, 1000.0);
+        state.wheel_speed = fuzz_between(&bytes, -1000.0, 1000.0);
+    }
+    if (status == GM_OK) {
+        claim_penetration(gm_penetration_simple(&pair, &state, &result), &result);
+        claim_penetration(gm_penetration_3d(&pair, pinion, wheel, &state, &result), &result);
+
+        gm_position position;
+        gm_wrench wrench;
+        if (gm_position_from_state(&pair, &state, &position) == GM_OK) {
+            FUZZ_CLAIM(position.pinion_tooth >= 0 && position.pinion_tooth < params.pinion_teeth);
+            FUZZ_CLAIM(position.wheel_tooth >= 0 && position.wheel_tooth < params.wheel_teeth);
+            const int evaluated =
+                gm_wrench_3d_at(&pair, pinion, wheel, &position, 1e8, 1e3, &wrench);
+            FUZZ_CLAIM(evaluated == gm_penetration_3d_at(&pair, pinion, wheel, &position, &result));
+            /* Speeds of 1e300 rad/s are numbers, but the forces overflow. */
+            if (evaluated != GM_OK || fabs(position.offset_rate) < 1e100) {
+                claim_numbers(evaluated, wrench.pinion_force, 3);
+                claim_numbers(evaluated, wrench.pinion_moment, 3);
+                claim_numbers(evaluated, wrench.wheel_force, 3);
+                claim_numbers(evaluated, wrench.wheel_moment, 3);
+            }
+        }
+
+        double offset;
+        const double stiffness = how & RAW_STATE ? fuzz_any(&bytes) : 1e8;
+        const double torque = how & RAW_STATE ? fuzz_any(&bytes) : fuzz_between(&bytes, -1e3, 1e3);
+        const int found = gm_static_equilibrium(&pair, pinion, wheel, state.pinion_angle, stiffness,
+                                                torque, &offset, &result);
+        claim_numbers(found, &offset, 1);
+        claim_penetration(found, &result);
+    }
+    free(pinion_memory);
+    free(wheel_memory);
+    return 0;
+}
