@@ -77,42 +77,72 @@ static double tip_land(const gm_gear *gear, const gm_pair *pair) {
     return 2 * gear->tip_radius * half_angle * cos(helix) / pair->normal_module;
 }
 
-/* Of a gear alone: undercut, tip land, root form, start radius; `first` = which of the two it is. */
-static void warn_of_gear(const config *conf, const gm_pair *pair, int is_pinion, int doubts) {
-    const gm_gear *gear = is_pinion ? &pair->pinion : &pair->wheel;
-    const char *name = is_pinion ? "pinion" : "wheel";
-    const char *start_key =
-        is_pinion ? "gears.pinion_start_diameter_mm" : "gears.wheel_start_diameter_mm";
+static void warn_of_tip(const config *conf, const gm_pair *pair, const gm_gear *gear,
+                        const char *key, const char *name) {
+    const double land = tip_land(gear, pair);
 
-    if (doubts & (is_pinion ? GM_DOUBT_PINION_UNDERCUT : GM_DOUBT_WHEEL_UNDERCUT))
+    if (land <= 0)
+        config_warn(conf, key,
+                    "pointed tip: the flanks of the %s cross below the tip diameter of %.6g mm",
+                    name, 2e3 * gear->tip_radius);
+    else
         config_warn(
-            conf, is_pinion ? "gears.pinion_teeth" : "gears.wheel_teeth",
-            "undercut: a generating rack cuts into the involute of the %s (%d teeth, profile "
-            "shift %.6g)",
-            name, gear->teeth, gear->profile_shift);
-    if (doubts & (is_pinion ? GM_DOUBT_PINION_TIP_LAND : GM_DOUBT_WHEEL_TIP_LAND))
-        config_warn(
-            conf, is_pinion ? "gears.pinion_tip_diameter_mm" : "gears.wheel_tip_diameter_mm",
+            conf, key,
             "thin tip: the teeth of the %s are %.3f normal modules thick at the tip diameter "
             "of %.6g mm, less than 0.2",
-            name, tip_land(gear, pair), 2e3 * gear->tip_radius);
-    if (doubts & (is_pinion ? GM_DOUBT_PINION_ROOT_FORM : GM_DOUBT_WHEEL_ROOT_FORM))
+            name, land, 2e3 * gear->tip_radius);
+}
+
+/* What is said of one gear: keys and doubts of the pinion or of the wheel. */
+typedef struct gear_words {
+    const char *name, *teeth_key, *tip_key, *start_key;
+    int undercut, tip_land, root_form, start_radius;
+} gear_words;
+
+static const gear_words pinion_words = {"pinion",
+                                        "gears.pinion_teeth",
+                                        "gears.pinion_tip_diameter_mm",
+                                        "gears.pinion_start_diameter_mm",
+                                        GM_DOUBT_PINION_UNDERCUT,
+                                        GM_DOUBT_PINION_TIP_LAND,
+                                        GM_DOUBT_PINION_ROOT_FORM,
+                                        GM_DOUBT_PINION_START_RADIUS};
+static const gear_words wheel_words = {"wheel",
+                                       "gears.wheel_teeth",
+                                       "gears.wheel_tip_diameter_mm",
+                                       "gears.wheel_start_diameter_mm",
+                                       GM_DOUBT_WHEEL_UNDERCUT,
+                                       GM_DOUBT_WHEEL_TIP_LAND,
+                                       GM_DOUBT_WHEEL_ROOT_FORM,
+                                       GM_DOUBT_WHEEL_START_RADIUS};
+
+static void warn_of_gear(const config *conf, const gm_pair *pair, const gm_gear *gear,
+                         const gear_words *words, int doubts) {
+    if (doubts & words->undercut)
         config_warn(
-            conf, start_key,
+            conf, words->teeth_key,
+            "undercut: a generating rack cuts into the involute of the %s (%d teeth, profile "
+            "shift %.6g)",
+            words->name, gear->teeth, gear->profile_shift);
+    if (doubts & words->tip_land)
+        warn_of_tip(conf, pair, gear, words->tip_key, words->name);
+    if (doubts & words->root_form)
+        config_warn(
+            conf, words->start_key,
             "the active profile of the %s starts at a diameter of %.6g mm, below the root form "
             "circle that a generating rack leaves",
-            name, 2e3 * gear->start_radius);
-    if (doubts & (is_pinion ? GM_DOUBT_PINION_START_RADIUS : GM_DOUBT_WHEEL_START_RADIUS))
-        config_warn(conf, start_key,
-                    "below the base circle of the %s, its diameter %.6g mm is taken instead", name,
-                    2e3 * gear->base_radius);
+            words->name, 2e3 * gear->start_radius);
+    if (doubts & words->start_radius)
+        config_warn(conf, words->start_key,
+                    "below the base circle of the %s, its diameter %.6g mm is taken instead",
+                    words->name, 2e3 * gear->base_radius);
 }
 
 static void warn_of_doubts(const config *conf, const gm_pair *pair) {
     const int doubts = gm_pair_doubts(pair, &conf->gears);
 
-    warn_of_gear(conf, pair, 1, doubts);
-    warn_of_gear(conf, pair, 0, doubts);
+    warn_of_gear(conf, pair, &pair->pinion, &pinion_words, doubts);
+    warn_of_gear(conf, pair, &pair->wheel, &wheel_words, doubts);
     if (doubts & GM_DOUBT_CONTACT_RATIO)
         config_warn(
             conf, "gears.center_distance_mm",
