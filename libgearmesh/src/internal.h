@@ -103,13 +103,29 @@ enum gmi_wanted { GMI_SUM = 0, GMI_DERIVATIVES = 1, GMI_MOMENTS = 2 };
 
 /* line.c: the integral along one line of contact. */
 
-/* How the lines of one side run through the tables of one gear: the same for all its teeth. */
+/*
+ * How the lines of one side run through the tables of one gear, v1 = face_rate t1 and v2 = profile + rate t1 in
+ * grid units: the same for all its teeth and all lines. All zero for ideal flanks.
+ */
 typedef struct gmi_grid {
-    int face_nodes; /* 0 = the gear has no tables on this side */
-    int profile_nodes;
-    double rate;     /* d v2 / d t1, with v2 = (profile_nodes - 1) t2 */
-    double per_rate; /* its inverse */
+    int last_face, last_profile; /* indices of the last cell */
+    ptrdiff_t row;               /* doubles from one face line to the next */
+    ptrdiff_t step;              /* doubles from cell to cell across the profile lines, signed */
+    ptrdiff_t ahead;             /* doubles from a cell's corner to the profile line ahead */
+    double face_rate;            /* d v1 / d t1 */
+    double face_spacing;    /* its inverse, rounded up: the last face line is not before t1 = 1 */
+    double rate;            /* d v2 / d t1, signed */
+    double profile_spacing; /* its inverse */
+    double direction;       /* +1 or -1, the sign of rate */
+    double ahead_number;    /* 1 or 0: profile lines from a cell's corner to the one ahead */
+    double per_rho;         /* d v2 / d rho (1/m) */
+    /* Half slope and curvature of f change by these times the second difference of the nodes. */
+    double face_kick, face_bend;
+    double profile_kick, profile_bend;
 } gmi_grid;
+
+/* climb: d rho / d t1 of this gear along a line, signed (m); length: rho from start to tip (m). */
+void gmi_grid_init(gmi_grid *grid, const gm_flank_tables *tables, double climb, double length);
 
 /* One line: t1 from `from` to `to`, with f = gap + deviations of both flanks. */
 typedef struct gmi_line {

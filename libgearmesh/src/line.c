@@ -4,11 +4,11 @@
 /*
  * The integral of max(0, f) along one line of contact, f = gap + deviation of both flanks, exactly.
  *
- * In grid units the line runs through a flank's table as v1 = (face_nodes - 1) t1, v2 = profile + rate t1, and
- * within a cell the bilinear surface is quadratic in t1 there. At a grid line only slope and curvature change,
- * by the second difference of the nodes across that grid line, interpolated along it (flank.c keeps it beside
- * each node). So value, slope and curvature of f are carried along the line and corrected at each crossing: two
- * node reads and no division per crossing. Each piece between crossings is integrated in closed form, split at its
+ * In grid units the line runs through a flank's table as v1 = face_rate t1, v2 = profile + rate t1, and within a
+ * cell the bilinear surface is quadratic in t1 there. At a grid line only slope and curvature change, by the
+ * second difference of the nodes across that grid line, interpolated along it (flank.c keeps it beside each
+ * node). So value, slope and curvature of f are carried along the line and corrected at each crossing: two node
+ * reads and no division per crossing. Each piece between crossings is integrated in closed form, split at its
  * roots where f changes its sign.
  *
  * Crossings come in order from two to four arithmetic sequences: face lines (constant t1; one sequence for both
@@ -20,32 +20,32 @@
 
 #define NO_CROSSING 2.0 /* later than any: t1 ends at 1 */
 
-/* Read in place of a table that is not there. */
-static const double ideal_nodes[2 * GMI_NODE_DOUBLES] = {0.0};
+/* The walk is compiled once for each combination of its constant arguments. */
+#if defined(__GNUC__)
+#define SPECIALIZED static inline __attribute__((always_inline))
+#else
+#define SPECIALIZED static inline
+#endif
 
-/* The path through one flank's table. */
+/* In place of a table that is not there: zeros wherever one looks. */
+static const double ideal_nodes[GMI_NODE_DOUBLES + GMI_NODE_DOUBLES] = {0.0};
+static const gmi_grid ideal_grid = {0};
+
+/* Where the line is in one flank's table. */
 typedef struct trace {
-    const double *cell; /* corner node of the current cell with the lowest indices */
-    size_t row;         /* doubles from one face line to the next */
-    ptrdiff_t step;     /* doubles from one cell to the next across a profile line, signed */
-    ptrdiff_t ahead;    /* doubles from the corner to the profile line ahead */
-    double step_number; /* +1 or -1, 0 without a table */
-    double profile;     /* index of the corner across the profile */
-    double face;        /* along the face */
-    double face_rate;   /* d v1 / d t1 */
-    double
-        face_spacing; /* its inverse, rounded up so that the last face line is not before t1 = 1 */
-    double origin, rate;                   /* v2 = origin + rate t1 */
-    double profile_spacing, profile_shift; /* next_profile = profile * spacing + shift */
-    double next_face, next_profile;        /* t1 of the next crossings */
-
-    double profile_slope; /* d deviation / d v2 at the current t1 (m) */
+    const double *cell;   /* corner node of the current cell with the lowest indices */
+    double face, profile; /* indices of that node */
+    double origin;        /* v2 at t1 = 0 */
+    double profile_shift; /* next_profile = profile * spacing + shift */
+    double next_face;     /* t1 of the next crossings */
+    double next_profile;
+    double profile_slope; /* d deviation / d v2 here (m) */
     double slope_rate;    /* its d / d t1 within the cell (m) */
 } trace;
 
-/* f around the current t1: value, slope, half the second derivative. */
+/* f around the current t1: value, half the slope, half the second derivative. */
 typedef struct quadratic {
-    double value, slope, curvature;
+    double value, half_slope, curvature;
 } quadratic;
 
 static inline double smaller(double a, double b) {
@@ -56,120 +56,122 @@ static inline double larger(double a, double b) {
     return a > b ? a : b;
 }
 
+void gmi_grid_init(gmi_grid *grid, const gm_flank_tables *tables, double climb, double length) {
+    if (tables == NULL || tables->profile_nodes == 0) {
+        *grid = ideal_grid;
+        return;
+    }
+    const int upwards = climb > 0.0;
+    grid->last_face = tables->face_nodes - 2;
+    grid->last_profile = tables->profile_nodes - 2;
+    grid->row = (ptrdiff_t)tables->profile_nodes * GMI_NODE_DOUBLES;
+    grid->step = upwards ? GMI_NODE_DOUBLES : -GMI_NODE_DOUBLES;
+    grid->ahead = upwards ? GMI_NODE_DOUBLES : 0;
+    grid->direction = upwards ? 1.0 : -1.0;
+    grid->ahead_number = upwards ? 1.0 : 0.0;
+    grid->face_rate = (double)(tables->face_nodes - 1);
+    grid->face_spacing = (1.0 + 4e-16) / grid->face_rate;
+    grid->per_rho = (double)(tables->profile_nodes - 1) / length;
+    grid->rate = climb * grid->per_rho;
+    grid->profile_spacing = 1.0 / grid->rate; /* infinite for spur gears, and then not used */
+    grid->face_kick = 0.5 * grid->face_rate;
+    grid->face_bend = grid->rate * grid->face_rate;
+    grid->profile_kick = 0.5 * fabs(grid->rate);
+    grid->profile_bend = fabs(grid->rate) * grid->face_rate;
+}
+
 /* Index of the cell that holds v, clamped into the table against rounding at its rim. */
 static inline int cell_of(double v, int last) {
     const int cell = v > 0.0 ? (int)v : 0;
     return cell < last ? cell : last;
 }
 
-static inline double next_profile_crossing(const trace *path) {
-    return path->profile * path->profile_spacing + path->profile_shift;
-}
-
-/* A flank without a table: never crossed, zeros wherever one looks. */
-static inline void begin_ideal(trace *path, double face_rate, double face_spacing, double face) {
-    path->cell = ideal_nodes;
-    path->row = 0;
-    path->step = path->ahead = 0;
-    path->step_number = path->profile = path->origin = path->rate = 0.0;
-    path->face = face;
-    path->face_rate = face_rate;
-    path->face_spacing = face_spacing;
-    path->next_face = NO_CROSSING;
-    path->profile_spacing = 0.0;
-    path->profile_shift = path->next_profile = NO_CROSSING;
-    path->profile_slope = path->slope_rate = 0.0;
+static void begin_ideal(trace *path) {
+    const trace ideal = {ideal_nodes, 0.0, 0.0, 0.0, 0.0, NO_CROSSING, NO_CROSSING, 0.0, 0.0};
+    *path = ideal;
 }
 
 /* Enters the table at t1 = from and adds its deviation to f. Returns the t1 at which the table ends. */
-static inline double begin(trace *path, const double *table, const gmi_grid *grid, double origin,
-                           double from, quadratic *f) {
-    const int last_face = grid->face_nodes - 2;
-    const int last_profile = grid->profile_nodes - 2;
-    const double v1 = from * (double)(grid->face_nodes - 1);
+static double begin(trace *path, const gmi_grid *grid, const double *table, double origin,
+                    double from, quadratic *f) {
+    const double v1 = from * grid->face_rate;
     const double v2 = origin + from * grid->rate;
-    const int face = cell_of(v1, last_face);
-    const int profile = cell_of(v2, last_profile);
-    path->row = (size_t)grid->profile_nodes * GMI_NODE_DOUBLES;
-    path->cell = table + (size_t)face * path->row + (size_t)profile * GMI_NODE_DOUBLES;
+    const int face = cell_of(v1, grid->last_face);
+    const int profile = cell_of(v2, grid->last_profile);
+    const double *cell = table + face * grid->row + profile * GMI_NODE_DOUBLES;
+    path->cell = cell;
     path->face = (double)face;
     path->profile = (double)profile;
     path->origin = origin;
-    path->rate = grid->rate;
 
     /* w = corner + along_face p + along_profile q + mixed p q with p, q in [0, 1] */
     const double p = v1 - path->face;
     const double q = v2 - path->profile;
-    const double corner = path->cell[0];
-    const double along_face = path->cell[path->row] - corner;
-    const double along_profile = path->cell[GMI_NODE_DOUBLES] - corner;
-    const double mixed =
-        (path->cell[path->row + GMI_NODE_DOUBLES] - path->cell[path->row]) - along_profile;
-    path->face_rate = (double)(grid->face_nodes - 1);
+    const double corner = cell[0];
+    const double along_face = cell[grid->row] - corner;
+    const double along_profile = cell[GMI_NODE_DOUBLES] - corner;
+    const double mixed = (cell[grid->row + GMI_NODE_DOUBLES] - cell[grid->row]) - along_profile;
     path->profile_slope = along_profile + mixed * p;
-    path->slope_rate = mixed * path->face_rate;
+    path->slope_rate = mixed * grid->face_rate;
     f->value += corner + along_face * p + path->profile_slope * q;
-    f->slope += path->face_rate * (along_face + mixed * q) + grid->rate * path->profile_slope;
-    f->curvature += grid->rate * path->slope_rate;
+    f->half_slope +=
+        grid->face_kick * (along_face + mixed * q) + 0.5 * grid->rate * path->profile_slope;
+    f->curvature += grid->face_bend * mixed;
 
-    path->face_spacing = (1.0 + 4e-16) / path->face_rate;
-    path->next_face = (path->face + 1.0) * path->face_spacing;
-    const int upwards = grid->rate > 0.0;
-    path->step = upwards ? GMI_NODE_DOUBLES : -GMI_NODE_DOUBLES;
-    path->ahead = upwards ? GMI_NODE_DOUBLES : 0;
-    path->step_number = upwards ? 1.0 : -1.0;
+    path->next_face = (path->face + 1.0) * grid->face_spacing;
     if (grid->rate == 0.0) { /* spur: along a profile line, never across one */
-        path->profile_spacing = 0.0;
         path->profile_shift = path->next_profile = NO_CROSSING;
         return 1.0;
     }
-    path->profile_spacing = grid->per_rate;
-    path->profile_shift = ((upwards ? 1.0 : 0.0) - origin) * grid->per_rate;
-    path->next_profile = next_profile_crossing(path);
-    const double last_cell = upwards ? (double)last_profile : 0.0;
-    return last_cell * path->profile_spacing + path->profile_shift;
+    path->profile_shift = (grid->ahead_number - origin) * grid->profile_spacing;
+    path->next_profile = path->profile * grid->profile_spacing + path->profile_shift;
+    const double last_cell = grid->rate > 0.0 ? (double)grid->last_profile : 0.0;
+    return last_cell * grid->profile_spacing + path->profile_shift;
 }
 
 /* Across the face line (constant t1) ahead. */
-static inline void cross_face(trace *path, double t1, int wanted, quadratic *f) {
-    path->cell += path->row;
-    path->face += 1.0;
-    path->next_face = (path->face + 1.0) * path->face_spacing;
-    const double q = path->origin + t1 * path->rate - path->profile;
+SPECIALIZED void cross_face(trace *path, const gmi_grid *grid, double t1, int wanted,
+                            quadratic *f) {
+    path->cell += grid->row;
+    const double q = t1 * grid->rate + (path->origin - path->profile);
     const double near = path->cell[GMI_NODE_FACE];
     const double change = path->cell[GMI_NODE_DOUBLES + GMI_NODE_FACE] - near;
-    const double rate_change = path->face_rate * change;
-    f->slope += path->face_rate * (near + q * change);
-    f->curvature += path->rate * rate_change;
+    f->half_slope += grid->face_kick * (near + q * change);
+    f->curvature += grid->face_bend * change;
     if (wanted & GMI_DERIVATIVES)
-        path->slope_rate += rate_change;
+        path->slope_rate += grid->face_rate * change;
+}
+
+SPECIALIZED void count_face(trace *path, const gmi_grid *grid) {
+    path->face += 1.0;
+    path->next_face = (path->face + 1.0) * grid->face_spacing;
 }
 
 /* Across the profile line (constant t2) ahead, upwards or downwards. `face` = v1 index of the cell. */
-static inline void cross_profile(trace *path, double face, double t1, int wanted, quadratic *f) {
-    const double *line = path->cell + path->ahead;
-    const double p = t1 * path->face_rate - face;
+SPECIALIZED void cross_profile(trace *path, const gmi_grid *grid, double face, double t1,
+                               int wanted, quadratic *f) {
+    const double *line = path->cell + grid->ahead;
+    const double p = t1 * grid->face_rate - face;
     const double near = line[GMI_NODE_PROFILE];
-    const double change = line[path->row + GMI_NODE_PROFILE] - near;
-    const double slope_change = path->step_number * (near + p * change);
-    const double rate_change = path->step_number * path->face_rate * change;
-    f->slope += path->rate * slope_change;
-    f->curvature += path->rate * rate_change;
+    const double change = line[grid->row + GMI_NODE_PROFILE] - near;
+    const double kink = near + p * change;
+    f->half_slope += grid->profile_kick * kink;
+    f->curvature += grid->profile_bend * change;
     if (wanted & GMI_DERIVATIVES) {
-        path->profile_slope += slope_change;
-        path->slope_rate += rate_change;
+        path->profile_slope += grid->direction * kink;
+        path->slope_rate += grid->direction * (grid->face_rate * change);
     }
-    path->cell += path->step;
-    path->profile += path->step_number;
-    path->next_profile = next_profile_crossing(path);
+    path->cell += grid->step;
+    path->profile += grid->direction;
+    path->next_profile = path->profile * grid->profile_spacing + path->profile_shift;
 }
 
-/* What one piece is made of: copied for the rare slow case, so that the walk itself stays in registers. */
+/* What a piece is made of: copied for the slow case, so that the walk itself stays in registers. */
 typedef struct piece {
     double t1, length;
     quadratic f;
-    double pinion_slope, pinion_rate;
-    double wheel_slope, wheel_rate;
+    double first_slope, first_rate; /* d deviation / d v2 of both flanks, and its rate */
+    double second_slope, second_rate;
 } piece;
 
 /* Adds the part [begin, end] (from the start of the piece) in which f > 0. */
@@ -179,18 +181,18 @@ static inline void add_touching(const piece *part, double begin, double end, int
     const double length = end - begin;
     const double middle = 0.5 * (begin + end);
     /* Integral of the quadratic about the middle: no differences of cubes. */
-    const double at_middle = f.value + middle * (f.slope + middle * f.curvature);
+    const double at_middle = f.value + middle * (2.0 * f.half_slope + middle * f.curvature);
     const double second = length * length * (1.0 / 12.0);
     const double integral = length * (at_middle + f.curvature * second);
     total->sum += integral;
     total->contact += length;
     if (wanted & GMI_DERIVATIVES) {
-        total->pinion += length * (part->pinion_slope + middle * part->pinion_rate);
-        total->wheel += length * (part->wheel_slope + middle * part->wheel_rate);
+        total->pinion += length * (part->first_slope + middle * part->first_rate);
+        total->wheel += length * (part->second_slope + middle * part->second_rate);
     }
     if (wanted & GMI_MOMENTS) {
         const double t1 = part->t1 + middle;
-        const double slope_at_middle = f.slope + 2.0 * middle * f.curvature;
+        const double slope_at_middle = 2.0 * (f.half_slope + middle * f.curvature);
         total->sum_t1 += t1 * integral + length * second * slope_at_middle;
         total->contact_t1 += t1 * length;
     }
@@ -202,10 +204,10 @@ static void add_split(const piece *part, int wanted, gmi_line_sum *total) {
     if (!(part->length > 0.0)) /* two crossings at the same t1, up to rounding */
         return;
     double cuts[4] = {0.0, 0.0, 0.0, part->length};
-    const double discriminant = f.slope * f.slope - 4.0 * f.curvature * f.value;
+    const double discriminant = f.half_slope * f.half_slope - f.curvature * f.value;
     if (discriminant > 0.0) {
         /* Without cancellation; an infinite root (curvature 0) is clamped away. */
-        const double q = -0.5 * (f.slope + copysign(sqrt(discriminant), f.slope));
+        const double q = -(f.half_slope + copysign(sqrt(discriminant), f.half_slope));
         const double root_1 = smaller(larger(q / f.curvature, 0.0), part->length);
         const double root_2 = smaller(larger(f.value / q, 0.0), part->length);
         cuts[1] = smaller(root_1, root_2);
@@ -213,113 +215,160 @@ static void add_split(const piece *part, int wanted, gmi_line_sum *total) {
     }
     for (int k = 0; k < 3; ++k) {
         const double middle = 0.5 * (cuts[k] + cuts[k + 1]);
-        if (cuts[k + 1] > cuts[k] && f.value + middle * (f.slope + middle * f.curvature) > 0.0)
+        const double at_middle = f.value + middle * (2.0 * f.half_slope + middle * f.curvature);
+        if (cuts[k + 1] > cuts[k] && at_middle > 0.0)
             add_touching(part, cuts[k], cuts[k + 1], wanted, total);
     }
 }
 
-/*
- * Walks the line piece by piece. same_faces: both tables have the same face lines, so the pinion's sequence
- * serves both. `wanted` and `same_faces` are constants at each call: the compiler makes a walk for each.
- */
-static inline void walk(trace pinion, trace wheel, quadratic f, double from, double to, int wanted,
-                        int same_faces, gmi_line_sum *result) {
-    double t1 = from;
-    double three_sums = 0.0; /* three times the sum over the whole pieces */
-    double contact = 0.0;
-    double pinion_sum = 0.0, wheel_sum = 0.0;
-    gmi_line_sum split = {0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0};
-    for (;;) {
-        double end = smaller(smaller(pinion.next_profile, wheel.next_profile), pinion.next_face);
-        if (!same_faces)
-            end = smaller(end, wheel.next_face);
-        end = smaller(end, to);
+/* A walk along a line: where it is, f there, and the sums over whole pieces so far. */
+typedef struct walk_state {
+    double t1;
+    quadratic f;
+    trace first, second; /* through the tables of both flanks */
+    double three_sums;   /* three times the sum */
+    double contact;
+    double first_sum, second_sum; /* of d deviation / d v2 of both flanks */
+} walk_state;
 
-        /* A quadratic stays within the hull of its three Bezier points, and their mean is its own. */
-        const double length = end - t1;
-        const double bend = length * f.curvature;
-        const double control = f.value + 0.5 * length * f.slope;
-        const double end_value = f.value + length * (f.slope + bend);
-        const double lowest = smaller(smaller(f.value, control), end_value);
-        const double highest = larger(larger(f.value, control), end_value);
-        if ((wanted & GMI_MOMENTS) == 0 && lowest >= 0.0) {
-            three_sums += length * (f.value + control + end_value);
-            contact += highest > 0.0 ? length : 0.0;
-            if (wanted & GMI_DERIVATIVES) {
-                pinion_sum += length * (pinion.profile_slope + 0.5 * length * pinion.slope_rate);
-                wheel_sum += length * (wheel.profile_slope + 0.5 * length * wheel.slope_rate);
-            }
-        } else if (highest > 0.0) {
-            const piece part = {t1,
-                                length,
-                                f,
-                                pinion.profile_slope,
-                                pinion.slope_rate,
-                                wheel.profile_slope,
-                                wheel.slope_rate};
-            add_split(&part, wanted, &split);
-        }
-        f.value = end_value;
-        if (end >= to)
-            break;
-        f.slope += 2.0 * bend;
+/* Integrates the piece up to `end` and goes there. */
+SPECIALIZED void advance(walk_state *at, double end, int wanted, gmi_line_sum *split) {
+    /* A quadratic stays within the hull of its three Bezier points, and their mean is its own. */
+    const double length = end - at->t1;
+    const double value = at->f.value;
+    const double control = value + length * at->f.half_slope;
+    const double end_half_slope = at->f.half_slope + length * at->f.curvature;
+    const double end_value = control + length * end_half_slope;
+    if (!(wanted & GMI_MOMENTS) && smaller(smaller(value, control), end_value) > 0.0) {
+        at->three_sums += length * (value + control + end_value);
+        at->contact += length;
         if (wanted & GMI_DERIVATIVES) {
-            pinion.profile_slope += length * pinion.slope_rate;
-            wheel.profile_slope += length * wheel.slope_rate;
+            at->first_sum +=
+                length * (at->first.profile_slope + 0.5 * length * at->first.slope_rate);
+            at->second_sum +=
+                length * (at->second.profile_slope + 0.5 * length * at->second.slope_rate);
         }
-        t1 = end;
+    } else if (larger(larger(value, control), end_value) > 0.0) {
+        const piece part = {at->t1,
+                            length,
+                            at->f,
+                            at->first.profile_slope,
+                            at->first.slope_rate,
+                            at->second.profile_slope,
+                            at->second.slope_rate};
+        add_split(&part, wanted, split);
+    }
+    at->t1 = end;
+    at->f.value = end_value;
+    at->f.half_slope = end_half_slope;
+    if (wanted & GMI_DERIVATIVES) {
+        at->first.profile_slope += length * at->first.slope_rate;
+        at->second.profile_slope += length * at->second.slope_rate;
+    }
+}
 
-        const double wheel_face = same_faces ? pinion.face : wheel.face;
-        if (pinion.next_profile == end)
-            cross_profile(&pinion, pinion.face, end, wanted, &f);
-        else if (wheel.next_profile == end)
-            cross_profile(&wheel, wheel_face, end, wanted, &f);
-        else if (!same_faces && wheel.next_face == end)
-            cross_face(&wheel, end, wanted, &f);
-        else {
-            cross_face(&pinion, end, wanted, &f);
+/*
+ * Walks a line piece by piece through the tables of two flanks, from face line to face line. same_faces: the first
+ * table's face lines serve both. `wanted` and `same_faces` are constants at each call. In the result "pinion" is
+ * the first flank.
+ */
+SPECIALIZED void walk(walk_state at, const gmi_grid *first, const gmi_grid *second, double to,
+                      int wanted, int same_faces, gmi_line_sum *result) {
+    for (;;) {
+        double face_line = at.first.next_face;
+        if (!same_faces)
+            face_line = smaller(face_line, at.second.next_face);
+        face_line = smaller(face_line, to);
+        for (;;) {
+            if (at.first.next_profile < at.second.next_profile) {
+                if (!(at.first.next_profile < face_line))
+                    break;
+                advance(&at, at.first.next_profile, wanted, result);
+                cross_profile(&at.first, first, at.first.face, at.t1, wanted, &at.f);
+            } else {
+                if (!(at.second.next_profile < face_line))
+                    break;
+                advance(&at, at.second.next_profile, wanted, result);
+                cross_profile(&at.second, second, same_faces ? at.first.face : at.second.face,
+                              at.t1, wanted, &at.f);
+            }
+        }
+        advance(&at, face_line, wanted, result);
+        if (face_line >= to)
+            break;
+        if (same_faces || at.first.next_face == face_line) {
+            cross_face(&at.first, first, face_line, wanted, &at.f);
+            count_face(&at.first, first);
             if (same_faces)
-                cross_face(&wheel, end, wanted, &f);
+                cross_face(&at.second, second, face_line, wanted, &at.f);
+        } else {
+            cross_face(&at.second, second, face_line, wanted, &at.f);
+            count_face(&at.second, second);
         }
     }
-    result->sum = split.sum + three_sums * (1.0 / 3.0);
-    result->contact = split.contact + contact;
-    result->pinion = split.pinion + pinion_sum;
-    result->wheel = split.wheel + wheel_sum;
-    result->sum_t1 = split.sum_t1;
-    result->contact_t1 = split.contact_t1;
-    result->at_to = f.value;
+    result->sum += at.three_sums * (1.0 / 3.0);
+    result->contact += at.contact;
+    result->pinion += at.first_sum;
+    result->wheel += at.second_sum;
+    result->at_to = at.f.value;
+}
+
+/* No table on either flank: f is the same all along. */
+static void integrate_ideal(const gmi_line *line, gmi_line_sum *result) {
+    const double length = line->to - line->from;
+    result->at_from = result->at_to = line->gap;
+    if (line->gap > 0.0) {
+        result->sum = line->gap * length;
+        result->contact = length;
+        result->contact_t1 = 0.5 * length * (line->from + line->to);
+        result->sum_t1 = line->gap * result->contact_t1;
+    }
+}
+
+/* `first` has a table, `second` may have one. */
+static void integrate_tables(const gmi_line *line, const gmi_grid *first, const double *first_table,
+                             double first_profile, const gmi_grid *second,
+                             const double *second_table, double second_profile, int wanted,
+                             gmi_line_sum *result) {
+    walk_state at; /* every field is set below; zeroing all first costs as much as ten pieces */
+    at.t1 = line->from;
+    at.f = (quadratic){line->gap, 0.0, 0.0};
+    at.three_sums = at.contact = at.first_sum = at.second_sum = 0.0;
+    double to =
+        smaller(line->to, begin(&at.first, first, first_table, first_profile, line->from, &at.f));
+    int same_faces = 1;
+    if (second_table == NULL) {
+        begin_ideal(&at.second);
+        second = &ideal_grid;
+    } else {
+        to =
+            smaller(to, begin(&at.second, second, second_table, second_profile, line->from, &at.f));
+        same_faces = first->last_face == second->last_face;
+    }
+    result->at_from = at.f.value;
+    if (wanted & GMI_MOMENTS)
+        walk(at, first, second, to, GMI_MOMENTS, 0, result);
+    else if (!same_faces)
+        walk(at, first, second, to, GMI_DERIVATIVES, 0, result);
+    else if (wanted & GMI_DERIVATIVES)
+        walk(at, first, second, to, GMI_DERIVATIVES, 1, result);
+    else
+        walk(at, first, second, to, GMI_SUM, 1, result);
 }
 
 void gmi_line_integrate(const gmi_line *line, const gmi_grid *pinion, const gmi_grid *wheel,
                         int wanted, gmi_line_sum *result) {
-    quadratic f = {line->gap, 0.0, 0.0};
-    trace on_pinion, on_wheel;
-    double to = line->to;
-    if (line->pinion != NULL)
-        to = smaller(to,
-                     begin(&on_pinion, line->pinion, pinion, line->pinion_profile, line->from, &f));
-    if (line->wheel != NULL)
-        to = smaller(to, begin(&on_wheel, line->wheel, wheel, line->wheel_profile, line->from, &f));
-
-    /* A flank without a table follows the face lines of the other. */
-    if (line->pinion == NULL && line->wheel == NULL)
-        begin_ideal(&on_pinion, 1.0, NO_CROSSING, 0.0);
-    else if (line->pinion == NULL) {
-        begin_ideal(&on_pinion, on_wheel.face_rate, on_wheel.face_spacing, on_wheel.face);
-        on_pinion.next_face = on_wheel.next_face;
+    const gmi_line_sum none = {0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0};
+    *result = none;
+    if (line->pinion != NULL) {
+        integrate_tables(line, pinion, line->pinion, line->pinion_profile, wheel, line->wheel,
+                         line->wheel_profile, wanted, result);
+    } else if (line->wheel != NULL) {
+        integrate_tables(line, wheel, line->wheel, line->wheel_profile, &ideal_grid, NULL, 0.0,
+                         wanted, result);
+        result->wheel = result->pinion;
+        result->pinion = 0.0;
+    } else {
+        integrate_ideal(line, result);
     }
-    if (line->wheel == NULL)
-        begin_ideal(&on_wheel, on_pinion.face_rate, on_pinion.face_spacing, on_pinion.face);
-
-    result->at_from = f.value;
-    const int same_faces = on_pinion.face_rate == on_wheel.face_rate;
-    if (wanted == GMI_SUM && same_faces)
-        walk(on_pinion, on_wheel, f, line->from, to, GMI_SUM, 1, result);
-    else if (wanted == GMI_DERIVATIVES && same_faces)
-        walk(on_pinion, on_wheel, f, line->from, to, GMI_DERIVATIVES, 1, result);
-    else if (wanted == GMI_MOMENTS)
-        walk(on_pinion, on_wheel, f, line->from, to, GMI_MOMENTS, same_faces, result);
-    else
-        walk(on_pinion, on_wheel, f, line->from, to, wanted, 0, result);
 }

@@ -21,27 +21,17 @@ typedef struct side_view {
     const gm_flank_tables *wheel_tables;
     gmi_grid pinion_grid;
     gmi_grid wheel_grid;
-    double pinion_per_rho; /* d v2 / d rho of the pinion's tables (1/m) */
-    double wheel_per_rho;  /* of the wheel's (1/m) */
-    double wheel_reach;    /* rho_w - start of the wheel's flank = wheel_reach - rho_p (m) */
+    double wheel_reach; /* rho_w - start of the wheel's flank = wheel_reach - rho_p (m) */
 } side_view;
 
-static void find_grid(const gm_flank_tables *tables, const gm_gear *gear, double climb,
-                      gmi_grid *grid, double *per_rho) {
-    const int profile_nodes = tables == NULL ? 0 : tables->profile_nodes;
-    grid->face_nodes = profile_nodes == 0 ? 0 : tables->face_nodes;
-    grid->profile_nodes = profile_nodes;
-    *per_rho = profile_nodes == 0 ? 0.0
-                                  : (double)(profile_nodes - 1) /
-                                        (gear->tip_roll_length - gear->start_roll_length);
-    grid->rate = climb * *per_rho;
-    grid->per_rate = 1.0 / grid->rate;
+static double flank_length(const gm_gear *gear) {
+    return gear->tip_roll_length - gear->start_roll_length;
 }
 
 static void find_grids(const gm_pair *pair, side_view *view) {
     const double twist = view->lines.twist;
-    find_grid(view->pinion_tables, &pair->pinion, twist, &view->pinion_grid, &view->pinion_per_rho);
-    find_grid(view->wheel_tables, &pair->wheel, -twist, &view->wheel_grid, &view->wheel_per_rho);
+    gmi_grid_init(&view->pinion_grid, view->pinion_tables, twist, flank_length(&pair->pinion));
+    gmi_grid_init(&view->wheel_grid, view->wheel_tables, -twist, flank_length(&pair->wheel));
     view->wheel_reach = pair->line_of_action + view->lines.delta - pair->wheel.start_roll_length;
 }
 
@@ -113,8 +103,8 @@ static void add_line(const gm_pair *pair, const side_view *view, const gmi_flank
         view->lines.delta + pinion->pitch + wheel->pitch,
         pinion->values,
         wheel->values,
-        (rho_origin - pair->pinion.start_roll_length) * view->pinion_per_rho,
-        (view->wheel_reach - rho_origin) * view->wheel_per_rho,
+        (rho_origin - pair->pinion.start_roll_length) * view->pinion_grid.per_rho,
+        (view->wheel_reach - rho_origin) * view->wheel_grid.per_rho,
     };
     gmi_line_sum sum;
     gmi_line_integrate(&line, &view->pinion_grid, &view->wheel_grid, wanted, &sum);
@@ -124,8 +114,8 @@ static void add_line(const gm_pair *pair, const side_view *view, const gmi_flank
     side->pairs += sum.contact > 0.0;
     if (wanted & GMI_DERIVATIVES) {
         /* Inside, f follows the line's origin and delta through both points looked up. */
-        const double by_pinion = sum.pinion * view->pinion_per_rho;
-        const double by_wheel = sum.wheel * view->wheel_per_rho;
+        const double by_pinion = sum.pinion * view->pinion_grid.per_rho;
+        const double by_wheel = sum.wheel * view->wheel_grid.per_rho;
         side->by_origin += by_pinion - by_wheel;
         side->by_delta += sum.contact + by_wheel;
         add_end_derivatives(&view->lines, part, sum.at_from, sum.at_to, side);
