@@ -30,20 +30,55 @@ static int wrap_tooth(int tooth, int teeth) {
 }
 
 /* Limits of rho_p: those of the pinion, and those of the wheel seen from the pinion. */
-static void find_limits(const gm_pair *pair, gmi_lines *lines) {
-    const double reach = pair->line_of_action + lines->delta; /* rho_p + rho_w */
+typedef struct limits {
+    double lower, upper;
+    double lower_by_delta, upper_by_delta;
+} limits;
+
+static limits find_limits(const gm_pair *pair, double delta) {
+    const double reach = pair->line_of_action + delta; /* rho_p + rho_w */
     const double wheel_tip = reach - pair->wheel.tip_roll_length;
     const double wheel_start = reach - pair->wheel.start_roll_length;
-    lines->lower_by_delta = wheel_tip > pair->pinion.start_roll_length ? 1.0 : 0.0;
-    lines->lower =
-        wheel_tip > pair->pinion.start_roll_length ? wheel_tip : pair->pinion.start_roll_length;
-    lines->upper_by_delta = wheel_start < pair->pinion.tip_roll_length ? 1.0 : 0.0;
-    lines->upper =
-        wheel_start < pair->pinion.tip_roll_length ? wheel_start : pair->pinion.tip_roll_length;
+    limits found = {pair->pinion.start_roll_length, pair->pinion.tip_roll_length, 0.0, 0.0};
+    if (wheel_tip > found.lower) {
+        found.lower = wheel_tip;
+        found.lower_by_delta = 1.0;
+    }
+    if (wheel_start < found.upper) {
+        found.upper = wheel_start;
+        found.upper_by_delta = 1.0;
+    }
+    return found;
 }
 
 double gmi_ideal_penetration(const gm_pair *pair, int side, double offset) {
     return (side == GM_DRIVE ? offset : -offset) - 0.5 * pair->backlash;
+}
+
+/* Where line 0 enters and leaves the flanks as t1 grows, and which lines do so within the face. */
+static void find_ends(const gm_pair *pair, const limits *range, gmi_lines *lines) {
+    const double below = range->lower - lines->origin;
+    const double above = range->upper - lines->origin;
+    const double per_pitch = 1.0 / pair->transverse_base_pitch;
+    if (lines->twist == 0.0) { /* spur: a line is inside as a whole, or not at all */
+        lines->per_twist = lines->enter = lines->spacing = 0.0;
+        lines->leave = 1.0;
+        lines->enter_by_delta = lines->leave_by_delta = 0.0;
+        lines->first = -floor_to_int(-below * per_pitch);
+        lines->last = floor_to_int(above * per_pitch);
+        return;
+    }
+    lines->per_twist = 1.0 / lines->twist;
+    lines->spacing = pair->transverse_base_pitch * lines->per_twist;
+    const int climbs = lines->twist > 0.0;
+    lines->enter = (climbs ? below : above) * lines->per_twist;
+    lines->leave = (climbs ? above : below) * lines->per_twist;
+    lines->enter_by_delta = climbs ? range->lower_by_delta : range->upper_by_delta;
+    lines->leave_by_delta = climbs ? range->upper_by_delta : range->lower_by_delta;
+    const double rise = climbs ? lines->twist : 0.0;
+    const double fall = climbs ? 0.0 : lines->twist;
+    lines->first = -floor_to_int((rise - below) * per_pitch);
+    lines->last = floor_to_int((above - fall) * per_pitch);
 }
 
 void gmi_lines_find(const gm_pair *pair, int side, const gm_position *position, gmi_lines *lines) {
@@ -58,16 +93,9 @@ void gmi_lines_find(const gm_pair *pair, int side, const gm_position *position, 
         lines->tooth_step = -1;
         wheel_tooth -= 1; /* the coast flank of pinion tooth i meets wheel tooth i - 1 */
     }
-    lines->per_twist = 1.0 / lines->twist;
     lines->delta = gmi_ideal_penetration(pair, side, position->offset);
-    find_limits(pair, lines);
-
-    /* Lines whose rho_p reaches into [lower, upper] for some t1 in [0, 1]. */
-    const double per_pitch = 1.0 / pair->transverse_base_pitch;
-    const double highest = lines->twist > 0.0 ? lines->origin + lines->twist : lines->origin;
-    const double lowest = lines->twist < 0.0 ? lines->origin + lines->twist : lines->origin;
-    lines->first = -floor_to_int((highest - lines->lower) * per_pitch);
-    lines->last = floor_to_int((lines->upper - lowest) * per_pitch);
+    const limits range = find_limits(pair, lines->delta);
+    find_ends(pair, &range, lines);
     lines->pinion_tooth =
         wrap_tooth(position->pinion_tooth + lines->tooth_step * lines->first, pair->pinion.teeth);
     lines->wheel_tooth =

@@ -43,15 +43,20 @@ void gmi_gear_set_thickness(gm_gear *gear, double normal_thickness, double helix
  * the distance from the pinion's base tangent point, and exists where lower <= rho_p <= upper.
  */
 typedef struct gmi_lines {
-    double delta;          /* ideal penetration, the same on every line (m) */
-    double origin;         /* (m) */
-    double twist;          /* (m) */
-    double per_twist;      /* its inverse; infinite for spur gears (1/m) */
-    double lower, upper;   /* both tips and both start radii (m) */
-    double lower_by_delta; /* derivatives of the limits by delta, 0 or 1: */
-    double upper_by_delta; /* those set by the wheel move with the penetration */
-    int first, last;       /* lines that can exist, none if first > last */
-    int pinion_tooth;      /* teeth of line `first` */
+    double delta;  /* ideal penetration, the same on every line (m) */
+    double origin; /* (m) */
+    double twist;  /* (m) */
+    double
+        per_twist; /* its inverse; 0 for spur gears, whose lines have no ends within the face (1/m) */
+
+    /* Line k enters the flanks at t1 = enter - k spacing and leaves them at leave - k spacing. */
+    double enter, leave, spacing;
+    double
+        enter_by_delta; /* 1 where a limit of the wheel sets the end, so that it moves with delta; else 0 */
+    double leave_by_delta;
+
+    int first, last;  /* lines that can exist, none if first > last */
+    int pinion_tooth; /* teeth of line `first` */
     int wheel_tooth;
     int tooth_step; /* +1 or -1: teeth from line k to line k + 1 */
 } gmi_lines;
@@ -61,26 +66,16 @@ double gmi_ideal_penetration(const gm_pair *pair, int side, double offset);
 
 void gmi_lines_find(const gm_pair *pair, int side, const gm_position *position, gmi_lines *lines);
 
-/* Part of t1 in which a line exists; empty if from >= to. */
+/* Part of t1 in which line k exists; empty if from >= to. */
 typedef struct gmi_interval {
     double from, to;
 } gmi_interval;
 
-/* The part of the line that begins at rho_p = rho_origin. */
-static inline gmi_interval gmi_line_clip(const gmi_lines *lines, double rho_origin) {
-    const double below = lines->lower - rho_origin;
-    const double above = lines->upper - rho_origin;
-    gmi_interval part = {0.0, 1.0};
-    if (lines->twist == 0.0) { /* spur: the line is inside as a whole, or not at all */
-        part.to = below <= 0.0 && above >= 0.0 ? 1.0 : 0.0;
-        return part;
-    }
-    const double t_lower = below * lines->per_twist;
-    const double t_upper = above * lines->per_twist;
-    const double enter = lines->twist > 0.0 ? t_lower : t_upper;
-    const double leave = lines->twist > 0.0 ? t_upper : t_lower;
-    part.from = enter > 0.0 ? enter : 0.0;
-    part.to = leave < 1.0 ? leave : 1.0;
+static inline gmi_interval gmi_line_clip(const gmi_lines *lines, int k) {
+    const double shift = (double)k * lines->spacing;
+    const double enter = lines->enter - shift;
+    const double leave = lines->leave - shift;
+    const gmi_interval part = {enter > 0.0 ? enter : 0.0, leave < 1.0 ? leave : 1.0};
     return part;
 }
 

@@ -42,16 +42,15 @@ static void find_grids(const gm_pair *pair, side_view *view) {
  */
 static inline void add_end_derivatives(const gmi_lines *lines, gmi_interval part, double f_from,
                                        double f_to, gmi_side_sum *side) {
-    const int upwards = lines->twist > 0.0;
     if (part.from > 0.0 && f_from > 0.0) {
         const double flow = f_from * lines->per_twist;
         side->by_origin += flow;
-        side->by_delta -= flow * (upwards ? lines->lower_by_delta : lines->upper_by_delta);
+        side->by_delta -= flow * lines->enter_by_delta;
     }
     if (part.to < 1.0 && f_to > 0.0) {
         const double flow = f_to * lines->per_twist;
         side->by_origin -= flow;
-        side->by_delta += flow * (upwards ? lines->upper_by_delta : lines->lower_by_delta);
+        side->by_delta += flow * lines->leave_by_delta;
     }
 }
 
@@ -63,40 +62,49 @@ static void add_moments(const gmi_lines *lines, double rho_origin, const gmi_lin
     side->contact_rho += rho_origin * line->contact + lines->twist * line->contact_t1;
 }
 
-/* A line between ideal flanks: f is the same all along. */
-static inline void add_ideal_line(const gmi_lines *lines, double rho_origin, int wanted,
-                                  gmi_side_sum *side) {
-    const gmi_interval part = gmi_line_clip(lines, rho_origin);
-    const double length = part.to - part.from;
-    if (!(length > 0.0))
-        return;
-    side->contact += length;
-    side->pairs += 1;
-    if (wanted & GMI_DERIVATIVES)
-        add_end_derivatives(lines, part, lines->delta, lines->delta, side);
-    if (wanted & GMI_MOMENTS) {
-        const double length_t1 = 0.5 * length * (part.from + part.to);
-        const gmi_line_sum line = {.sum = lines->delta * length,
-                                   .contact = length,
-                                   .sum_t1 = lines->delta * length_t1,
-                                   .contact_t1 = length_t1};
-        add_moments(lines, rho_origin, &line, side);
-    }
+static double line_origin(const gm_pair *pair, const gmi_lines *lines, int k) {
+    return lines->origin + (double)k * pair->transverse_base_pitch;
 }
 
+/* First moments of a line between ideal flanks, where f is the same all along. */
+static void add_ideal_moments(const gm_pair *pair, const gmi_lines *lines, int k, gmi_interval part,
+                              gmi_side_sum *side) {
+    const double length = part.to - part.from;
+    const double length_t1 = 0.5 * length * (part.from + part.to);
+    const gmi_line_sum line = {.sum = lines->delta * length,
+                               .contact = length,
+                               .sum_t1 = lines->delta * length_t1,
+                               .contact_t1 = length_t1};
+    add_moments(lines, line_origin(pair, lines, k), &line, side);
+}
+
+/* Between ideal flanks the sum is delta times the length of all lines: only ends count. */
 static void sum_ideal(const gm_pair *pair, const gmi_lines *lines, int wanted, gmi_side_sum *side) {
-    for (int k = lines->first; k <= lines->last; ++k)
-        add_ideal_line(lines, lines->origin + (double)k * pair->transverse_base_pitch, wanted,
-                       side);
+    int moving_from = 0, moving_to = 0; /* lines that begin or end within the face */
+    for (int k = lines->first; k <= lines->last; ++k) {
+        const gmi_interval part = gmi_line_clip(lines, k);
+        if (!(part.from < part.to))
+            continue;
+        side->contact += part.to - part.from;
+        side->pairs += 1;
+        moving_from += part.from > 0.0;
+        moving_to += part.to < 1.0;
+        if (wanted & GMI_MOMENTS)
+            add_ideal_moments(pair, lines, k, part, side);
+    }
+    const double flow = lines->delta * lines->per_twist; /* through one end, see above */
     side->sum = lines->delta * side->contact;
-    side->by_delta += side->contact;
+    side->by_origin = flow * (double)(moving_from - moving_to);
+    side->by_delta = side->contact + flow * ((double)moving_to * lines->leave_by_delta -
+                                             (double)moving_from * lines->enter_by_delta);
 }
 
 static void add_line(const gm_pair *pair, const side_view *view, const gmi_flank *pinion,
-                     const gmi_flank *wheel, double rho_origin, int wanted, gmi_side_sum *side) {
-    const gmi_interval part = gmi_line_clip(&view->lines, rho_origin);
+                     const gmi_flank *wheel, int k, int wanted, gmi_side_sum *side) {
+    const gmi_interval part = gmi_line_clip(&view->lines, k);
     if (!(part.from < part.to))
         return;
+    const double rho_origin = line_origin(pair, &view->lines, k);
     const gmi_line line = {
         part.from,
         part.to,
@@ -138,8 +146,7 @@ static void sum_tables(const gm_pair *pair, side_view *view, int wanted, gmi_sid
         const gmi_flank pinion = gmi_flank_of(view->pinion_tables, pinion_tooth);
         const gmi_flank wheel = gmi_flank_of(view->wheel_tables, wheel_tooth);
         if (lines->delta + pinion.peak + wheel.peak > 0.0)
-            add_line(pair, view, &pinion, &wheel,
-                     lines->origin + (double)k * pair->transverse_base_pitch, wanted, side);
+            add_line(pair, view, &pinion, &wheel, k, wanted, side);
         pinion_tooth = next_tooth(pinion_tooth, lines->tooth_step, pair->pinion.teeth);
         wheel_tooth = next_tooth(wheel_tooth, lines->tooth_step, pair->wheel.teeth);
     }
@@ -240,9 +247,9 @@ static void set_derivatives(const gm_pair *pair, const gmi_side_sum *drive,
     result->d_wheel_angle = -pair->wheel.base_radius * by_offset;
 }
 
-int gm_penetration_3d_at(const gm_pair *pair, const gm_flanks *pinion_flanks,
-                         const gm_flanks *wheel_flanks, const gm_position *position,
-                         gm_penetration *result) {
+static int evaluate(const gm_pair *pair, const gm_flanks *pinion_flanks,
+                    const gm_flanks *wheel_flanks, const gm_position *position, int wanted,
+                    gm_penetration *result) {
     if (result == NULL)
         return GM_ERR_NULL;
     *result = penetration_nan();
@@ -251,8 +258,8 @@ int gm_penetration_3d_at(const gm_pair *pair, const gm_flanks *pinion_flanks,
         return status;
 
     gmi_side_sum drive, coast;
-    gmi_side_sum_3d(pair, pinion_flanks, wheel_flanks, GM_DRIVE, position, GMI_DERIVATIVES, &drive);
-    gmi_side_sum_3d(pair, pinion_flanks, wheel_flanks, GM_COAST, position, GMI_DERIVATIVES, &coast);
+    gmi_side_sum_3d(pair, pinion_flanks, wheel_flanks, GM_DRIVE, position, wanted, &drive);
+    gmi_side_sum_3d(pair, pinion_flanks, wheel_flanks, GM_COAST, position, wanted, &coast);
     result->drive = drive.sum;
     result->coast = coast.sum;
     result->drive_contact = drive.contact;
@@ -260,8 +267,21 @@ int gm_penetration_3d_at(const gm_pair *pair, const gm_flanks *pinion_flanks,
     result->drive_pairs = drive.pairs;
     result->coast_pairs = coast.pairs;
     set_rates(result, position->offset_rate);
-    set_derivatives(pair, &drive, &coast, result);
+    if (wanted & GMI_DERIVATIVES)
+        set_derivatives(pair, &drive, &coast, result);
     return GM_OK;
+}
+
+int gm_penetration_3d_at(const gm_pair *pair, const gm_flanks *pinion_flanks,
+                         const gm_flanks *wheel_flanks, const gm_position *position,
+                         gm_penetration *result) {
+    return evaluate(pair, pinion_flanks, wheel_flanks, position, GMI_DERIVATIVES, result);
+}
+
+int gm_penetration_3d_sum_at(const gm_pair *pair, const gm_flanks *pinion_flanks,
+                             const gm_flanks *wheel_flanks, const gm_position *position,
+                             gm_penetration *result) {
+    return evaluate(pair, pinion_flanks, wheel_flanks, position, GMI_SUM, result);
 }
 
 int gm_penetration_3d(const gm_pair *pair, const gm_flanks *pinion_flanks,
