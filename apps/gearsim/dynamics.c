@@ -219,7 +219,11 @@ static int start_filter(dynamic_run *run) {
     return run->filter != NULL ? 0 : out_of_memory();
 }
 
-static int start_run(dynamic_run *run) {
+static int start_run(dynamic_run *run, const gearbox *gears) {
+    if (model_init(&run->model, run->conf, gears) != 0) {
+        return out_of_memory();
+    }
+
     int exit_code = start_solver(run);
 
     if (exit_code == 0) {
@@ -257,10 +261,9 @@ int dynamics_run(const config *conf, const gearbox *gears) {
     dynamic_run run = {.conf = conf,
                        .rows = floor(conf->duration * conf->output_rate + 1e-9) + 1.0};
 
-    model_init(&run.model, conf, gears);
     progress_start(&run.progress, conf->duration, conf->quiet);
 
-    int exit_code = start_run(&run);
+    int exit_code = start_run(&run, gears);
     if (exit_code == 0) {
         interrupt_watch();
         exit_code = end_run(&run, take_all(&run));
@@ -270,5 +273,6 @@ int dynamics_run(const config *conf, const gearbox *gears) {
     }
     decimator_free(run.filter);
     integrator_free(run.solver);
+    model_free(&run.model);
     return exit_code;
 }

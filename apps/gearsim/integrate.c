@@ -152,8 +152,7 @@ static int set_up(integrator *solver) {
            CVodeSetUserData(solver->cvode, solver) ||
            CVodeWFtolerances(solver->cvode, error_weights) ||
            CVodeSetLinearSolver(solver->cvode, solver->linear_solver, solver->matrix) ||
-           CVodeSetJacFn(solver->cvode, jacobian) || CVodeSetMaxNumSteps(solver->cvode, -1) ||
-           CVodeSetMaxStep(solver->cvode, solver->options.max_step);
+           CVodeSetJacFn(solver->cvode, jacobian) || CVodeSetMaxNumSteps(solver->cvode, -1);
 }
 
 integrator *integrator_create(const gear_model *model, const integrator_options *options,
@@ -211,11 +210,23 @@ static int fail(integrator *solver, const char *what) {
     return EXIT_RUN_FAILED;
 }
 
+/* The smaller of what the user allows and what the model needs; 0 = none. */
+static double longest_step(const integrator *solver) {
+    const double asked = solver->options.max_step;
+    const double needed = model_max_step(solver->model, solver->time, NV_DATA_S(solver->state));
+
+    if (asked > 0.0 && needed > 0.0) {
+        return fmin(asked, needed);
+    }
+    return asked > 0.0 ? asked : needed;
+}
+
 static int step(integrator *solver, double target) {
     /* A fault that CVODE got over by a smaller step is not the reason of a later failure. */
     solver->status = GM_OK;
     solver->message[0] = '\0';
 
+    CVodeSetMaxStep(solver->cvode, longest_step(solver));
     const int flag = CVode(solver->cvode, target, solver->state, &solver->time, CV_ONE_STEP);
     if (flag < 0) {
         char *const name = CVodeGetReturnFlagName(flag);

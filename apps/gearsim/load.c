@@ -33,13 +33,19 @@ double load_noise_value(const load_signal *load, int64_t k) {
     return value_of_place(load->stream, (uint64_t)k);
 }
 
-/* Through p1 at s = 0 and p2 at s = 1, with the slopes of the chords p0 p2 and p1 p3. */
-static double catmull_rom(double p0, double p1, double p2, double p3, double s) {
-    const double slope = p2 - p0;
-    const double square = 2.0 * p0 - 5.0 * p1 + 4.0 * p2 - p3;
-    const double cube = 3.0 * (p1 - p2) + p3 - p0;
+/* Catmull-Rom: through p1 at s = 0 and p2 at s = 1, with the slopes of the chords p0 p2 and p1 p3. */
+void load_noise_cubic(const load_signal *load, int64_t k, double coefficients[4]) {
+    const uint64_t place = (uint64_t)k;
+    const double p0 = value_of_place(load->stream, place - 1);
+    const double p1 = value_of_place(load->stream, place);
+    const double p2 = value_of_place(load->stream, place + 1);
+    const double p3 = value_of_place(load->stream, place + 2);
+    const double half = 0.5 * load->amplitude;
 
-    return p1 + 0.5 * s * (slope + s * (square + s * cube));
+    coefficients[0] = load->amplitude * p1;
+    coefficients[1] = half * (p2 - p0);
+    coefficients[2] = half * (2.0 * p0 - 5.0 * p1 + 4.0 * p2 - p3);
+    coefficients[3] = half * (3.0 * (p1 - p2) + p3 - p0);
 }
 
 double load_torque(const load_signal *load, double time) {
@@ -52,12 +58,10 @@ double load_torque(const load_signal *load, double time) {
 
     /* Conversion truncates towards zero, which is upwards before t = 0. */
     const int64_t truncated = (int64_t)position;
-    const int64_t interval = truncated - (position < (double)truncated);
-    const uint64_t place = (uint64_t)interval;
-    const double noise =
-        catmull_rom(value_of_place(load->stream, place - 1), value_of_place(load->stream, place),
-                    value_of_place(load->stream, place + 1),
-                    value_of_place(load->stream, place + 2), position - (double)interval);
+    const int64_t k = truncated - (position < (double)truncated);
+    const double s = position - (double)k;
+    double c[4];
 
-    return load->mean + load->amplitude * noise;
+    load_noise_cubic(load, k, c);
+    return load->mean + c[0] + s * (c[1] + s * (c[2] + s * c[3]));
 }

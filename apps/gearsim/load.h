@@ -22,6 +22,9 @@ typedef struct load_signal {
 
 load_signal load_create(double mean, double amplitude, double interval, uint64_t seed);
 
+/* Coefficients of the noise between the values k and k + 1: powers of (time / interval - k), N m. */
+void load_noise_cubic(const load_signal *load, int64_t k, double coefficients[4]);
+
 /* M_w(t), constant cost at any t (N m). */
 double load_torque(const load_signal *load, double time);
 

@@ -19,6 +19,16 @@ static const double speed_tolerance_factor = 20.0;
  */
 static const double arc_tolerance_factor = 10.0;
 
+/*
+ * Steps per tooth at least. With less, a solver that has met nothing for a while could step from tooth to
+ * tooth and never see that the mesh changes in between.
+ */
+static const double steps_per_tooth = 8.0;
+
+/* Bounds of the damping ratio that the response to the noise is computed with: it has to forget, and to
+ * vibrate. */
+static const double smallest_ratio = 0.02, largest_ratio = 0.5;
+
 static double square(double value) {
     return value * value;
 }
@@ -60,7 +70,23 @@ static double mobility(const gear_model *model) {
     return model->pinion_mobility + model->wheel_mobility;
 }
 
-void model_init(gear_model *model, const config *conf, const gearbox *gears) {
+/* Response with the damping of the mesh itself, so that as little as possible is left to the solver. */
+static int init_response(gear_model *model) {
+    const double w0 = model->natural_frequency;
+    const double pairs = model->mean_stiffness / model->stiffness;
+    const double ratio = 0.5 * model->damping * pairs * mobility(model) / w0;
+    const double bounded = fmin(fmax(ratio, smallest_ratio), largest_ratio);
+
+    model->noise = NULL;
+    model->response_decay = bounded * w0;
+    if (response_is_useful(&model->load, w0)) {
+        model->noise = response_create(&model->load, model->torque_to_offset, w0, bounded);
+        return model->noise != NULL ? 0 : EXIT_RUN_FAILED;
+    }
+    return 0;
+}
+
+int model_init(gear_model *model, const config *conf, const gearbox *gears) {
     model->gears = gears;
     model->mesh = conf->model;
     model->drive = drive_create(conf);
@@ -70,6 +96,12 @@ void model_init(gear_model *model, const config *conf, const gearbox *gears) {
     init_bodies(model, conf);
 
     model->natural_frequency = sqrt(model->mean_stiffness * mobility(model));
+    return init_response(model);
+}
+
+void model_free(gear_model *model) {
+    response_free(model->noise);
+    model->noise = NULL;
 }
 
 /* ---------------------------------------------------------------------------------------------
@@ -127,11 +159,31 @@ int model_quasi_static_start(const gear_model *model, double state[]) {
  * Right-hand side
  * ------------------------------------------------------------------------------------------- */
 
+/* Part of x that is not in the state. */
+static response_value noise_response(const gear_model *model, double time) {
+    const response_value none = {0.0, 0.0};
+
+    return model->noise != NULL ? response_at(model->noise, time) : none;
+}
+
+/* x'' or u'' without the force: what drive and load would do, and what p assumes of the mesh. */
+static double applied_acceleration(const gear_model *model, double time) {
+    if (model->noise == NULL) {
+        return model->drive_to_offset + model->torque_to_offset * load_torque(&model->load, time);
+    }
+
+    const response_value noise = response_at(model->noise, time);
+    return model->drive_to_offset + model->torque_to_offset * model->load.mean +
+           2.0 * model->response_decay * noise.rate +
+           square(model->natural_frequency) * noise.offset;
+}
+
 gear_motion model_motion(const gear_model *model, double time, const double state[]) {
     const double speed_unit = model->natural_frequency * micrometre;
+    const response_value noise = noise_response(model, time);
     gear_motion motion = {
-        .offset = state[STATE_OFFSET] * micrometre,
-        .offset_rate = state[STATE_OFFSET_RATE] * speed_unit,
+        .offset = state[STATE_OFFSET] * micrometre + noise.offset,
+        .offset_rate = state[STATE_OFFSET_RATE] * speed_unit + noise.rate,
     };
 
     if (model->states == STATES_MAX) {
@@ -183,8 +235,7 @@ int model_derivative(const gear_model *model, double time, const double state[],
     const double w0 = model->natural_frequency;
     const double to_state = 1.0 / (w0 * micrometre);
     const double force = model_force(model, &penetration);
-    const double applied =
-        model->drive_to_offset + model->torque_to_offset * load_torque(&model->load, time);
+    const double applied = applied_acceleration(model, time);
 
     derivative[STATE_OFFSET] = w0 * state[STATE_OFFSET_RATE];
     derivative[STATE_OFFSET_RATE] = (applied - mobility(model) * force) * to_state;
@@ -271,16 +322,40 @@ int model_jacobian(const gear_model *model, double time, const double state[],
 }
 
 /* ---------------------------------------------------------------------------------------------
- * Tolerances
+ * Steps and tolerances
  * ------------------------------------------------------------------------------------------- */
+
+/* Time for a share of a tooth, from the speed at hand and the acceleration without contact. */
+static double tooth_step(const gear_model *model, double time, const double state[]) {
+    const gm_gear *const pinion = &model->gears->pair.pinion;
+    const double angle = pinion->pitch_angle / steps_per_tooth;
+    const double speed = fabs(model_motion(model, time, state).pinion_speed);
+    const double acceleration = fabs(model->drive_to_offset) / pinion->base_radius;
+    const double reach = speed + sqrt(speed * speed + 2.0 * acceleration * angle);
+
+    return reach > 0.0 ? 2.0 * angle / reach : 0.0;
+}
+
+double model_max_step(const gear_model *model, double time, const double state[]) {
+    const double step = model->mesh == MODEL_3D ? tooth_step(model, time, state) : 0.0;
+    const double reach = model->noise != NULL ? response_reach(model->noise) : 0.0;
+
+    if (step > 0.0 && reach > 0.0) {
+        return fmin(step, reach);
+    }
+    return step > 0.0 ? step : reach;
+}
 
 void model_error_weights(const gear_model *model, double relative_tolerance,
                          double absolute_tolerance, const double state[], double weights[]) {
     const double offset_tolerance = absolute_tolerance / micrometre;
     const double speed_tolerance = speed_tolerance_factor * offset_tolerance;
+    const double clearance = 0.5 * fabs(model->gears->pair.backlash) / micrometre;
 
-    weights[STATE_OFFSET] =
-        1.0 / (relative_tolerance * fabs(state[STATE_OFFSET]) + offset_tolerance);
+    /* Relative to the penetration: half the backlash is a choice of where zero is. */
+    const double depth = fmax(fabs(state[STATE_OFFSET]) - clearance, 0.0);
+
+    weights[STATE_OFFSET] = 1.0 / (relative_tolerance * depth + offset_tolerance);
     weights[STATE_OFFSET_RATE] =
         1.0 / (relative_tolerance * fabs(state[STATE_OFFSET_RATE]) + speed_tolerance);
 

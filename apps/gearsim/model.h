@@ -14,6 +14,11 @@
  * The solver's state is scaled to the size of the vibration: micrometres, and micrometres times the
  * natural frequency. With an absolute wheel angle of thousands of radians as state, its tolerance
  * would swallow the whole penetration.
+ *
+ * With a noisy load the state is not x but u = x - p, where p(t) is what the noise does to a linear mesh,
+ * known in closed form (response.h). As p'' = noise - 2 zeta w0 p' - w0^2 p,
+ *
+ *     u'' = a(t) without the noise + 2 zeta w0 p' + w0^2 p - mobility F(u + p, u' + p').
  */
 #ifndef GEARSIM_MODEL_H
 #define GEARSIM_MODEL_H
@@ -21,11 +26,12 @@
 #include "drive.h"
 #include "gearbox.h"
 #include "load.h"
+#include "response.h"
 
 /* Places in the state vector. A prescribed speed needs the first two only. */
 enum model_state {
-    STATE_OFFSET,       /* x / 1 um */
-    STATE_OFFSET_RATE,  /* x' / (w0 1 um) */
+    STATE_OFFSET,       /* u / 1 um */
+    STATE_OFFSET_RATE,  /* u' / (w0 1 um) */
     STATE_PINION_ARC,   /* r_bp phi_p / 1 um */
     STATE_PINION_SPEED, /* r_bp phi_p' / (w0 1 um) */
     STATES_MAX
@@ -44,6 +50,8 @@ typedef struct gear_model {
     double torque_to_offset;  /* r_bw / I_w: from the load to x'' (1/(kg m)) */
     double drive_to_offset;   /* x'' that the drive alone causes (m/s2) */
     double natural_frequency; /* w0 (rad/s) */
+    double response_decay;    /* zeta w0 of the response (1/s) */
+    response *noise;          /* to the noise; NULL: the load is as it is, and u = x */
     int states;
 } gear_model;
 
@@ -55,7 +63,9 @@ typedef struct gear_motion {
     double offset_rate; /* x' (m/s) */
 } gear_motion;
 
-void model_init(gear_model *model, const config *conf, const gearbox *gears);
+/* Returns 0, or EXIT_RUN_FAILED if there is no memory. */
+int model_init(gear_model *model, const config *conf, const gearbox *gears);
+void model_free(gear_model *model);
 
 /* State in which x' = x'' = 0 at the mean load. Returns a library status. */
 int model_quasi_static_start(const gear_model *model, double state[]);
@@ -76,7 +86,11 @@ int model_derivative(const gear_model *model, double time, const double state[],
 int model_jacobian(const gear_model *model, double time, const double state[],
                    double jacobian[STATES_MAX][STATES_MAX]);
 
-/* Reciprocals of the errors that the solver may make in one step; absolute tolerance of x in m. */
+/* Longest step at a time that cannot miss a tooth (s); 0 = any. */
+double model_max_step(const gear_model *model, double time, const double state[]);
+
+/* Reciprocals of the errors that the solver may make in one step; absolute tolerance of x in m, the
+ * relative one of its part beyond the backlash. */
 void model_error_weights(const gear_model *model, double relative_tolerance,
                          double absolute_tolerance, const double state[], double weights[]);
 

@@ -1,0 +1,117 @@
+/* SPDX-FileCopyrightText: The gearmesh authors */
+/* SPDX-License-Identifier: BSD-3-Clause */
+#include "response.h"
+
+#include <math.h>
+#include <stdlib.h>
+
+/* Solutions between two noise values that are kept; a solver looks back by a step or two. */
+enum { KEPT = 512 };
+
+/* Below, the coefficients of the polynomial are 1e4 times as large as their sum. */
+static const double shortest_interval = 1e-2; /* rad of the frequency */
+
+/* p = polynomial + exp(-decay s) (cosine cos(wd s) + sine sin(wd s)), s = time since its start. */
+typedef struct segment {
+    double polynomial[4];
+    double cosine, sine;
+} segment;
+
+struct response {
+    load_signal load;
+    double gain;
+    double square;        /* w0^2 */
+    double decay;         /* zeta w0 */
+    double damped;        /* wd = w0 sqrt(1 - zeta^2) */
+    int64_t next;         /* first segment that has not been computed */
+    response_value start; /* p and p' at its start */
+    segment kept[KEPT];   /* segment k at k mod KEPT */
+};
+
+int response_is_useful(const load_signal *load, double frequency) {
+    return load->amplitude > 0.0 && frequency * load->interval >= shortest_interval;
+}
+
+static void restart(response *linear) {
+    linear->next = 0;
+    linear->start = (response_value){0.0, 0.0};
+}
+
+response *response_create(const load_signal *load, double gain, double frequency,
+                          double damping_ratio) {
+    response *const created = malloc(sizeof *created);
+
+    if (created != NULL) {
+        created->load = *load;
+        created->gain = gain;
+        created->square = frequency * frequency;
+        created->decay = damping_ratio * frequency;
+        created->damped = frequency * sqrt(1.0 - damping_ratio * damping_ratio);
+        restart(created);
+    }
+    return created;
+}
+
+void response_free(response *linear) {
+    free(linear);
+}
+
+double response_reach(const response *linear) {
+    return (KEPT / 2) * linear->load.interval;
+}
+
+/* Polynomial that solves the equation for the noise of segment k: power by power from the highest. */
+static void particular_solution(const response *linear, int64_t k, double q[4]) {
+    const double h = linear->load.interval;
+    const double two_decay = 2.0 * linear->decay;
+    const double scale = linear->gain / linear->square;
+    double noise[4]; /* over s / h */
+
+    load_noise_cubic(&linear->load, k, noise);
+
+    q[3] = scale * noise[3] / (h * h * h);
+    q[2] = scale * noise[2] / (h * h) - 3.0 * two_decay * q[3] / linear->square;
+    q[1] = scale * noise[1] / h - (2.0 * two_decay * q[2] + 6.0 * q[3]) / linear->square;
+    q[0] = scale * noise[0] - (two_decay * q[1] + 2.0 * q[2]) / linear->square;
+}
+
+static response_value evaluate(const response *linear, const segment *part, double s) {
+    const double *const q = part->polynomial;
+    const double envelope = exp(-linear->decay * s);
+    const double c = envelope * cos(linear->damped * s);
+    const double d = envelope * sin(linear->damped * s);
+    const double rate_cosine = linear->damped * part->sine - linear->decay * part->cosine;
+    const double rate_sine = -linear->damped * part->cosine - linear->decay * part->sine;
+
+    const response_value value = {
+        .offset = q[0] + s * (q[1] + s * (q[2] + s * q[3])) + part->cosine * c + part->sine * d,
+        .rate = q[1] + s * (2.0 * q[2] + s * 3.0 * q[3]) + rate_cosine * c + rate_sine * d,
+    };
+    return value;
+}
+
+/* Computes one more segment: its free vibration makes p and p' continuous. */
+static void extend(response *linear) {
+    segment *const part = &linear->kept[linear->next % KEPT];
+
+    particular_solution(linear, linear->next, part->polynomial);
+    part->cosine = linear->start.offset - part->polynomial[0];
+    part->sine =
+        (linear->start.rate - part->polynomial[1] + linear->decay * part->cosine) / linear->damped;
+
+    linear->start = evaluate(linear, part, linear->load.interval);
+    ++linear->next;
+}
+
+response_value response_at(response *linear, double time) {
+    const double interval = linear->load.interval;
+    const int64_t k = time > 0.0 ? (int64_t)(time / interval) : 0;
+
+    if (k < linear->next - KEPT) {
+        restart(linear);
+    }
+    while (k >= linear->next) {
+        extend(linear);
+    }
+    return evaluate(linear, &linear->kept[k % KEPT], time - (double)k * interval);
+}
