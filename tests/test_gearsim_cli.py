@@ -1,0 +1,921 @@
+#!/usr/bin/env python3
+# SPDX-FileCopyrightText: The gearmesh authors
+# SPDX-License-Identifier: BSD-3-Clause
+"""
+The command line of gearsim: options, INI files, flank files, --geometry, and above all bad input.
+
+    test_gearsim_cli.py GEARSIM [-v] [name of a test]...
+
+Every refusal must name the place (file and line, or the option), the key and the value, end with exit
+code 2, leave an existing result as it was and nothing else behind.
+"""
+import math
+import os
+import re
+import subprocess
+import sys
+import tempfile
+import unittest
+
+GEARSIM = os.environ.get("GEARSIM", "gearsim")
+EXAMPLE = os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "data", "example", "params.ini")
+OLD_RESULT = "an older result\n"
+
+# A run of a few milliseconds: the gears of data/paper/.
+PARAMS = """\
+[gears]
+pinion_teeth = 45
+wheel_teeth = 41
+normal_module_mm = 1.65
+normal_pressure_angle_deg = 16
+helix_angle_deg = 33
+center_distance_mm = 85
+face_width_mm = 17.5
+backlash_um = 100
+pinion_tip_diameter_mm = 93.876780
+wheel_tip_diameter_mm = 86.007182
+[mesh]
+stiffness_N_per_m = 1.05e8
+damping_Ns_per_m = 844.361
+[bodies]
+wheel_inertia_kg_m2 = 2.1e-3
+[drive]
+start_rpm = 1000
+end_rpm = 1100
+[load]
+mean_Nm = 20
+[analysis]
+duration_s = 0.01
+"""
+
+TORQUE = ["--set", "drive.kind=torque", "--set", "drive.torque_Nm=21", "--set", "bodies.pinion_inertia_kg_m2=2e-3"]
+
+DEVIATIONS = """\
+tooth,flank,t1,t2,deviation_um
+*,*,0,0,0
+*,*,0,1,1
+*,*,1,0,0
+*,*,1,1,1
+"""
+
+
+def with_key(params, section, key, value):
+    """The text with the key replaced, or put in front of its section, or in a new section."""
+    line = f"{key} = {value}\n"
+    text, count = re.subn(rf"(?m)^{re.escape(key)} = .*\n", lambda _: line, params)
+    if count == 0:
+        text, count = re.subn(rf"(?m)^\[{section}\]\n", lambda match: match.group(0) + line, params)
+    return text if count else params + f"[{section}]\n" + line
+
+
+def without_key(params, key):
+    text, count = re.subn(rf"(?m)^{re.escape(key)} = .*\n", "", params)
+    assert count == 1
+    return text
+
+
+def line_of(params, beginning):
+    """Number of the first line that begins so."""
+    return 1 + next(i for i, line in enumerate(params.split("\n")) if line.startswith(beginning))
+
+
+class Case(unittest.TestCase):
+    """A folder of its own for every test, with a result from before."""
+
+    def setUp(self):
+        self.scratch = tempfile.TemporaryDirectory()
+        self.addCleanup(self.scratch.cleanup)
+        self.folder = self.scratch.name
+        self.write("run.csv", OLD_RESULT)
+
+    def path(self, name):
+        return os.path.join(self.folder, name)
+
+    def write(self, name, text):
+        mode = "wb" if isinstance(text, bytes) else "w"
+        with open(self.path(name), mode) as file:
+            file.write(text)
+
+    def read(self, name):
+        with open(self.path(name)) as file:
+            return file.read()
+
+    def run_gearsim(self, *arguments, folder=None):
+        return subprocess.run([GEARSIM, *arguments], cwd=folder or self.folder, capture_output=True, text=True,
+                              errors="replace", stdin=subprocess.DEVNULL, timeout=60)
+
+    def accepted(self, *arguments, folder=None):
+        result = self.run_gearsim(*arguments, folder=folder)
+        self.assertEqual(result.returncode, 0, result.stderr)
+        return result
+
+    def refused(self, *fragments, params=PARAMS, arguments=()):
+        """Runs the parameters: exit code 2, a message with all fragments, and no file changed."""
+        if params is not None:
+            self.write("run.ini", params)
+        before = sorted(os.listdir(self.folder))
+        result = self.run_gearsim("run.ini", *arguments)
+        self.assertEqual(result.returncode, 2, f"stdout: {result.stdout}\nstderr: {result.stderr}")
+        for fragment in fragments:
+            self.assertIn(fragment, result.stderr)
+        self.assertEqual(result.stdout, "")
+        self.assertEqual(self.read("run.csv"), OLD_RESULT)
+        self.assertEqual(sorted(os.listdir(self.folder)), before)
+        return result.stderr
+
+    def refused_value(self, section, key, value, *fragments):
+        """The same for one bad value: the message names line, key and value; so does that of --set."""
+        params = with_key(PARAMS, section, key, value)
+        line = line_of(params, f"{key} = ")
+        self.refused(f"run.ini:{line}: {section}.{key}: ", f"(got {value})", *fragments, params=params)
+        self.refused(f"--set {section}.{key}: ", f"(got {value})", *fragments,
+                     arguments=["--set", f"{section}.{key}={value}"])
+
+
+class Options(Case):
+    def test_help_lists_all_options_exit_codes_and_keys(self):
+        text = self.accepted("--help").stdout
+        for option in ["--set section.key=value", "--output FILE", "--quiet", "--version", "--help", "--geometry",
+                       "--check"]:
+            self.assertIn(option, text)
+        self.assertRegex(text, r"0 done; 1 .*; 2 .*; 130 interrupted")
+        for line in ["helix_angle_deg           [0]", "profile_blend             [0.1]", "relative_tolerance        [1e-4]",
+                     "rate_Hz                   [25600]", "oversampling              [4]", "seed                      [1]",
+                     "noise_interval_s          [1e-5]", "positions                 [200]"]:
+            self.assertIn(line, text)
+        self.assertGreaterEqual(len(re.findall(r"(?m)^  [a-z]\w+ ", text)), 51)
+
+    def test_version_is_that_of_the_library(self):
+        self.assertRegex(self.accepted("--version").stdout, r"^gearsim \d+\.\d+\.\d+\n$")
+
+    def test_options_stand_anywhere_and_take_their_value_either_way(self):
+        self.write("run.ini", PARAMS)
+        for arguments in [["--set", "gears.helix_angle_deg=0", "run.ini", "--geometry"],
+                          ["--geometry", "--set=gears.helix_angle_deg=0", "run.ini"],
+                          ["run.ini", "--geometry", "--set", "gears.helix_angle_deg = 0"],
+                          ["--geometry", "--set=gears.helix_angle_deg=0", "--", "run.ini"]]:
+            self.assertIn("\noverlap_ratio = 0\n", self.accepted(*arguments).stdout)
+
+    def test_wrong_usage_is_refused(self):
+        self.write("run.ini", PARAMS)
+        self.write("other.ini", PARAMS)
+        for arguments, fragment in [([], "no INI file"),
+                                    (["--check"], "no INI file"),
+                                    (["run.ini", "--chekc"], "unknown option --chekc"),
+                                    (["run.ini", "-q"], "unknown option -q"),
+                                    (["run.ini", "--set"], "a value is missing behind --set"),
+                                    (["run.ini", "--output"], "a value is missing behind --output"),
+                                    (["run.ini", "other.ini"], "a second INI file"),
+                                    (["run.ini", "--quiet=1"], "no value expected: --quiet=1"),
+                                    (["run.ini", "--check", "--geometry"], "exclude each other"),
+                                    ([""], "the name of the INI file is empty")]:
+            with self.subTest(arguments):
+                result = self.run_gearsim(*arguments)
+                self.assertEqual(result.returncode, 2)
+                self.assertIn(fragment, result.stderr)
+                self.assertIn("usage: gearsim PARAMS.ini", result.stderr)
+
+    @unittest.skipUnless(os.path.exists("/dev/full"), "needs /dev/full")
+    def test_full_disk_behind_stdout_fails(self):
+        self.write("run.ini", PARAMS)
+        for arguments in [["--help"], ["run.ini", "--geometry"]]:
+            with open("/dev/full", "w") as full:
+                result = subprocess.run([GEARSIM, *arguments], cwd=self.folder, stdout=full, stderr=subprocess.PIPE)
+            self.assertEqual(result.returncode, 1)
+            self.assertIn(b"cannot write to stdout", result.stderr)
+
+    def test_check_writes_nothing(self):
+        self.write("run.ini", PARAMS)
+        result = self.accepted("run.ini", "--check")
+        self.assertEqual((result.stdout, result.stderr), ("", ""))
+        self.assertEqual(sorted(os.listdir(self.folder)), ["run.csv", "run.ini"])
+        self.assertEqual(self.read("run.csv"), OLD_RESULT)
+
+    def test_check_finds_what_a_run_would(self):
+        self.refused("run.ini:", "output.columns", "'nonsense'", arguments=["--check"],
+                     params=with_key(PARAMS, "output", "columns", "time_s,nonsense"))
+        self.refused("none.csv", "flanks.pinion", arguments=["--check"],
+                     params=with_key(PARAMS, "flanks", "pinion", "none.csv"))
+
+    def test_set_overrides_the_file_and_the_last_wins(self):
+        self.write("run.ini", PARAMS)
+        text = self.accepted("run.ini", "--geometry", "--set", "gears.face_width_mm=5", "--set",
+                             "gears.face_width_mm=0.001", "--set", "gears.helix_angle_deg=0").stdout
+        self.assertIn("\noverlap_ratio = 0\n", text)
+        text = self.accepted("run.ini", "--geometry", "--set", "gears.helix_angle_deg=0", "--set",
+                             "gears.helix_angle_deg=-33").stdout
+        self.assertIn("\nbase_helix_angle_deg = -31.57", text)
+
+    def test_bad_overrides_are_refused(self):
+        for override, *fragments in [["load.mean_Nm", "--set load.mean_Nm: ", "section.key=value"],
+                                     ["mean_Nm=3", "--set mean_Nm=3: ", "section.key=value"],
+                                     ["gears.helix_angel_deg=3", "--set gears.helix_angel_deg: unknown key",
+                                      "did you mean helix_angle_deg?"],
+                                     ["gear.helix_angle_deg=3", "--set [gear]: unknown section", "[gears]"],
+                                     ["load.mean_Nm=", "--set load.mean_Nm: no value"],
+                                     ["load.mean_Nm=1\n2", "--set ", "control character"]]:
+            with self.subTest(override):
+                self.refused(*fragments, arguments=["--set", override])
+
+    def test_override_of_a_key_is_checked_even_if_a_later_one_wins(self):
+        self.refused("--set load.mean_Nm: ", "(got much)",
+                     arguments=["--set", "load.mean_Nm=much", "--set", "load.mean_Nm=3"])
+
+
+class Text(Case):
+    """How the text of an INI file reads."""
+
+    def test_missing_file(self):
+        self.refused("run.ini: ", "No such file", params=None)
+
+    def test_folder_in_place_of_the_file(self):
+        os.mkdir(self.path("run.ini"))
+        self.refused("run.ini: ", "folder", params=None)
+
+    def test_empty_file_lacks_gears(self):
+        text = self.refused("run.ini: gears.pinion_teeth: missing", "run.ini: gears.face_width_mm: missing", params="")
+        self.assertNotIn("helix_angle_deg", text)
+
+    def test_sparse_file_of_zeros_fails_at_once(self):
+        self.write("run.ini", "")
+        os.truncate(self.path("run.ini"), 2 << 30)
+        self.refused("run.ini:1: ", "NUL byte", params=None)
+
+    def test_nul_byte_is_an_error(self):
+        self.refused("run.ini:3: ", "NUL byte", params=PARAMS.replace("wheel_teeth = 41", "wheel_teeth = 4\0001"))
+
+    def test_control_character_is_an_error(self):
+        self.refused("run.ini:3: ", "control character", params=PARAMS.replace("wheel_teeth", "wheel\x07teeth"))
+
+    def test_line_too_long_is_an_error_and_never_split(self):
+        for length in [300, 5000, 1 << 20]:
+            with self.subTest(length):
+                params = PARAMS.replace("[mesh]\n", "[flanks]\npinion = " + "a" * length + "\n[mesh]\n")
+                self.refused("run.ini:13: ", "too long", params=params)
+
+    def test_comment_too_long_for_the_reader_is_an_error(self):
+        self.refused("run.ini:1: ", "too long: at most 4095", params="; " + "x" * 5000 + "\n" + PARAMS)
+
+    def test_long_comment_is_no_long_line(self):
+        self.write("run.ini", "; " + "x" * 4000 + "\n" + PARAMS.replace("= 45\n", "= 45 ; " + "y" * 3000 + "\n"))
+        self.accepted("run.ini", "--check")
+
+    def test_byte_order_mark_and_crlf_are_accepted(self):
+        self.write("plain.ini", PARAMS)
+        self.write("run.ini", b"\xef\xbb\xbf" + PARAMS.replace("\n", "\r\n").encode())
+        plain = self.accepted("plain.ini", "--geometry").stdout
+        self.assertIn("overlap_ratio = ", plain)
+        self.assertEqual(self.accepted("run.ini", "--geometry").stdout, plain)
+
+    def test_utf16_is_refused(self):
+        self.write("run.ini", PARAMS.encode("utf-16"))
+        self.refused("run.ini:1: ", "UTF-8", params=None)
+
+    def test_comments_and_leading_white_space(self):
+        self.write("plain.ini", PARAMS)
+        lines = [f"  \t{line}\t# one = more ; of it" for line in PARAMS.split("\n")]
+        self.write("run.ini", "; first\n\n#second\n" + "\n".join(lines))
+        plain = self.accepted("plain.ini", "--geometry").stdout
+        self.assertIn("overlap_ratio = ", plain)
+        self.assertEqual(self.accepted("run.ini", "--geometry").stdout, plain)
+
+    def test_line_without_equals_sign(self):
+        self.refused("run.ini:12: ", "not understood", params=PARAMS.replace("[mesh]\n", "nonsense\n[mesh]\n"))
+
+    def test_text_behind_a_section(self):
+        self.refused("run.ini:12: ", "alone on its line", params=PARAMS.replace("[mesh]\n", "[mesh] x\n"))
+
+    def test_key_before_any_section(self):
+        self.refused("run.ini:1: ", "pinion_teeth", "without a section", params="pinion_teeth = 45\n")
+
+    def test_empty_value(self):
+        self.refused("run.ini:2: gears.pinion_teeth: no value", params=PARAMS.replace("pinion_teeth = 45", "pinion_teeth ="))
+
+    def test_last_line_needs_no_end(self):
+        self.write("run.ini", PARAMS.rstrip("\n"))
+        self.accepted("run.ini", "--check")
+
+
+class Names(Case):
+    def test_unknown_key_names_the_likely_one(self):
+        params = PARAMS.replace("helix_angle_deg", "helix_angel_deg")
+        self.refused("run.ini:6: gears.helix_angel_deg: unknown key", "did you mean helix_angle_deg?", params=params)
+
+    def test_key_of_another_section_is_told(self):
+        self.refused("run.ini:2: gears.duration_s: unknown key", "duration_s of [analysis]",
+                     params=PARAMS.replace("[gears]\n", "[gears]\nduration_s = 1\n"))
+
+    def test_names_are_case_sensitive(self):
+        self.refused("run.ini:2: gears.Pinion_teeth: unknown key", "did you mean pinion_teeth?",
+                     params=PARAMS.replace("pinion_teeth", "Pinion_teeth"))
+        self.refused("run.ini:2: gears.PINION_TEETH: unknown key", "did you mean pinion_teeth?",
+                     params=PARAMS.replace("pinion_teeth", "PINION_TEETH"))
+        self.refused("run.ini:1: [Gears]: unknown section", "did you mean [gears]?",
+                     params=PARAMS.replace("[gears]", "[Gears]"))
+
+    def test_unknown_section(self):
+        self.refused("run.ini:12: [mash]: unknown section", "did you mean [mesh]?",
+                     params=PARAMS.replace("[mesh]", "[mash]"))
+
+    def test_unknown_section_without_keys(self):
+        line = 1 + PARAMS.count("\n")
+        self.refused(f"run.ini:{line}: [nothing_like_it]: unknown section", params=PARAMS + "[nothing_like_it]\n")
+
+    def test_repeated_section(self):
+        line = 1 + PARAMS.count("\n")
+        self.refused(f"run.ini:{line}: [mesh]: repeated section", "line 12", params=PARAMS + "[mesh]\n")
+
+    def test_repeated_key(self):
+        self.refused("run.ini:3: gears.pinion_teeth: repeated key", "line 2",
+                     params=PARAMS.replace("pinion_teeth = 45\n", "pinion_teeth = 45\npinion_teeth = 45\n"))
+
+    def test_missing_keys(self):
+        for section, key, condition in [("gears", "pinion_teeth", ""), ("gears", "wheel_teeth", ""),
+                                        ("gears", "normal_module_mm", ""), ("gears", "normal_pressure_angle_deg", ""),
+                                        ("gears", "center_distance_mm", ""), ("gears", "face_width_mm", ""),
+                                        ("mesh", "stiffness_N_per_m", "for a run"), ("load", "mean_Nm", "for a run"),
+                                        ("bodies", "wheel_inertia_kg_m2", "for a dynamic run"),
+                                        ("drive", "start_rpm", "for drive.kind = speed"),
+                                        ("drive", "end_rpm", "for drive.kind = speed"),
+                                        ("analysis", "duration_s", "for a dynamic run")]:
+            with self.subTest(key):
+                self.refused(f"run.ini: {section}.{key}: missing", condition, f"[{section}]",
+                             params=without_key(PARAMS, key))
+
+    def test_torque_drive_needs_torque_and_pinion_inertia(self):
+        text = self.refused("run.ini: drive.torque_Nm: missing, but required for drive.kind = torque",
+                            "run.ini: bodies.pinion_inertia_kg_m2: missing",
+                            params=without_key(without_key(PARAMS, "start_rpm"), "end_rpm"),
+                            arguments=["--set", "drive.kind=torque"])
+        self.assertNotIn("_rpm", text)
+
+    def test_missing_section(self):
+        self.refused("run.ini: analysis.duration_s: missing", "[analysis]",
+                     params=PARAMS.replace("[analysis]\n", "").replace("duration_s = 0.01\n", ""))
+
+    def test_geometry_needs_gears_only(self):
+        self.write("run.ini", PARAMS[:PARAMS.index("[mesh]")])
+        text = self.accepted("run.ini", "--geometry").stdout
+        self.assertNotIn("stiffness", text)
+        self.assertNotIn("eigenfrequency", text)
+        self.assertIn("mesh_frequency_per_rpm_Hz = 0.75\n", text)
+        self.refused("run.ini: mesh.stiffness_N_per_m: missing", params=None)
+        self.refused("run.ini: gears.wheel_teeth: missing", arguments=["--geometry"],
+                     params=without_key(PARAMS, "wheel_teeth"))
+
+    def test_keys_that_are_not_used_are_warned_of(self):
+        self.write("run.ini", with_key(PARAMS, "drive", "torque_Nm", "20"))
+        line = line_of(self.read("run.ini"), "torque_Nm")
+        warning = f"run.ini:{line}: drive.torque_Nm: warning: not used with drive.kind = speed\n"
+        self.assertEqual(self.accepted("run.ini", "--check").stderr, warning)
+        self.assertEqual(self.accepted("run.ini", "--check", "--quiet").stderr, "")
+
+        self.write("run.ini", PARAMS)
+        for arguments, name, reason in [(["analysis.positions=3"], "analysis.positions", "analysis.type = dynamic"),
+                                        (["mesh.simple_stiffness_N_per_m=1e8"], "mesh.simple_stiffness_N_per_m",
+                                         "mesh.model = 3d"),
+                                        (["mesh.model=simple", "flanks.scale=2"], "flanks.scale", "mesh.model = simple"),
+                                        (["analysis.type=static"], "analysis.duration_s", "analysis.type = static"),
+                                        (TORQUE[1::2], "drive.end_rpm", "drive.kind = torque")]:
+            with self.subTest(name):
+                options = [part for argument in arguments for part in ("--set", argument)]
+                text = self.accepted("run.ini", "--check", *options).stderr
+                self.assertIn(f"{name}: warning: not used with {reason}\n", text)
+
+
+class Values(Case):
+    def test_what_is_no_number(self):
+        for value in ["much", "nan", "inf", "-infinity", "0x10", "1.5mm", "1,65", "1.65,", "1 2", "1e", ".", "+-1", "1e5.5",
+                      "--1", "1d3"]:
+            with self.subTest(value):
+                self.refused_value("gears", "normal_module_mm", value, "not a number")
+
+    def test_decimal_comma_is_told(self):
+        self.refused_value("gears", "normal_module_mm", "1,65", "decimal point")
+
+    def test_number_beyond_double(self):
+        self.refused_value("load", "mean_Nm", "1e400", "too large")
+        self.refused_value("load", "mean_Nm", "-1e400", "too large")
+
+    def test_plain_numbers_are_accepted(self):
+        self.write("run.ini", PARAMS)
+        for value in ["17.5", "+17.5", "1.75e1", "1.75E+01", "175e-1", "0017.5", "17.50000000000000000000000000000000001"]:
+            text = self.accepted("run.ini", "--geometry", "--set", f"gears.face_width_mm={value}").stdout
+            self.assertIn("overlap_ratio = 1.83870897686087", text)
+        for value in [".5", "5."]:
+            self.accepted("run.ini", "--check", "--set", f"gears.face_width_mm={value}")
+
+    def test_locale_does_not_matter(self):
+        self.write("run.ini", PARAMS)
+        environment = dict(os.environ, LC_ALL="de_DE.UTF-8", LC_NUMERIC="de_DE.UTF-8")
+        result = subprocess.run([GEARSIM, "run.ini", "--geometry"], cwd=self.folder, env=environment, capture_output=True,
+                                text=True)
+        self.assertIn("transverse_module_mm = 1.967399433179", result.stdout)
+
+    def test_ranges(self):
+        for section, key, values, requirement in [
+                ("gears", "pinion_teeth", ["0", "-45", "2", "100001"], "from 3 to 100000"),
+                ("gears", "wheel_teeth", ["0", "-41", "2"], "from 3 to 100000"),
+                ("gears", "normal_module_mm", ["0", "-1.65", "1e-400"], "> 0"),
+                ("gears", "face_width_mm", ["0", "-1"], "> 0"),
+                ("gears", "center_distance_mm", ["0", "-85"], "> 0"),
+                ("gears", "normal_pressure_angle_deg", ["0", "-20", "45"], "between 0 and 45"),
+                ("gears", "helix_angle_deg", ["90", "60", "-60"], "between -60 and 60"),
+                ("mesh", "stiffness_N_per_m", ["0", "-1e8"], "> 0"),
+                ("mesh", "simple_stiffness_N_per_m", ["0"], "> 0"),
+                ("mesh", "damping_Ns_per_m", ["-1"], ">= 0"),
+                ("bodies", "wheel_inertia_kg_m2", ["0", "-2e-3"], "> 0"),
+                ("bodies", "pinion_inertia_kg_m2", ["0", "-2e-3"], "> 0"),
+                ("load", "noise_amplitude_Nm", ["-1"], ">= 0"),
+                ("load", "noise_interval_s", ["0", "-1"], "> 0"),
+                ("flanks", "profile_blend", ["-0.1"], ">= 0"),
+                ("flanks", "profile_from", ["-0.1", "1.1"], "from 0 to 1"),
+                ("flanks", "profile_to", ["-0.1", "1.1"], "from 0 to 1"),
+                ("analysis", "duration_s", ["0", "-1"], "> 0"),
+                ("analysis", "positions", ["0", "-5"], "from 1"),
+                ("solver", "relative_tolerance", ["-1e-9"], ">= 0"),
+                ("solver", "absolute_tolerance_um", ["0", "-1"], "> 0"),
+                ("solver", "max_step_s", ["-1"], ">= 0"),
+                ("output", "rate_Hz", ["0", "-1"], "> 0"),
+                ("output", "oversampling", ["0", "65"], "from 1 to 64"),
+                ("output", "digits", ["2", "18"], "from 3 to 17")]:
+            for value in values:
+                with self.subTest(f"{section}.{key} = {value}"):
+                    self.refused_value(section, key, value, "out of range", f"must be {requirement}")
+
+    def test_bounds_that_are_allowed(self):
+        self.write("run.ini", PARAMS)
+        for override in ["flanks.profile_from=0", "flanks.profile_to=1", "flanks.profile_blend=0", "mesh.damping_Ns_per_m=0",
+                         "solver.relative_tolerance=0", "solver.max_step_s=0", "output.oversampling=1",
+                         "output.oversampling=64", "output.digits=3", "output.digits=17", "load.mean_Nm=-20",
+                         "load.mean_Nm=0", "flanks.scale=-3", "drive.start_rpm=-100", "drive.end_rpm=0"]:
+            with self.subTest(override):
+                self.accepted("run.ini", "--check", "--set", override)
+
+    def test_whole_numbers(self):
+        for section, key in [("gears", "pinion_teeth"), ("output", "oversampling"), ("output", "digits"),
+                             ("analysis", "positions")]:
+            with self.subTest(key):
+                self.refused_value(section, key, "10.5", "not a whole number")
+
+    def test_seed_is_an_unsigned_64_bit_integer(self):
+        self.write("run.ini", PARAMS)
+        for value in ["0", "1", "18446744073709551615"]:
+            self.accepted("run.ini", "--check", "--set", f"load.seed={value}")
+        for value in ["18446744073709551616", "99999999999999999999999"]:
+            self.refused_value("load", "seed", value, "too large", "18446744073709551615")
+        for value in ["-1", "1.5", "1e3", "0x1", "one", "-0"]:
+            self.refused_value("load", "seed", value, "from 0 to 18446744073709551615")
+
+    def test_choices(self):
+        for section, key, choices in [("gears", "base_helix", "iso | paper"), ("mesh", "model", "simple | 3d"),
+                                      ("flanks", "deviation_direction", "normal | transverse"),
+                                      ("drive", "kind", "speed | torque"), ("analysis", "type", "dynamic | static"),
+                                      ("analysis", "period", "mesh | pinion | hunting"),
+                                      ("solver", "method", "bdf | adams")]:
+            for value in ["other", "3D"]:
+                with self.subTest(f"{key} = {value}"):
+                    self.refused_value(section, key, value, f"must be {choices}")
+
+    def test_profile_window_must_not_be_empty(self):
+        params = with_key(PARAMS, "flanks", "profile_from", "0.7")
+        line = line_of(params, "profile_from")
+        for upper in ["0.7", "0.2"]:
+            self.refused(f"run.ini:{line}: flanks.profile_from: ", "flanks.profile_to", f"0.7 and {upper}", params=params,
+                         arguments=["--set", f"flanks.profile_to={upper}"])
+
+    def test_number_of_rows_is_bounded(self):
+        self.refused("--set output.rate_Hz: ", "too many rows", "(got 1e+12", arguments=["--set", "output.rate_Hz=1e12"])
+
+    def test_noise_must_be_countable(self):
+        self.refused("--set load.noise_interval_s: ", "too short", "(got 1e-30)",
+                     arguments=["--set", "load.noise_interval_s=1e-30"])
+
+    def test_static_analysis_needs_load_and_the_3d_model(self):
+        static = ["--set", "analysis.type=static"]
+        self.refused("--set load.mean_Nm: ", "(got 0)", "must not be 0", arguments=static + ["--set", "load.mean_Nm=0"])
+        params = with_key(PARAMS, "mesh", "model", "simple")
+        self.refused(f"run.ini:{line_of(params, 'model')}: mesh.model: ", "(got simple)", "must be 3d", params=params,
+                     arguments=static)
+
+    def test_many_faults_are_told_at_once_but_not_all(self):
+        text = self.refused("run.ini:2: ", "run.ini:4: ",
+                            params=PARAMS.replace("= 45", "= x").replace("= 1.65", "= y"))
+        self.assertEqual(text.count("\n"), 2)
+        junk = "[gears]\n" + "".join(f"junk{i} = 1\n" for i in range(1000))
+        self.assertLess(self.refused("further faults", params=junk).count("\n"), 30)
+
+
+class Geometry(Case):
+    """Gear pairs that cannot be, doubtful ones, and the listing."""
+
+    def listing(self, *arguments, params=PARAMS):
+        self.write("run.ini", params)
+        lines = self.accepted("run.ini", "--geometry", *arguments).stdout.splitlines()
+        return {name: float(value) for name, value in (line.split(" = ") for line in lines)}
+
+    def test_impossible_pairs_name_the_key(self):
+        # Base radii 41.886 and 38.163 mm, so that the axes must be more than 80.049 mm apart.
+        for key, value, requirement in [("center_distance_mm", "80.048", "base radii"),
+                                        ("pinion_tip_diameter_mm", "83.7", "larger than the base diameter"),
+                                        ("wheel_tip_diameter_mm", "76.3", "larger than the base diameter"),
+                                        ("pinion_start_diameter_mm", "93.9", "smaller than the tip diameter"),
+                                        ("wheel_start_diameter_mm", "86.1", "smaller than the tip diameter"),
+                                        ("backlash_um", "1e5", "thicker than 0"),
+                                        ("pinion_tip_diameter_mm", "84", "reach each other")]:
+            with self.subTest(key):
+                self.refused_value("gears", key, value, requirement, "83.771857 and 76.3254697 mm")
+
+    def test_derived_field_at_fault_is_told_without_line(self):
+        # Tip diameters are derived here: too small at this center distance for the teeth to meet.
+        params = without_key(without_key(without_key(PARAMS, "pinion_tip_diameter_mm"), "wheel_tip_diameter_mm"),
+                             "backlash_um")
+        self.refused("run.ini: gears.pinion_tip_diameter_mm: ", "(got none, so it is derived)", params=params,
+                     arguments=["--set", "gears.center_distance_mm=100", "--set", "gears.pinion_profile_shift=0", "--set",
+                                "gears.wheel_profile_shift=0"])
+
+    def doubts(self, *overrides):
+        self.write("run.ini", PARAMS)
+        options = [part for override in overrides for part in ("--set", "gears." + override)]
+        self.assertEqual(self.accepted("run.ini", "--geometry", "--quiet", *options).stderr, "")
+        return self.accepted("run.ini", "--geometry", *options).stderr
+
+    def test_doubtful_gears_are_warned_of_with_numbers(self):
+        self.assertEqual(self.doubts(), "")
+        self.assertRegex(self.doubts("backlash_um=-20"), r"--set gears\.backlash_um: warning: .* -20 um, negative")
+        self.assertRegex(self.doubts("wheel_tip_diameter_mm=80"),
+                         r"run\.ini:7: gears\.center_distance_mm: warning: the transverse contact ratio is 0\.\d+, below 1")
+        self.assertRegex(self.doubts("pinion_tip_diameter_mm=95.6"),
+                         r"gears\.pinion_tip_diameter_mm: warning: .* 0\.\d+ normal modules thick .* 95\.6 mm, less than 0\.2")
+        self.assertRegex(self.doubts("wheel_tip_diameter_mm=88.8"),
+                         r"gears\.wheel_tip_diameter_mm: warning: pointed tip: .* 88\.8 mm")
+        self.assertRegex(self.doubts("pinion_teeth=8", "center_distance_mm=40.5", "helix_angle_deg=0",
+                                     "pinion_tip_diameter_mm=16.5", "wheel_tip_diameter_mm=70.9"),
+                         r"gears\.pinion_teeth: warning: undercut: .* \(8 teeth, profile shift ")
+        self.assertRegex(self.doubts("wheel_start_diameter_mm=77"),
+                         r"gears\.wheel_start_diameter_mm: warning: .* diameter of 77 mm, below the root form")
+
+    def test_start_below_the_base_circle_is_the_base_circle(self):
+        text = self.doubts("pinion_start_diameter_mm=80")
+        self.assertRegex(text, r"gears\.pinion_start_diameter_mm: warning: below the base circle .* 83\.7719 mm is taken")
+        values = self.listing("--set", "gears.pinion_start_diameter_mm=80")
+        self.assertEqual(values["pinion_start_radius_mm"], values["pinion_base_radius_mm"])
+
+    def test_names_and_order_of_the_listing(self):
+        names = """transverse_module_mm, transverse_pressure_angle_deg, working_pressure_angle_deg, base_helix_angle_deg,
+            reference_center_distance_mm, pinion_profile_shift, wheel_profile_shift, pinion_base_radius_mm,
+            wheel_base_radius_mm, pinion_tip_radius_mm, wheel_tip_radius_mm, pinion_start_radius_mm,
+            wheel_start_radius_mm, transverse_base_pitch_mm, line_of_action_mm, path_start_mm, path_end_mm,
+            transverse_contact_ratio, overlap_ratio, total_contact_ratio, backlash_um, mean_mesh_stiffness_N_per_um,
+            eigenfrequency_Hz, mesh_frequency_per_rpm_Hz"""
+        self.assertEqual(list(self.listing()), [name.strip() for name in names.split(",")])
+
+    def test_reference_gear(self):
+        # Derived by independent code in 40 digits, rounded for the documentation of data/paper/.
+        values = self.listing()
+        for name, expected in [("transverse_contact_ratio", "2.123601"), ("overlap_ratio", "1.838709"),
+                               ("total_contact_ratio", "3.962310"), ("pinion_base_radius_mm", "41.885928"),
+                               ("wheel_base_radius_mm", "38.162735"), ("transverse_base_pitch_mm", "5.848379"),
+                               ("path_start_mm", "8.764840"), ("path_end_mm", "21.184463"),
+                               ("line_of_action_mm", "28.586911"), ("pinion_start_radius_mm", "42.793147"),
+                               ("wheel_start_radius_mm", "38.874035"), ("mean_mesh_stiffness_N_per_um", "222.98"),
+                               ("eigenfrequency_Hz", "1979.16"), ("base_helix_angle_deg", "31.57005"),
+                               ("working_pressure_angle_deg", "19.65262"), ("transverse_pressure_angle_deg", "18.87580"),
+                               ("reference_center_distance_mm", "84.598176"), ("backlash_um", "100.0000000"),
+                               ("mesh_frequency_per_rpm_Hz", "0.7500000000")]:
+            with self.subTest(name):
+                # Half a unit in the last place, and a little for tips that are themselves rounded.
+                unit = 10.0 ** -len(expected.split(".")[1])
+                self.assertLessEqual(abs(values[name] - float(expected)), 0.75 * unit)
+        self.assertAlmostEqual(values["pinion_profile_shift"] + values["wheel_profile_shift"], 0.2483897, delta=5e-8)
+
+    def test_reference_cases(self):
+        # Independent implementation of the geometry in 40-digit arithmetic: cases helical_lh_000 and default_000 of
+        # tests/reference/ (SI units there). 1e-12 relative as --geometry promises; the backlash is a difference of
+        # lengths of some 0.1 m, so it cannot be better than their rounding, 1e-16 m.
+        lh = dict(z=(75, 44), m_n=0.004578037969115124, alpha_n=0.39269908169872414, beta=-0.6166179104738768,
+                  d=0.33594416717430053, b=0.029722774301698333, x=(0.3901635544257144, 0.00046073261867057846),
+                  r_a=(0.21707575086681138, 0.1283142260296558), r_s=(0.19167363694876516, 0.11353228937330775))
+        lh_expected = dict(transverse_module_mm=0.005611448420790428, working_pressure_angle_deg=0.4817550953003574,
+                           transverse_pressure_angle_deg=0.46980045510167967, base_helix_angle_deg=-0.5636325077040837,
+                           reference_center_distance_mm=0.3338811810370305, pinion_base_radius_mm=0.18763111785924846,
+                           wheel_base_radius_mm=0.11007692247742577, line_of_action_mm=0.1556547659961992,
+                           transverse_base_pitch_mm=0.01571894777203882, backlash_um=0.0002707872780039442,
+                           path_start_mm=0.08971834404680618, path_end_mm=0.10916247168912388,
+                           transverse_contact_ratio=1.236986592506231, overlap_ratio=1.1950819222495837,
+                           total_contact_ratio=2.432068514755815, wheel_start_radius_mm=0.11353228937330775)
+        default = dict(z=(55, 18), m_n=0.008234025825505666, alpha_n=0.4363323129985824, beta=0.5285457543893307,
+                       d=0.3480342318793109, b=0.18547411724350854, x=(0.1983028957021607, -0.2574579352809819),
+                       r_a=(0.27111472214609456, 0.09096106364510759), r_s=None)
+        default_expected = dict(transverse_module_mm=0.009535184435049613, working_pressure_angle_deg=0.4951290865425684,
+                                base_helix_angle_deg=0.4746544727548213, pinion_base_radius_mm=0.2307271773427474,
+                                wheel_base_radius_mm=0.07551071258489914, transverse_base_pitch_mm=0.026358211102672165,
+                                line_of_action_mm=0.16536680843653173, backlash_um=0.00046287140506285967,
+                                pinion_start_radius_mm=0.25764313652211734, wheel_start_radius_mm=0.07893599491609038,
+                                path_start_mm=0.11465145194197411, path_end_mm=0.14236629587020397,
+                                transverse_contact_ratio=1.0514690780900586, overlap_ratio=3.615690935310353,
+                                total_contact_ratio=4.667160013400411, pinion_tip_radius_mm=0.27111472214609456)
+        for gear, expected in [(lh, lh_expected), (default, default_expected)]:
+            values = self.listing(params=self.params_of(gear))
+            for name, value in expected.items():
+                with self.subTest(f"z_p = {gear['z'][0]}: {name}"):
+                    factor = {"mm": 1e3, "um": 1e6, "eg": 180 / math.pi}.get(name[-2:], 1)
+                    rounding = 4e-16 * 1e6 if name == "backlash_um" else 0
+                    self.assertLessEqual(abs(values[name] - value * factor), 1e-12 * abs(value * factor) + rounding)
+
+    @staticmethod
+    def params_of(gear):
+        keys = [("pinion_teeth", gear["z"][0]), ("wheel_teeth", gear["z"][1]), ("normal_module_mm", gear["m_n"] * 1e3),
+                ("normal_pressure_angle_deg", math.degrees(gear["alpha_n"])),
+                ("helix_angle_deg", math.degrees(gear["beta"])), ("center_distance_mm", gear["d"] * 1e3),
+                ("face_width_mm", gear["b"] * 1e3), ("pinion_profile_shift", gear["x"][0]),
+                ("wheel_profile_shift", gear["x"][1]), ("pinion_tip_diameter_mm", gear["r_a"][0] * 2e3),
+                ("wheel_tip_diameter_mm", gear["r_a"][1] * 2e3)]
+        if gear["r_s"]:
+            keys += [("pinion_start_diameter_mm", gear["r_s"][0] * 2e3), ("wheel_start_diameter_mm", gear["r_s"][1] * 2e3)]
+        return "[gears]\n" + "".join(f"{key} = {value!r}\n" for key, value in keys)
+
+    def test_printed_digits_are_all_that_a_double_has(self):
+        self.write("run.ini", PARAMS)
+        lines = self.accepted("run.ini", "--geometry").stdout.splitlines()
+        self.assertEqual(len(lines), 24)
+        for line in lines:
+            text = line.split(" = ")[1]
+            self.assertEqual("%.17g" % float(text), text)
+
+    def test_eigenfrequency_follows_drive_and_model(self):
+        values = self.listing()
+        k = 1.05e8 * values["transverse_contact_ratio"]
+        r_p, r_w = values["pinion_base_radius_mm"] / 1e3, values["wheel_base_radius_mm"] / 1e3
+        self.assertAlmostEqual(values["eigenfrequency_Hz"] / (math.sqrt(k * r_w**2 / 2.1e-3) / 2 / math.pi), 1, delta=1e-12)
+
+        values = self.listing(*TORQUE)
+        expected = math.sqrt(k * (r_p**2 / 2e-3 + r_w**2 / 2.1e-3)) / 2 / math.pi
+        self.assertAlmostEqual(values["eigenfrequency_Hz"] / expected, 1, delta=1e-12)
+
+        values = self.listing("--set", "mesh.model=simple", "--set", "mesh.simple_stiffness_N_per_m=3e8")
+        self.assertAlmostEqual(values["mean_mesh_stiffness_N_per_um"], 300, delta=1e-10)
+        self.assertAlmostEqual(values["eigenfrequency_Hz"] / (math.sqrt(3e8 * r_w**2 / 2.1e-3) / 2 / math.pi), 1, delta=1e-12)
+
+        values = self.listing("--set", "mesh.model=simple")
+        self.assertAlmostEqual(values["mean_mesh_stiffness_N_per_um"] / (k * 1e-6), 1, delta=1e-12)
+
+    def test_eigenfrequency_is_left_out_without_inertia(self):
+        values = self.listing(params=without_key(PARAMS, "wheel_inertia_kg_m2"))
+        self.assertNotIn("eigenfrequency_Hz", values)
+        self.assertIn("mean_mesh_stiffness_N_per_um", values)
+        self.assertNotIn("eigenfrequency_Hz", self.listing("--set", "drive.kind=torque"))
+
+    def test_swapped_hand_changes_the_base_helix_alone(self):
+        right, left = self.listing(), self.listing("--set", "gears.helix_angle_deg=-33")
+        self.assertEqual(left.pop("base_helix_angle_deg"), -right.pop("base_helix_angle_deg"))
+        self.assertEqual(left, right)
+
+
+class Flanks(Case):
+    """Bad flank files: the message names that file, its line, and the key of the INI file."""
+
+    def refused_file(self, text, *fragments, key="pinion", name="flanks.csv"):
+        if text is not None:
+            self.write(name, text)
+        params = with_key(PARAMS, "flanks", key, name)
+        place = f"run.ini:{line_of(params, key + ' =')}: flanks.{key}: "
+        self.refused(name, place, *fragments, params=params)
+
+    def test_good_file_is_accepted_in_silence(self):
+        self.write("flanks.csv", DEVIATIONS)
+        self.write("run.ini", with_key(PARAMS, "flanks", "pinion", "flanks.csv"))
+        self.assertEqual(self.accepted("run.ini", "--check").stderr, "")
+
+    def test_missing_file(self):
+        self.refused_file(None, "flanks.csv: ", "no such file")
+
+    def test_folder_in_its_place(self):
+        os.mkdir(self.path("flanks.csv"))
+        self.refused_file(None, "flanks.csv: ")
+
+    def test_sparse_file_of_zeros_fails_at_once(self):
+        self.write("flanks.csv", "")
+        os.truncate(self.path("flanks.csv"), 2 << 30)
+        self.refused_file(None, "flanks.csv:1: ")
+
+    def test_missing_node(self):
+        self.refused_file(DEVIATIONS.replace("*,*,1,0,0\n", ""), "flanks.csv:", "t1 = 1, t2 = 0")
+
+    def test_uneven_grid(self):
+        self.refused_file(DEVIATIONS + "*,*,0.4,0,0\n*,*,0.4,1,0\n", "flanks.csv:6: ", "0.4")
+
+    def test_tooth_that_does_not_exist(self):
+        self.refused_file(DEVIATIONS.replace("*,*,", "45,*,", 1), "flanks.csv:2: ", "45", "44")
+
+    def test_duplicate_node(self):
+        self.refused_file(DEVIATIONS + "*,*,1,1,1\n", "flanks.csv:6: ", "second row")
+
+    def test_short_line(self):
+        self.refused_file(DEVIATIONS.replace("*,*,1,0,0", "*,*,1,0"), "flanks.csv:4: ", "4 fields")
+
+    def test_no_rows(self):
+        self.refused_file("tooth,flank,t1,t2,deviation_um\n", "flanks.csv:", "no rows")
+
+    def test_text_for_a_number(self):
+        for value in ["much", "nan", "1e400", "0x1"]:
+            with self.subTest(value):
+                self.refused_file(DEVIATIONS.replace("*,*,1,0,0", f"*,*,1,0,{value}"), "flanks.csv:4: ", value)
+
+    def test_pitch_file(self):
+        header = "tooth,flank,deviation_um\n"
+        self.refused_file(header + "0,drive,1\n45,drive,1\n", "pitch.csv:3: ", "45", key="pinion_pitch", name="pitch.csv")
+        self.refused_file(header + "0,drive,1\n0,drive,1\n", "pitch.csv:3: ", key="pinion_pitch", name="pitch.csv")
+        self.refused_file(header + "41,drive,1\n", "pitch.csv:2: ", "41", key="wheel_pitch", name="pitch.csv")
+        self.refused_file(header, "pitch.csv:", "no rows", key="wheel_pitch", name="pitch.csv")
+
+    def test_teeth_without_rows_are_noted(self):
+        self.write("flanks.csv", DEVIATIONS.replace("*,*,", "7,drive,"))
+        self.write("run.ini", with_key(PARAMS, "flanks", "pinion", "flanks.csv"))
+        text = self.accepted("run.ini", "--check").stderr
+        self.assertIn("flanks.csv: note: ", text)
+        self.assertIn("44 and the coast flank of 45 of 45 teeth", text)
+        self.assertEqual(self.accepted("run.ini", "--check", "--quiet").stderr, "")
+
+    def test_simple_model_uses_no_flanks(self):
+        params = with_key(with_key(PARAMS, "flanks", "pinion", "none.csv"), "mesh", "model", "simple")
+        self.write("run.ini", params)
+        self.assertIn("flanks.pinion: warning: not used", self.accepted("run.ini", "--check").stderr)
+
+    def test_paths_are_relative_to_ini_file_or_working_folder(self):
+        os.mkdir(self.path("sub"))
+        self.write("sub/run.ini", with_key(PARAMS, "flanks", "pinion", "flanks.csv"))
+        self.write("sub/flanks.csv", DEVIATIONS)
+        self.accepted("sub/run.ini", "--check")
+        self.accepted("run.ini", "--check", folder=self.path("sub"))
+        self.accepted("sub/run.ini", "--check", "--set", "flanks.wheel=sub/flanks.csv")
+        result = self.run_gearsim("sub/run.ini", "--check", "--set", "flanks.wheel=flanks.csv")
+        self.assertEqual(result.returncode, 2)
+        self.assertIn("--set flanks.wheel: ", result.stderr)
+
+
+class Output(Case):
+    def test_columns_that_do_not_exist(self):
+        params = with_key(PARAMS, "output", "columns", "time_s,dte_um,te_um")
+        self.refused(f"run.ini:{line_of(params, 'columns')}: output.columns: ", "'te_um'", "dte_um", params=params)
+        self.refused("--set output.columns: ", "'time_s'", "mesh_stiffness_N_per_um",
+                     arguments=["--set", "analysis.type=static", "--set", "output.columns=time_s"])
+
+    def test_all_columns_may_be_asked_for_by_name(self):
+        self.write("run.ini", with_key(PARAMS, "output", "columns", "all"))
+        self.accepted("run.ini", "--check")
+
+    def test_folder_that_is_missing_or_no_folder(self):
+        # Permission bits do not bind root; a path through a regular file binds everybody.
+        self.write("file", "")
+        for output in ["nowhere/out.csv", "file/out.csv"]:
+            with self.subTest(output):
+                self.refused("--output: output.file: ", output, arguments=["--output", output])
+                self.refused("--set output.file: ", output, arguments=["--set", f"output.file={output}"])
+                self.refused("--output: output.file: ", output, arguments=["--check", "--output", output])
+
+    @unittest.skipUnless(os.path.isdir("/proc/self"), "needs /proc")
+    def test_folder_that_takes_no_files(self):
+        # Even root may not create a file there, which shows only when one is created.
+        self.write("run.ini", PARAMS)
+        result = self.run_gearsim("run.ini", "--output", "/proc/out.csv")
+        self.assertIn(result.returncode, (1, 2))
+        self.assertIn("/proc/out.csv", result.stderr)
+
+    def test_folder_in_its_place(self):
+        os.mkdir(self.path("out.csv"))
+        self.refused("--output: output.file: ", "out.csv", "folder", arguments=["--output", "out.csv"])
+
+    def test_empty_name(self):
+        self.refused("--output: output.file: no value", arguments=["--output", ""])
+        self.refused("--output: ", "control character", arguments=["--output", "a\nb"])
+
+    def refused_as_input(self, output, name):
+        texts = {file: self.read(file) for file in os.listdir(self.folder) if os.path.isfile(self.path(file))}
+        self.refused("--output: output.file: would overwrite an input", f"(got {output}, which is {name})", params=None,
+                     arguments=["--output", output])
+        for file, text in texts.items():
+            self.assertEqual(self.read(file), text)
+
+    def test_output_that_is_also_an_input(self):
+        params = with_key(PARAMS, "flanks", "pinion", "flanks.csv")
+        self.write("run.ini", with_key(params, "flanks", "wheel_pitch", "pitch.csv.part"))
+        self.write("flanks.csv", DEVIATIONS)
+        self.write("pitch.csv.part", "tooth,flank,deviation_um\n*,*,1\n")
+        os.link(self.path("flanks.csv"), self.path("hard.csv"))
+        os.symlink("flanks.csv", self.path("soft.csv"))
+        os.mkdir(self.path("sub"))
+        for output, name in [("run.ini", "the INI file"), ("./run.ini", "the INI file"), ("flanks.csv", "flanks.pinion"),
+                             ("sub/../flanks.csv", "flanks.pinion"), ("hard.csv", "flanks.pinion"),
+                             ("soft.csv", "flanks.pinion"), (self.path("flanks.csv"), "flanks.pinion")]:
+            with self.subTest(output):
+                self.refused_as_input(output, name)
+        # The file that grows before it is renamed counts as well.
+        self.refused("--output: output.file: would overwrite an input", "pitch.csv.part", params=None,
+                     arguments=["--output", "pitch.csv"])
+
+    def test_ini_file_named_as_the_default_result(self):
+        self.write("params.csv", PARAMS)
+        result = self.run_gearsim("params.csv")
+        self.assertEqual(result.returncode, 2)
+        self.assertIn("params.csv: output.file: would overwrite an input", result.stderr)
+        self.assertEqual(self.read("params.csv"), PARAMS)
+
+    def test_default_result_is_in_the_working_folder(self):
+        os.mkdir(self.path("sub"))
+        self.write("sub/first.run.ini", PARAMS)
+        self.accepted("sub/first.run.ini", "--quiet")
+        self.assertEqual(sorted(os.listdir(self.folder)), ["first.run.csv", "run.csv", "sub"])
+        self.assertEqual(os.listdir(self.path("sub")), ["first.run.ini"])
+
+    def test_result_named_in_the_ini_file_is_beside_it(self):
+        os.mkdir(self.path("sub"))
+        self.write("sub/run.ini", with_key(PARAMS, "output", "file", "result.csv"))
+        self.accepted("sub/run.ini", "--quiet")
+        self.assertEqual(sorted(os.listdir(self.path("sub"))), ["result.csv", "run.ini"])
+        self.accepted("sub/run.ini", "--quiet", "--output", "other.csv")
+        self.accepted("sub/run.ini", "--quiet", "--set", "output.file=third.csv")
+        self.assertEqual(sorted(os.listdir(self.folder)), ["other.csv", "run.csv", "sub", "third.csv"])
+
+    def test_result_says_how_it_was_made(self):
+        self.write("run.ini", with_key(PARAMS, "load", "seed", "77"))
+        self.accepted("run.ini", "--quiet", "--set", "gears.face_width_mm=12")
+        head = [line for line in self.read("run.csv").splitlines() if line.startswith("#")]
+        for setting in ["load.seed = 77", "gears.face_width_mm = 12", "gears.helix_angle_deg = 33", "output.rate_Hz = 25600"]:
+            self.assertEqual(sum(line.endswith(setting) for line in head), 1, setting)
+        self.assertFalse(any("analysis.positions" in line for line in head))
+
+    def test_quiet_run_says_nothing(self):
+        self.write("run.ini", PARAMS)
+        result = self.accepted("run.ini", "--quiet")
+        self.assertEqual((result.stdout, result.stderr), ("", ""))
+        self.assertNotEqual(self.read("run.csv"), OLD_RESULT)
+        self.assertEqual(sorted(os.listdir(self.folder)), ["run.csv", "run.ini"])
+
+
+class Example(Case):
+    """data/example/params.ini is complete and right."""
+
+    def example(self):
+        with open(EXAMPLE) as file:
+            return file.read()
+
+    def documented_keys(self):
+        """{section.key: default or None} from --help."""
+        keys, section = {}, ""
+        text = self.accepted("--help").stdout
+        for line in text[text.index("\n[gears]\n"):].splitlines():
+            if line.startswith("["):
+                section = line.strip("[]")
+            match = re.match(r"  (\w+) +(?:\[(.*?)\] )?", line)
+            if match:
+                keys[f"{section}.{match.group(1)}"] = match.group(2)
+        return keys
+
+    def example_keys(self):
+        """{section.key: (value, is active)} with the keys that are commented out."""
+        keys, section = {}, ""
+        for line in self.example().splitlines():
+            match = re.match(r"\[(\w+)\]", line)
+            if match:
+                section = match.group(1)
+            match = re.match(r"(; )?(\w+) = (\S+)( +;.*)?$", line)
+            if match:
+                self.assertNotIn(f"{section}.{match.group(2)}", keys)
+                keys[f"{section}.{match.group(2)}"] = (match.group(3), match.group(1) is None)
+        return keys
+
+    def test_check_accepts_it_without_a_word(self):
+        folder, name = os.path.split(EXAMPLE)
+        before = sorted(os.listdir(folder))
+        result = self.accepted(EXAMPLE, "--check")
+        self.assertEqual((result.stdout, result.stderr), ("", ""))
+        self.assertEqual(sorted(os.listdir(folder)), before)
+
+    def test_it_has_every_key(self):
+        self.assertEqual(list(self.example_keys()), list(self.documented_keys()))
+
+    def test_keys_that_are_commented_out_show_their_default(self):
+        documented = self.documented_keys()
+        count = 0
+        for key, (value, is_active) in self.example_keys().items():
+            default = documented[key]
+            if not is_active and default is not None and " " not in default and default not in ("ideal", "name"):
+                count += 1
+                if key != "drive.start_rpm":
+                    self.assertEqual(value, default, key)
+        self.assertGreaterEqual(count, 20)
+
+    def test_every_line_of_it_may_be_activated(self):
+        text = re.sub(r"(?m)^; (\w+ = )", r"\1", self.example())
+        folder = os.path.dirname(EXAMPLE)
+        text = re.sub(r"(?m)^(wheel_pitch|pinion_pitch|pinion|wheel) = (\S+)", rf"\1 = {folder}/\2", text)
+        self.write("run.ini", text.replace("wheel_pitch = ", "; wheel_pitch = "))  # a pitch file of 45 teeth
+        result = self.accepted("run.ini", "--check")
+        self.assertNotIn("unknown", result.stderr)
+
+
+if __name__ == "__main__":
+    if len(sys.argv) > 1 and not sys.argv[1].startswith("-"):
+        GEARSIM = os.path.abspath(sys.argv.pop(1))
+    unittest.main()
