@@ -77,22 +77,32 @@ static size_t next_cluster(const size_t *histogram, int *bucket) {
     return rows;
 }
 
-/*
- * Number of grid lines. All have the same number of rows in a sound file; a line with less than half of
- * the most is taken for a slip of the pen, so that the message later names that row and not the others.
- */
-static int count_grid_lines(const size_t *histogram) {
+static size_t largest_cluster(const size_t *histogram) {
     size_t most = 0;
     int bucket = 0;
     for (size_t rows; (rows = next_cluster(histogram, &bucket)) > 0;) {
         most = rows > most ? rows : most;
     }
-    int lines = 0;
-    bucket = 0;
+    return most;
+}
+
+/* Clusters of more than so many rows. */
+static int count_clusters(const size_t *histogram, size_t rows_to_beat) {
+    int count = 0;
+    int bucket = 0;
     for (size_t rows; (rows = next_cluster(histogram, &bucket)) > 0;) {
-        lines += 2 * rows >= most ? 1 : 0;
+        count += rows > rows_to_beat ? 1 : 0;
     }
-    return lines;
+    return count;
+}
+
+/*
+ * Number of grid lines. In a sound file all have the same number of rows; one with a quarter of the most
+ * or less is taken for a slip of the pen, so that a message later names that row and not all others.
+ */
+static int count_grid_lines(const size_t *histogram) {
+    const int lines = count_clusters(histogram, largest_cluster(histogram) / 4);
+    return lines >= 2 ? lines : count_clusters(histogram, 0);
 }
 
 /* The grid must reach from 0 to 1 in at least two and at most GMI_MAX_NODES positions. */
