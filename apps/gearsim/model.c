@@ -5,6 +5,7 @@
 #include <math.h>
 
 static const double micrometre = 1e-6;
+static const double two_pi = 6.283185307179586;
 
 /*
  * Absolute tolerance of x' / w0 in terms of that of x. Force errors come from x; x' only has to be good
@@ -24,6 +25,12 @@ static const double arc_tolerance_factor = 10.0;
  * tooth and never see that the mesh changes in between.
  */
 static const double steps_per_tooth = 8.0;
+
+/*
+ * Steps per natural vibration at least, where the response to the noise is not in the state: the state may
+ * be at rest while that response lifts the teeth off their mates for a while.
+ */
+static const double steps_per_vibration = 10.0;
 
 /* Bounds of the damping ratio that the response to the noise is computed with: it has to forget, and to
  * vibrate. */
@@ -200,8 +207,9 @@ gear_motion model_motion(const gear_model *model, double time, const double stat
     return motion;
 }
 
-int model_penetration(const gear_model *model, const gear_motion *motion,
-                      gm_penetration *penetration) {
+/* The one of the library's functions that does no more than is asked for. */
+static int penetration_of(const gear_model *model, const gear_motion *motion, int derivatives,
+                          gm_penetration *penetration) {
     const gearbox *const gears = model->gears;
 
     if (model->mesh == MODEL_SIMPLE) {
@@ -215,8 +223,13 @@ int model_penetration(const gear_model *model, const gear_motion *motion,
     if (status != GM_OK) {
         return status;
     }
-    return gm_penetration_3d_at(&gears->pair, gears->pinion_flanks, gears->wheel_flanks, &position,
-                                penetration);
+    return (derivatives ? gm_penetration_3d_at : gm_penetration_3d_sum_at)(
+        &gears->pair, gears->pinion_flanks, gears->wheel_flanks, &position, penetration);
+}
+
+int model_penetration(const gear_model *model, const gear_motion *motion,
+                      gm_penetration *penetration) {
+    return penetration_of(model, motion, 0, penetration);
 }
 
 double model_force(const gear_model *model, const gm_penetration *penetration) {
@@ -305,7 +318,7 @@ int model_jacobian(const gear_model *model, double time, const double state[],
                    double jacobian[STATES_MAX][STATES_MAX]) {
     const gear_motion motion = model_motion(model, time, state);
     gm_penetration penetration;
-    const int status = model_penetration(model, &motion, &penetration);
+    const int status = penetration_of(model, &motion, 1, &penetration);
     if (status != GM_OK) {
         return status;
     }
@@ -336,14 +349,16 @@ static double tooth_step(const gear_model *model, double time, const double stat
     return reach > 0.0 ? 2.0 * angle / reach : 0.0;
 }
 
-double model_max_step(const gear_model *model, double time, const double state[]) {
-    const double step = model->mesh == MODEL_3D ? tooth_step(model, time, state) : 0.0;
-    const double reach = model->noise != NULL ? response_reach(model->noise) : 0.0;
+/* Time for a share of a natural vibration. */
+static double vibration_step(const gear_model *model) {
+    return two_pi / (steps_per_vibration * model->natural_frequency);
+}
 
-    if (step > 0.0 && reach > 0.0) {
-        return fmin(step, reach);
-    }
-    return step > 0.0 ? step : reach;
+double model_max_step(const gear_model *model, double time, const double state[]) {
+    const double tooth = model->mesh == MODEL_3D ? tooth_step(model, time, state) : 0.0;
+    const double vibration = model->noise != NULL ? vibration_step(model) : 0.0;
+
+    return tooth > 0.0 && vibration > 0.0 ? fmin(tooth, vibration) : fmax(tooth, vibration);
 }
 
 void model_error_weights(const gear_model *model, double relative_tolerance,

@@ -72,7 +72,7 @@ int model_quasi_static_start(const gear_model *model, double state[]);
 
 gear_motion model_motion(const gear_model *model, double time, const double state[]);
 
-/* Penetration of the flanks. Returns a library status. */
+/* Penetration of the flanks, without its derivatives. Returns a library status. */
 int model_penetration(const gear_model *model, const gear_motion *motion,
                       gm_penetration *penetration);
 
@@ -86,7 +86,7 @@ int model_derivative(const gear_model *model, double time, const double state[],
 int model_jacobian(const gear_model *model, double time, const double state[],
                    double jacobian[STATES_MAX][STATES_MAX]);
 
-/* Longest step at a time that cannot miss a tooth (s); 0 = any. */
+/* Longest step at a time that cannot miss a tooth or a loss of contact (s); 0 = any. */
 double model_max_step(const gear_model *model, double time, const double state[]);
 
 /* Reciprocals of the errors that the solver may make in one step; absolute tolerance of x in m, the

@@ -56,10 +56,6 @@ void response_free(response *linear) {
     free(linear);
 }
 
-double response_reach(const response *linear) {
-    return (KEPT / 2) * linear->load.interval;
-}
-
 /* Polynomial that solves the equation for the noise of segment k: power by power from the highest. */
 static void particular_solution(const response *linear, int64_t k, double q[4]) {
     const double h = linear->load.interval;

@@ -33,9 +33,8 @@ void response_free(response *linear);
  * not so dense that the terms of the closed form cancel. */
 int response_is_useful(const load_signal *load, double frequency);
 
-/* Cheap forward in time and response_reach() back from the latest time asked for; farther back it starts
- * again from zero. Not for several threads at once. */
+/* Cheap forward in time, and some hundred noise values back from the latest time asked for; farther back
+ * it starts again from zero. Not for several threads at once. */
 response_value response_at(response *linear, double time);
-double response_reach(const response *linear);
 
 #endif
