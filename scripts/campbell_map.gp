@@ -1,0 +1,75 @@
+# SPDX-FileCopyrightText: The gearmesh authors
+# SPDX-License-Identifier: BSD-3-Clause
+#
+# The map of scripts/campbell, which sets the variables used here before it loads this file. Lines are marked
+# at the rim only, so that they hide nothing.
+
+# Equal steps of CIELAB lightness, from 5 to 97: equal steps of the amplitude look equal, and their order
+# survives a grey print and any colour vision.
+set palette defined (0 '#090f28', 1 '#181d47', 2 '#342764', 3 '#553179', 4 '#863180', 5 '#b0367d', \
+                     6 '#d44473', 7 '#ec5e61', 8 '#f78052', 9 '#f6a44e', 10 '#fdc15d', 11 '#ffdd85', \
+                     12 '#fff7cf')
+
+set lmargin at screen 0.105
+set rmargin at screen 0.835
+set tmargin at screen 0.855
+set bmargin at screen 0.105
+set border lw 1.2
+set tics out nomirror
+set xrange [0:frequency_high]
+set yrange [speed_low:speed_high]
+set cbrange [colour_low:colour_high]
+set xlabel 'frequency / Hz'
+set ylabel 'pinion speed / rpm'
+set cblabel 'log10 contact force amplitude / N' offset 0.6,0
+set colorbox user origin screen 0.89, screen 0.105 size screen 0.022, screen 0.75
+set cbtics 0.5 format '%.1f'
+set mxtics 2
+set mytics 2
+set format x '%.0f'
+set format y '%.0f'
+unset key
+
+set label 1 title_text at graph 0, screen 0.96 left font ',17' noenhanced
+set label 2 subtitle_text at graph 0, screen 0.925 left font ',11' textcolor '#505050' noenhanced
+
+# Tooth orders: the line goes on outside where it leaves the map, at the right or at the top.
+out = 1.014
+do for [i = 1:words(harmonics)] {
+    order = word(harmonics, i) * pinion_teeth
+    leaves_rpm = 60.0 * frequency_high / order
+    name = sprintf('%d', i)
+    if (leaves_rpm < speed_high) {
+        if (leaves_rpm > speed_low) {
+            set arrow from first frequency_high, first leaves_rpm \
+                to graph out, first leaves_rpm * out nohead lw 2
+            set label name at graph out, first leaves_rpm * out left offset 0.4,0 font ',13'
+        }
+    } else {
+        leaves_hz = order * speed_high / 60.0
+        top = speed_high * out
+        set arrow from first leaves_hz, first speed_high to first leaves_hz * out, first top nohead lw 2
+        set label name at first leaves_hz * out, first top center offset 0,0.6 font ',13'
+    }
+}
+
+# Eigenfrequency: dashes above the map, and a few within it at the top and at the bottom.
+if (eigenfrequency > 0 && eigenfrequency < frequency_high) {
+    set arrow from first eigenfrequency, graph 1.03 to first eigenfrequency, graph 0.95 \
+        nohead front lw 1.6 dt (8,5)
+    set arrow from first eigenfrequency, graph 0 to first eigenfrequency, graph 0.05 \
+        nohead front lw 1.6 dt (8,5)
+    set label '0' at first eigenfrequency, graph 1.03 center offset 0,0.6 font ',13'
+}
+
+do for [format in 'png svg'] {
+    if (format eq 'png') {
+        set terminal pngcairo size 1400,1000 font 'DejaVu Sans,13' fontscale 1.25
+    } else {
+        set terminal svg size 1120,800 font 'DejaVu Sans,13' background '#ffffff' name 'campbell_map'
+    }
+    set output stem . '.' . format
+    plot stem . '_map.bin' binary array=(columns, rows) format='%float32' endian=little \
+        origin=(0, speed_first) dx=frequency_step dy=speed_step with image
+    unset output
+}

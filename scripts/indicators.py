@@ -1,0 +1,186 @@
+# SPDX-FileCopyrightText: The gearmesh authors
+# SPDX-License-Identifier: BSD-3-Clause
+"""Numbers for what one sees in a Campbell map: is the eigenfrequency there, are tooth orders, sidebands?
+
+Their meaning, in the order of INDICATORS:
+
+    rms_N         rms of the contact force, 20 Hz to 5 kHz
+    loss_percent  share of the time without contact
+    E0            share of that energy within 10 % of the eigenfrequency f0
+    Em            share of that energy within 2 % of the tooth orders 1..4
+    V1 .. V4      share of the frames where tooth order k stands 10 dB out of what is beside it
+    L1 .. L4_dB   tooth order k over the noise floor
+    A1 .. A4_N    amplitude of tooth order k
+    car1 .. car4  share of tooth order k in the power of itself and its sidebands, if it stands out at all
+    S_N           all sidebands of the tooth orders 1..4, 10 of each gear on each side
+    O_N           orders of pinion and wheel from 3 up to the sidebands of tooth order 1
+    EO            share of the energy in these orders
+    B             share of the map below 2 kHz that is 6 dB louder than a reference run
+    HF_N          rms from 1.5 f0 to 10 kHz without tooth orders
+
+Amplitudes are peak values, rms over the speed, with the noise floor taken off. Lines over the eigenfrequency
+(V from 1.25 f0; L, A from 1.2 f0) are looked at only, as below it a displacement excites little force.
+"""
+import numpy as np
+
+TOOTH_ORDERS = (1, 2, 3, 4)
+SIDEBANDS = 10
+LOW_HZ, HIGH_HZ = 20.0, 5000.0  # band of the energies
+LINE_TOP_HZ = 8000.0
+HF_TOP_HZ = 10000.0
+CELL_HZ, CELL_RPM = 100.0, 250.0  # cells of B, up to:
+CELL_TOP_HZ = 2000.0
+LOUDER = 10.0 ** (6.0 / 10.0)  # 6 dB in power
+LINES_ABOVE = 1.2  # times the eigenfrequency, for L and A
+OUTSTANDING = 10.0  # 10 dB in power: seen in a single frame
+STANDS_OUT = 10.0 ** (2.0 / 10.0)  # 2 dB: more than noise, in the mean
+
+INDICATORS = (
+    ["rms_N", "loss_percent", "E0", "Em"]
+    + [f"V{k}" for k in TOOTH_ORDERS]
+    + [f"L{k}_dB" for k in TOOTH_ORDERS]
+    + [f"A{k}_N" for k in TOOTH_ORDERS]
+    + [f"car{k}" for k in TOOTH_ORDERS]
+    + ["S_N", "O_N", "EO", "B", "HF_N"]
+)
+
+
+def loss_of_contact(run):
+    """Share of the rows without a touching pair; without that column, with under 1 % of the mean force."""
+    if run.pairs is not None:
+        return np.mean(run.pairs == 0)
+    return np.mean(np.abs(run.force_N) < 0.01 * np.abs(run.force_N.mean()))
+
+
+def near_tooth_orders(spectra, gears, tooth_orders, width):
+    """[frame, bin]: within a share `width` of the frequency of a tooth order."""
+    mesh_Hz = gears.pinion_teeth * spectra.speed_rpm[:, None] / 60.0
+    ratio = spectra.frequency_Hz[None, :] / mesh_Hz
+    near = np.zeros(ratio.shape, dtype=bool)
+    for k in tooth_orders:
+        near |= np.abs(ratio / k - 1.0) <= width
+    return near
+
+
+def energy_shares(spectra, gears):
+    """(E0, Em): shares of the energy near the eigenfrequency and near the tooth orders."""
+    f0 = gears.eigenfrequency_Hz
+    band = spectra.band(LOW_HZ, HIGH_HZ)
+    total = spectra.mean_square(band)
+    near = near_tooth_orders(spectra, gears, TOOTH_ORDERS, 0.02)
+    return (
+        spectra.mean_square(band & spectra.band(0.9 * f0, 1.1 * f0)) / total,
+        spectra.mean_square(band & near) / total,
+    )
+
+
+def visibility(spectra, gears, k):
+    """V_k: share of frames where the peak within 0.8 % of the line is 10 dB over the median of 1.5 .. 8 %."""
+    seen = []
+    for speed_rpm, power in zip(spectra.speed_rpm, spectra.power):
+        line_Hz = k * gears.pinion_teeth * speed_rpm / 60.0
+        if not 1.25 * gears.eigenfrequency_Hz < line_Hz < LINE_TOP_HZ:
+            continue
+        distance = np.abs(spectra.frequency_Hz / line_Hz - 1.0)
+        beside = (distance >= 0.015) & (distance <= 0.08)
+        peak = power[distance <= 0.008]
+        if len(peak) and beside.any():
+            seen.append(peak.max() > OUTSTANDING * np.median(power[beside]))
+    return np.mean(seen) if seen else np.nan
+
+
+def power_of_lines(blocks, orders, above_Hz=0.0):
+    """Squared amplitude of all lines together, floor taken off, mean over the blocks (N^2).
+
+    Noise leaves a remainder of either sign, so it is not cut off at zero before the end.
+    """
+    total = 0.0
+    for order in orders:
+        line, floor = blocks.line(order, above_Hz)
+        if len(line):
+            total += (line - floor).mean()
+    return total
+
+
+def sideband_orders(gears, k):
+    """Orders of the first sidebands of tooth order k by the turns of pinion and wheel."""
+    carrier = k * gears.pinion_teeth
+    return [
+        carrier + side * n * rotation
+        for rotation in (1.0, gears.wheel_order)
+        for side in (-1, 1)
+        for n in range(1, SIDEBANDS + 1)
+    ]
+
+
+def rotation_orders(gears):
+    """Orders of pinion and wheel from 3 up to the first sideband of tooth order 1."""
+    pinion = range(3, gears.pinion_teeth - SIDEBANDS + 1)
+    wheel = range(3, gears.wheel_teeth - SIDEBANDS + 2)
+    return [float(n) for n in pinion] + [n * gears.wheel_order for n in wheel]
+
+
+def amplitude(power):
+    return np.sqrt(max(0.0, power))
+
+
+def order_indicators(blocks, gears):
+    above_Hz = LINES_ABOVE * gears.eigenfrequency_Hz
+    values, sidebands = {}, 0.0
+    for k in TOOTH_ORDERS:
+        line, floor = blocks.line(k * gears.pinion_teeth, above_Hz)
+        carrier = max(0.0, (line - floor).mean()) if len(line) else np.nan
+        over_floor = (line / floor).mean() if len(line) else np.nan
+        beside = power_of_lines(blocks, sideband_orders(gears, k))
+        sidebands += beside
+        values[f"L{k}_dB"] = 10.0 * np.log10(over_floor)
+        values[f"A{k}_N"] = np.sqrt(carrier)
+        if over_floor > STANDS_OUT:
+            values[f"car{k}"] = carrier / (carrier + max(0.0, beside))
+    values["S_N"] = amplitude(sidebands)
+    values["O_N"] = amplitude(power_of_lines(blocks, rotation_orders(gears)))
+    return values
+
+
+def cell_powers(spectra):
+    """Mean power of the cells of B: [speed, frequency] (N^2), NaN for a cell without a frame."""
+    f_Hz, rpm = spectra.frequency_Hz, spectra.speed_rpm
+    columns = [(f_Hz >= low) & (f_Hz < low + CELL_HZ) for low in np.arange(CELL_HZ, CELL_TOP_HZ, CELL_HZ)]
+    rows = []
+    for low in np.arange(100.0, rpm.max(), CELL_RPM):
+        frames = spectra.power[(rpm >= low) & (rpm < low + CELL_RPM)]
+        rows.append([frames[:, c].mean() if len(frames) and c.any() else np.nan for c in columns])
+    return np.array(rows)
+
+
+def louder_share(spectra, reference):
+    """B: share of the cells that are 6 dB louder than those of the reference run."""
+    cells, before = cell_powers(spectra), cell_powers(reference)
+    rows = min(len(cells), len(before))
+    cells, before = cells[:rows], before[:rows]
+    both = np.isfinite(cells) & np.isfinite(before)
+    return np.mean(cells[both] >= LOUDER * before[both]) if both.any() else np.nan
+
+
+def high_frequency_rms(spectra, gears):
+    """HF: rms above the eigenfrequency, tooth orders 1..8 (2 % wide) left out."""
+    band = spectra.band(1.5 * gears.eigenfrequency_Hz, HF_TOP_HZ)
+    near = near_tooth_orders(spectra, gears, range(1, 9), 0.02)
+    return np.sqrt(spectra.mean_square(band & ~near))
+
+
+def all_indicators(run, spectra, blocks, gears, reference=None):
+    """Dictionary of INDICATORS; NaN for what the run cannot tell (too short, no reference)."""
+    values = dict.fromkeys(INDICATORS, np.nan)
+    values["rms_N"] = np.sqrt(spectra.mean_square(spectra.band(LOW_HZ, HIGH_HZ)))
+    values["loss_percent"] = 100.0 * loss_of_contact(run)
+    values["E0"], values["Em"] = energy_shares(spectra, gears)
+    for k in TOOTH_ORDERS:
+        values[f"V{k}"] = visibility(spectra, gears, k)
+    values["HF_N"] = high_frequency_rms(spectra, gears)
+    if blocks is not None:
+        values.update(order_indicators(blocks, gears))
+        values["EO"] = values["O_N"] ** 2 / (2.0 * values["rms_N"] ** 2)
+    if reference is not None:
+        values["B"] = louder_share(spectra, reference)
+    return values

@@ -1,0 +1,422 @@
+#!/usr/bin/python3
+# SPDX-FileCopyrightText: The gearmesh authors
+# SPDX-License-Identifier: BSD-3-Clause
+"""scripts/campbell and the modules it is made of, with signals of which everything is known."""
+import importlib.machinery
+import importlib.util
+import os
+import re
+import subprocess
+import sys
+import tempfile
+import unittest
+
+import numpy as np
+from scipy import signal
+
+sys.dont_write_bytecode = True
+SCRIPTS = os.path.join(os.path.dirname(os.path.abspath(__file__)), os.pardir, "scripts")
+sys.path.insert(0, SCRIPTS)
+import indicators  # noqa: E402
+import runup  # noqa: E402
+
+MEAN_N = 524.0
+EIGENFREQUENCY_HZ = 1979.16
+
+
+def load_script(name):
+    """A script without suffix as a module."""
+    loader = importlib.machinery.SourceFileLoader(name, os.path.join(SCRIPTS, name))
+    module = importlib.util.module_from_spec(importlib.util.spec_from_loader(name, loader))
+    loader.exec_module(module)
+    return module
+
+
+def run_up(force, start_rpm=600.0, end_rpm=6000.0, duration_s=10.0, rate_Hz=25600.0, pairs=None):
+    """A run whose force is MEAN_N + force(time_s, angle_rad)."""
+    time_s = np.arange(int(duration_s * rate_Hz)) / rate_Hz
+    slope = (end_rpm - start_rpm) / duration_s
+    angle_rad = (start_rpm * time_s + slope * time_s**2 / 2.0) * np.pi / 30.0
+    force_N = MEAN_N + force(time_s, angle_rad) * np.ones_like(time_s)
+    return runup.Run(time_s, start_rpm + slope * time_s, angle_rad, force_N, pairs)
+
+
+def gears():
+    return runup.Gears(45, 41, EIGENFREQUENCY_HZ)
+
+
+def blocks_of(run):
+    return runup.order_blocks(run, runup.block_turns(45, 41), 195)
+
+
+def noise(time_s, seed=1, rms_N=120.0, damping=0.05):
+    """White noise through the eigenfrequency: the response of a run with ideal flanks."""
+    rate_Hz = 1.0 / (time_s[1] - time_s[0])
+    pole = np.exp(2 * np.pi * EIGENFREQUENCY_HZ / rate_Hz * (-damping + 1j * np.sqrt(1 - damping**2)))
+    white = np.random.default_rng(seed).standard_normal(len(time_s))
+    force_N = signal.lfilter([1.0], [1.0, -2.0 * pole.real, abs(pole) ** 2], white)
+    return rms_N * force_N / force_N.std()
+
+
+class Maps(unittest.TestCase):
+    def amplitude(self, frequency_Hz, window):
+        """What the map shows of a sine of 1 N, at its strongest bin."""
+        run = run_up(lambda t, angle: np.sin(2 * np.pi * frequency_Hz * t), duration_s=2.0)
+        spectra = runup.short_time_spectra(run, window)
+        _, amplitude_N = runup.speed_map(spectra)
+        peak = amplitude_N.argmax(axis=1)
+        self.assertTrue((np.abs(spectra.frequency_Hz[peak] - frequency_Hz) <= 12.5).all())
+        return amplitude_N.max(axis=1)
+
+    def test_sine_of_1_N_is_1_N_on_a_bin(self):
+        for window in ("hann", "flattop"):
+            np.testing.assert_allclose(self.amplitude(1000.0, window), 1.0, rtol=1e-5)
+
+    def test_flat_top_is_1_N_between_bins_too_where_hann_loses_1_4_dB(self):
+        np.testing.assert_allclose(self.amplitude(1006.25, "flattop"), 1.0, rtol=2e-3)
+        np.testing.assert_allclose(self.amplitude(1006.25, "hann"), 10 ** (-1.42 / 20), rtol=2e-3)
+
+    def test_mean_force_leaves_nothing(self):
+        spectra = runup.short_time_spectra(run_up(lambda t, angle: 0.0, duration_s=1.0))
+        self.assertLess(spectra.power.max(), 1e-12)
+
+    def test_speed_bins_hold_the_frames_of_their_speed(self):
+        """Amplitude grows with the speed: each row of the map shows the one of its own speed."""
+        run = run_up(lambda t, angle: (1.0 + t) * np.sin(2 * np.pi * 1000.0 * t), duration_s=20.0)
+        speed_rpm, amplitude_N = runup.speed_map(runup.short_time_spectra(run), speed_bins=50)
+        expected_N = 1.0 + (speed_rpm - 600.0) / 270.0
+        np.testing.assert_allclose(amplitude_N.max(axis=1)[1:-1], expected_N[1:-1], rtol=5e-3)
+
+    def test_short_runs_get_fewer_speed_bins_and_no_holes(self):
+        run = run_up(lambda t, angle: np.sin(angle), duration_s=1.0)
+        speed_rpm, amplitude_N = runup.speed_map(runup.short_time_spectra(run))
+        self.assertLess(len(speed_rpm), 20)
+        self.assertTrue(np.isfinite(amplitude_N).all())
+
+    def test_run_down_is_mapped_like_a_run_up(self):
+        up = runup.speed_map(runup.short_time_spectra(run_up(lambda t, a: np.sin(45 * a))), 40)
+        run = run_up(lambda t, a: np.sin(45 * a), 6000.0, 600.0)
+        down = runup.speed_map(runup.short_time_spectra(run), 40)
+        np.testing.assert_allclose(up[0], down[0], rtol=1e-4)
+        np.testing.assert_allclose(up[1].max(axis=1), down[1].max(axis=1), rtol=0.05)
+
+    def test_constant_speed_is_no_map(self):
+        run = run_up(lambda t, angle: 0.0, 1000.0, 1000.0, 1.0)
+        with self.assertRaisesRegex(runup.RunError, "speed does not change"):
+            runup.speed_map(runup.short_time_spectra(run))
+
+    def test_mean_square_is_that_of_the_signal(self):
+        spectra = runup.short_time_spectra(run_up(lambda t, angle: noise(t), duration_s=20.0))
+        self.assertAlmostEqual(np.sqrt(spectra.mean_square(spectra.band(0, 1e9))), 120.0, delta=1.0)
+
+
+class Orders(unittest.TestCase):
+    def test_order_stands_where_its_frequency_is(self):
+        run = run_up(lambda t, angle: np.cos(45 * angle))
+        spectra = runup.short_time_spectra(run)
+        speed_rpm, amplitude_N = runup.speed_map(spectra)
+        ridge_Hz = spectra.frequency_Hz[amplitude_N.argmax(axis=1)]
+        np.testing.assert_allclose(ridge_Hz, 0.75 * speed_rpm, atol=25.0)
+
+    def test_cut_shows_the_amplitude_of_its_order_alone(self):
+        run = run_up(lambda t, angle: 3.0 * np.cos(45 * angle + 1.0) + 0.5 * np.sin(90 * angle))
+        for order, amplitude_N in ((45, 3.0), (90, 0.5), (135, 0.0)):
+            _, found_N = runup.order_cut(run, order)
+            np.testing.assert_allclose(found_N[np.isfinite(found_N)], amplitude_N, atol=0.01)
+
+    def test_cut_follows_an_amplitude_over_the_speed(self):
+        run = run_up(lambda t, angle: (1.0 + t) * np.cos(45 * angle))
+        speed_rpm, found_N = runup.order_cut(run, 45)
+        np.testing.assert_allclose(found_N, 1.0 + (speed_rpm - 600.0) / 540.0, rtol=0.01)
+
+    def test_cut_ends_where_the_rate_ends(self):
+        run = run_up(lambda t, angle: 0.0)
+        speed_rpm, found_N = runup.order_cut(run, 180)
+        np.testing.assert_array_equal(np.isnan(found_N), 3.0 * speed_rpm > 0.4 * 25600)
+        self.assertTrue(np.isnan(found_N).any())
+
+    def test_lines_of_both_gears_have_their_amplitude(self):
+        wheel = 45.0 / 41.0
+        lines = {1.0: 2.0, 7.0: 1.5, 7 * wheel: 0.7, 45.0: 3.0, 45.0 + wheel: 0.4, 180.0: 1.0}
+        run = run_up(lambda t, angle: sum(a * np.cos(o * angle + o) for o, a in lines.items()))
+        blocks = blocks_of(run)
+        self.assertEqual(blocks.turns, 82)
+        for order in list(lines) + [6.0, 44.0, 135.0]:
+            line, floor = blocks.line(order)
+            expected = lines.get(order, 0.0)
+            self.assertGreater(len(line), 2)
+            np.testing.assert_allclose(np.sqrt(line), expected, rtol=0.01, atol=0.01)
+            self.assertLess(np.sqrt(floor).max(), 0.01)
+
+    def test_lines_in_noise_have_their_amplitude_and_floor(self):
+        """White noise of variance s^2 puts 2 * 1.5 * 2 s^2 / (samples of a block) on each bin."""
+        run = run_up(lambda t, angle: 0.5 * np.cos(45 * angle) + np.random.default_rng(1).normal(size=len(t)),
+                     3000.0, 3100.0, 60.0)
+        line, floor = blocks_of(run).line(45)
+        rows = 82 / (3050 / 60) * run.rate_Hz
+        self.assertAlmostEqual(floor.mean() / (2.0 * 6.0 / rows), 1.0, delta=0.1)
+        self.assertAlmostEqual(np.sqrt((line - floor).mean()), 0.5, delta=0.01)
+
+    def test_high_orders_are_not_folded_onto_low_ones(self):
+        run = run_up(lambda t, angle: 10.0 * np.cos(400 * angle), 900.0, 1500.0, 15.0)
+        amplitude_N = blocks_of(run).mean_amplitude_N()
+        self.assertLess(np.nanmax(amplitude_N[82:]), 0.01)
+
+    def test_only_trusted_frequencies_count(self):
+        blocks = blocks_of(run_up(lambda t, angle: np.cos(180 * angle), 600.0, 9000.0))
+        line, _ = blocks.line(180)
+        self.assertEqual(len(line), (3.0 * blocks.speed_rpm < 0.4 * 25600).sum())
+        self.assertLess(len(line), len(blocks.speed_rpm))
+        self.assertAlmostEqual(blocks.mean_amplitude_N()[180 * 82], 1.0, delta=0.02)
+
+    def test_blocks_are_whole_turns_of_the_wheel(self):
+        self.assertEqual(runup.block_turns(45, 41), 82)
+        self.assertEqual(runup.block_turns(20, 40), 82)
+        self.assertEqual(runup.block_turns(21, 77) % 11, 0)
+        self.assertEqual(runup.block_turns(17, 1001), runup.BLOCK_TURNS)
+
+    def test_short_run_has_no_blocks(self):
+        self.assertIsNone(blocks_of(run_up(lambda t, angle: 0.0, duration_s=1.0)))
+
+
+class Indicators(unittest.TestCase):
+    def order_indicators(self, force, **arguments):
+        return indicators.order_indicators(blocks_of(run_up(force, **arguments)), gears())
+
+    def test_pure_tooth_order(self):
+        values = self.order_indicators(lambda t, a: 4.0 * np.cos(90 * a) + 0.02 * noise(t))
+        self.assertAlmostEqual(values["A2_N"], 4.0, delta=0.05)
+        self.assertGreater(values["L2_dB"], 30.0)
+        self.assertGreater(values["car2"], 0.99)
+        self.assertLess(values["S_N"], 0.3)
+        self.assertLess(values["O_N"], 0.6)
+
+    def test_modulation_gives_sidebands(self):
+        """cos(c)(1 + m cos(a)) has sidebands of m/2 on either side, here by a turn of each gear."""
+        wheel = 45.0 / 41.0
+        values = self.order_indicators(
+            lambda t, a: 2.0 * np.cos(90 * a) * (1.0 + 0.8 * np.cos(a) + 0.6 * np.cos(3 * wheel * a))
+        )
+        self.assertAlmostEqual(values["A2_N"], 2.0, delta=0.02)
+        sidebands = 2 * 0.8**2 + 2 * 0.6**2
+        self.assertAlmostEqual(values["S_N"], np.sqrt(sidebands), delta=0.02)
+        self.assertAlmostEqual(values["car2"], 4.0 / (4.0 + sidebands), delta=0.01)
+
+    def test_orders_of_the_rotation(self):
+        wheel = 45.0 / 41.0
+        values = self.order_indicators(
+            lambda t, a: 3.0 * np.cos(5 * a) + 4.0 * np.cos(32 * wheel * a) + 9.0 * np.cos(2 * a + 1.0)
+        )
+        self.assertAlmostEqual(values["O_N"], 5.0, delta=0.05)
+
+    def test_noise_has_neither_orders_nor_sidebands(self):
+        """Limits as for Fig. 12 of the paper; O is what noise leaves of the lines through the resonance."""
+        run = run_up(lambda t, angle: noise(t), 100.0, 10000.0, 60.0)
+        spectra = runup.short_time_spectra(run)
+        values = indicators.all_indicators(run, spectra, blocks_of(run), gears(), spectra)
+        self.assertLess(values["S_N"], 3.0)
+        self.assertLess(values["O_N"], 20.0)
+        for k in indicators.TOOTH_ORDERS:
+            self.assertLess(values[f"V{k}"], 0.05)
+            self.assertLess(abs(values[f"L{k}_dB"]), 2.0)
+            self.assertTrue(np.isnan(values[f"car{k}"]))
+        self.assertEqual(values["B"], 0.0)
+        # A resonance with 5 % damping has atan(2) / pi * 2 of its energy within 10 %, less beyond 5 kHz.
+        self.assertAlmostEqual(values["E0"], 0.705, delta=0.02)
+
+    def test_energy_shares(self):
+        run = run_up(lambda t, a: np.sin(2 * np.pi * 1979 * t) + np.sqrt(2) * np.sin(2 * np.pi * 1000 * t)
+                     + 9 * np.sin(2 * np.pi * 6000 * t))
+        share, _ = indicators.energy_shares(runup.short_time_spectra(run), gears())
+        self.assertAlmostEqual(share, 1 / 3, delta=0.01)
+        # A tooth order next to two lines that are none, at speeds where it stays under 5 kHz.
+        run = run_up(lambda t, a: np.cos(45 * a) + np.cos(20 * a) + np.cos(70 * a), 2000.0, 4000.0)
+        _, share = indicators.energy_shares(runup.short_time_spectra(run), gears())
+        self.assertAlmostEqual(share, 1 / 3, delta=0.02)
+
+    def test_visibility(self):
+        def visible(amplitude_N):
+            run = run_up(lambda t, a: amplitude_N * np.cos(45 * a) + np.random.default_rng(1).normal(size=len(t)),
+                         2000.0, 10000.0)
+            return indicators.visibility(runup.short_time_spectra(run), gears(), 1)
+
+        self.assertEqual(visible(1.0), 1.0)
+        self.assertLess(visible(0.0), 0.05)
+
+    def test_louder_cells(self):
+        quiet = runup.short_time_spectra(run_up(lambda t, a: noise(t), duration_s=30.0))
+        for factor, share in ((1.9, 0.0), (2.1, 1.0)):
+            loud = runup.short_time_spectra(run_up(lambda t, a: factor * noise(t), duration_s=30.0))
+            self.assertEqual(indicators.louder_share(loud, quiet), share)
+
+    def test_high_frequencies_without_tooth_orders(self):
+        run = run_up(lambda t, a: np.sin(2 * np.pi * 9000 * t) + 5 * np.cos(90 * a), 3100.0, 3900.0)
+        value_N = indicators.high_frequency_rms(runup.short_time_spectra(run), gears())
+        self.assertAlmostEqual(value_N, np.sqrt(0.5), delta=0.03)
+
+    def test_loss_of_contact(self):
+        pairs = np.ones(256000)
+        pairs[:2560] = 0
+        self.assertEqual(indicators.loss_of_contact(run_up(lambda t, a: 0.0, pairs=pairs)), 0.01)
+        run = run_up(lambda t, a: np.where(t < 0.1, -MEAN_N, MEAN_N))
+        self.assertEqual(indicators.loss_of_contact(run), 0.01)
+
+
+HEAD = "# gearsim\n# gears.pinion_teeth = 45\n# gears.wheel_teeth = 41\n# output.oversampling = 4\n"
+COLUMNS = "time_s,pinion_speed_rpm,pinion_angle_rad,contact_force_N"
+
+
+class CommandLine(unittest.TestCase):
+    def setUp(self):
+        folder = tempfile.TemporaryDirectory()
+        self.addCleanup(folder.cleanup)
+        self.folder = folder.name
+        self.run = run_up(lambda t, angle: np.cos(45 * angle) + noise(t), duration_s=4.0, rate_Hz=8192.0)
+
+    def write(self, head=HEAD, columns=COLUMNS, tail=""):
+        table = np.column_stack([self.run.time_s, self.run.speed_rpm, self.run.angle_rad, self.run.force_N])
+        path = os.path.join(self.folder, "run.csv")
+        with open(path, "w", encoding="ascii") as file:
+            file.write(head + columns + "\n")
+            np.savetxt(file, table, "%.10g", ",")
+            file.write(tail)
+        return path
+
+    def campbell(self, *arguments):
+        return subprocess.run(
+            [os.path.join(SCRIPTS, "campbell"), *arguments],
+            cwd=self.folder,
+            env={**os.environ, "PYTHONDONTWRITEBYTECODE": "1"},
+            capture_output=True,
+            text=True,
+        )
+
+    def assert_input_error(self, result, *words):
+        self.assertEqual(result.returncode, 2, result.stderr)
+        self.assertNotIn("Traceback", result.stderr)
+        for word in words:
+            self.assertIn(word, result.stderr)
+
+    def test_draws_both_pictures_and_writes_the_numbers(self):
+        result = self.campbell(self.write(), "--eigenfrequency", "1979.16", "--title", "it's a \"test\" \\n")
+        self.assertEqual((result.returncode, result.stderr), (0, ""))
+        for name in ("run.png", "run_orders.png"):
+            with open(os.path.join(self.folder, name), "rb") as file:
+                self.assertEqual(file.read(8), b"\x89PNG\r\n\x1a\n")
+        with open(os.path.join(self.folder, "run.svg"), encoding="utf-8") as file:
+            map_svg = file.read()
+        self.assertIn("<image", map_svg)
+        self.assertIn("it's a \"test\" \\n", map_svg)
+        self.assertIn("log10 contact force amplitude / N", map_svg)
+        self.assertLess(len(map_svg), 2e6)
+        with open(os.path.join(self.folder, "run_orders.svg"), encoding="utf-8") as file:
+            self.assertIn("order 180", file.read())
+        with open(os.path.join(self.folder, "run_indicators.csv"), encoding="ascii") as file:
+            names = [line.split(",")[0] for line in file]
+        self.assertEqual(names, ["indicator"] + indicators.INDICATORS)
+
+    def test_columns_go_by_name(self):
+        self.run.time_s, self.run.force_N = self.run.force_N, self.run.time_s
+        path = self.write(columns="contact_force_N,pinion_speed_rpm,pinion_angle_rad,time_s")
+        read = runup.read_run(path)
+        self.assertAlmostEqual(read.rate_Hz, 8192.0, delta=1e-3)
+        self.assertAlmostEqual(read.force_N.mean(), MEAN_N, delta=1.0)
+
+    def test_missing_column_is_named(self):
+        path = self.write(columns=COLUMNS.replace("pinion_angle_rad", "wheel_angle_rad"))
+        self.assert_input_error(self.campbell(path), "pinion_angle_rad", "output.columns")
+
+    def test_incomplete_run_is_drawn_with_a_warning(self):
+        path = self.write(tail="# incomplete: interrupted\n")
+        result = self.campbell(path, "--no-pictures")
+        self.assertEqual(result.returncode, 0, result.stderr)
+        self.assertIn("ended early (interrupted)", result.stderr)
+
+    def test_run_without_filter_is_drawn_with_a_warning(self):
+        path = self.write(head=HEAD.replace("oversampling = 4", "oversampling = 1"))
+        result = self.campbell(path, "--no-pictures")
+        self.assertEqual(result.returncode, 0, result.stderr)
+        self.assertIn("folded", result.stderr)
+        self.assertNotIn("folded", self.campbell(self.write(), "--no-pictures").stderr)
+
+    def test_teeth_come_from_the_head_or_from_options(self):
+        path = self.write(head="")
+        self.assert_input_error(self.campbell(path, "--no-pictures"), "--pinion-teeth")
+        options = ("--pinion-teeth", "45", "--wheel-teeth", "41", "--no-pictures")
+        self.assertEqual(self.campbell(path, *options).returncode, 0)
+
+    def test_bad_input_is_said_in_a_line(self):
+        self.assert_input_error(self.campbell(self.write(tail="1,2,3\n")), "run.csv")
+        self.assert_input_error(self.campbell(self.write(tail="4,6000,nan,1\n")), "finite")
+        self.assert_input_error(self.campbell(self.write(tail="4,6000,1e4,text\n")), "text")
+        self.assert_input_error(self.campbell(self.write(tail="5,6000,1e4,1\n")), "evenly spaced")
+        self.assert_input_error(self.campbell(self.write(tail="4,6000,0,1\n")), "does not grow")
+        self.assert_input_error(self.campbell("nowhere.csv"), "nowhere.csv")
+        self.assert_input_error(self.campbell(self.write(), "--range", "2", "1"), "--range")
+        self.assert_input_error(self.campbell(self.write(), "--length", "99999"), "99999")
+        self.assert_input_error(self.campbell(self.write(), "--eigenfrequency", "-1"), "positive")
+
+
+class Palette(unittest.TestCase):
+    def test_lightness_rises_in_equal_steps(self):
+        with open(os.path.join(SCRIPTS, "campbell_map.gp"), encoding="ascii") as file:
+            colours = re.findall(r"\d '#([0-9a-f]{6})'", file.read())
+        self.assertGreater(len(colours), 8)
+        rgb = np.array([[int(c[i : i + 2], 16) / 255 for i in (0, 2, 4)] for c in colours])
+        linear = np.where(rgb <= 0.04045, rgb / 12.92, ((rgb + 0.055) / 1.055) ** 2.4)
+        luminance = linear @ [0.2126, 0.7152, 0.0722]
+        lightness = np.where(luminance > 216 / 24389, 116 * np.cbrt(luminance) - 16, luminance * 24389 / 27)
+        np.testing.assert_allclose(lightness, np.linspace(5.0, 97.0, len(colours)), atol=0.6)
+
+
+class Claims(unittest.TestCase):
+    """scripts/check_paper_figures holds what it should and fails what it should."""
+
+    def setUp(self):
+        self.script = load_script("check_paper_figures")
+        # Values that fit every claim: the limit of each, passed by a little.
+        self.values = {figure: dict.fromkeys(indicators.INDICATORS, 1.0) for figure in self.script.FIGURES}
+        self.values["13"]["HF_N"], self.values["14"]["HF_N"] = 10.0, 50.0
+        self.values["14"].update(S_N=30.0, O_N=300.0)
+        self.values["15"].update(S_N=20.0, O_N=150.0, HF_N=12.0)
+        self.values["16"].update(S_N=8.0, O_N=80.0, HF_N=11.0)
+        for claim in self.script.CLAIMS:
+            figure, _, names, relation, limit, divisor = claim
+            if divisor is None and not (figure == "14" and names == ["S_N"]):
+                factor = 1.01 if relation == self.script.AT_LEAST else 0.99
+                self.values[figure].update(dict.fromkeys(names, factor * limit))
+
+    def test_fitting_values_hold(self):
+        for claim in self.script.CLAIMS:
+            self.assertTrue(self.script.judge(self.values, claim)[0], claim)
+
+    def test_each_indicator_of_each_claim_can_fail(self):
+        for claim in self.script.CLAIMS:
+            figure, _, names, relation, limit, divisor = claim
+            scale = self.values[divisor][names[0]] if divisor else 1.0
+            for name in names:
+                kept = self.values[figure][name]
+                for wrong in (limit * scale * (0.98 if relation == ">=" else 1.02), np.nan):
+                    self.values[figure][name] = wrong
+                    self.assertFalse(self.script.judge(self.values, claim)[0], (claim, wrong))
+                self.values[figure][name] = kept
+
+    def test_status_and_table(self):
+        with tempfile.TemporaryDirectory() as folder:
+            command = [os.path.join(SCRIPTS, "check_paper_figures"), folder]
+            self.assertEqual(subprocess.run(command, capture_output=True).returncode, 2)
+            for expected in (0, 1):
+                for figure, values in self.values.items():
+                    with open(os.path.join(folder, f"fig{figure}_indicators.csv"), "w") as file:
+                        file.write("indicator,value\n")
+                        file.writelines(f"{name},{value:.6g}\n" for name, value in values.items())
+                result = subprocess.run(command, capture_output=True, text=True)
+                self.assertEqual(result.returncode, expected, result.stdout)
+                self.assertEqual(result.stdout.count("FAIL"), expected)
+                self.values["13"]["V4"] = 0.1
+            with open(os.path.join(folder, "indicators.csv")) as file:
+                self.assertEqual(file.readline(), "indicator,fig12,fig13,fig14,fig15,fig16\n")
+
+
+if __name__ == "__main__":
+    unittest.main()
