@@ -1,0 +1,58 @@
+/* SPDX-FileCopyrightText: The gearmesh authors */
+/* SPDX-License-Identifier: BSD-3-Clause */
+
+/*
+ * Any bytes as gearsim's INI file: refused with the exit status of bad input, or every number in it is what its
+ * key allows, and the gear pair can be built or is refused as well. Twice the same bytes, twice the same answer.
+ */
+#include "fuzz.h"
+#include "fuzz_file.h"
+
+#include <config.h>
+#include <gearbox.h>
+#include <math.h>
+
+static void claim_config(const config *conf) {
+    FUZZ_CLAIM(conf->gears.pinion_teeth >= 3 && conf->gears.wheel_teeth >= 3);
+    FUZZ_CLAIM(isfinite(conf->gears.normal_module) && isfinite(conf->gears.center_distance));
+    FUZZ_CLAIM(isfinite(conf->flank_scale) && conf->profile_from < conf->profile_to);
+    FUZZ_CLAIM(conf->damping >= 0.0 && conf->noise_amplitude >= 0.0 && conf->noise_interval > 0.0);
+    FUZZ_CLAIM(conf->digits >= 3 && conf->digits <= 17 && conf->oversampling >= 1);
+    FUZZ_CLAIM(conf->output_file != NULL && conf->provenance_count > 0);
+}
+
+static int load(enum config_purpose purpose) {
+    const config_request request = {.path = "fuzz.ini", .purpose = purpose};
+    config conf;
+    const int status = config_load(&conf, &request);
+    FUZZ_CLAIM(status == 0 || status == EXIT_BAD_INPUT);
+    if (status != 0)
+        return status;
+    claim_config(&conf);
+
+    /* Flank files have fuzzers of their own, and a name may be that of a device. */
+    gearbox box;
+    int opened = 0;
+    if (conf.pinion_flanks.deviations == NULL && conf.pinion_flanks.pitch == NULL &&
+        conf.wheel_flanks.deviations == NULL && conf.wheel_flanks.pitch == NULL) {
+        opened = gearbox_open(&box, &conf);
+        FUZZ_CLAIM(opened == 0 || opened == EXIT_BAD_INPUT);
+        if (opened == 0) {
+            FILE *nowhere = fopen("/dev/null", "w");
+            FUZZ_CLAIM(nowhere != NULL);
+            gearbox_print_geometry(&box, &conf, nowhere);
+            fclose(nowhere);
+            gearbox_close(&box);
+        }
+    }
+    config_free(&conf);
+    return opened;
+}
+
+int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size) {
+    fuzz_write_file("fuzz.ini", data, size);
+    const int status = load(CONFIG_FOR_RUN);
+    FUZZ_CLAIM(load(CONFIG_FOR_RUN) == status);
+    load(CONFIG_FOR_GEOMETRY);
+    return 0;
+}
