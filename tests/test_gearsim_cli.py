@@ -363,6 +363,10 @@ class Names(Case):
         self.refused("run.ini: gears.wheel_teeth: missing", arguments=["--geometry"],
                      params=without_key(PARAMS, "wheel_teeth"))
 
+    def test_geometry_opens_no_flank_file(self):
+        self.write("run.ini", with_key(PARAMS, "flanks", "pinion", "none.csv"))
+        self.assertEqual(self.accepted("run.ini", "--geometry").stderr, "")
+
     def test_keys_that_are_not_used_are_warned_of(self):
         self.write("run.ini", with_key(PARAMS, "drive", "torque_Nm", "20"))
         line = line_of(self.read("run.ini"), "torque_Nm")

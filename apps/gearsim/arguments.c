@@ -38,7 +38,7 @@ static const char options_help[] =
     "`#`.\n"
     "All keys, with [default], meaning, range and need; keys that the chosen kind, type or model "
     "does\n"
-    "not use are accepted with a warning; --geometry needs [gears] alone:\n"
+    "not use are accepted with a warning; --geometry needs [gears] alone and opens no flank file:\n"
     "\n";
 
 enum option_value { NO_VALUE, TAKES_VALUE };

@@ -335,11 +335,11 @@ static const char *condition_of(const key_spec *key, const config *conf) {
     return key->required & FOR_RUN ? " for a run" : "";
 }
 
-static int check_missing(const config *conf, enum config_purpose purpose) {
+static int check_missing(const config *conf) {
     int faults = 0;
 
     for (int i = 0; i < key_count; ++i) {
-        if (conf->entries[i].text != NULL || !key_is_required(&keys[i], conf, purpose))
+        if (conf->entries[i].text != NULL || !key_is_required(&keys[i], conf))
             continue;
         config_complain(conf, keys[i].full_name, "missing, but required%s: add %s to [%s]",
                         condition_of(&keys[i], conf), keys[i].name, keys[i].section);
@@ -431,10 +431,10 @@ static int check_output_is_no_input(const config *conf) {
     return faults;
 }
 
-static int check_together(const config *conf, enum config_purpose purpose) {
+static int check_together(const config *conf) {
     int faults = check_profile_window(conf);
 
-    if (purpose == CONFIG_FOR_GEOMETRY)
+    if (conf->purpose == CONFIG_FOR_GEOMETRY)
         return faults;
     faults += conf->analysis == ANALYSIS_STATIC ? check_static(conf) : check_dynamic(conf);
     return faults + check_output_is_no_input(conf);
@@ -495,6 +495,7 @@ static void start(config *conf, const config_request *request) {
     memset(conf, 0, sizeof *conf);
     conf->path = copy_text(request->path);
     conf->quiet = request->quiet;
+    conf->purpose = request->purpose;
     conf->entries = allocate((size_t)key_count * sizeof *conf->entries);
     key_assign_defaults(conf);
 }
@@ -511,9 +512,9 @@ int config_load(config *conf, const config_request *request) {
     if (conf->output_file == NULL)
         conf->output_file = default_output_file(conf->path);
     if (load.faults == 0)
-        load.faults = check_missing(conf, request->purpose);
+        load.faults = check_missing(conf);
     if (load.faults == 0)
-        load.faults = check_together(conf, request->purpose);
+        load.faults = check_together(conf);
     if (load.faults > 0) {
         config_free(conf);
         return EXIT_BAD_INPUT;

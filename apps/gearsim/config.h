@@ -19,6 +19,9 @@ enum static_period { PERIOD_MESH, PERIOD_PINION, PERIOD_HUNTING };
 enum solver_method { METHOD_BDF, METHOD_ADAMS };
 enum deviation_direction { DEVIATION_NORMAL, DEVIATION_TRANSVERSE };
 
+/* What a configuration is loaded for: --geometry needs [gears] alone and opens no flank file. */
+enum config_purpose { CONFIG_FOR_RUN, CONFIG_FOR_GEOMETRY };
+
 typedef struct flank_files {
     char *deviations; /* path as it can be opened from the working folder, NULL = ideal */
     char *pitch;
@@ -69,6 +72,7 @@ typedef struct config {
     char *columns; /* names separated by commas, NULL = all */
 
     int quiet; /* no progress, notes and warnings on stderr; errors stay */
+    enum config_purpose purpose;
 
     /* Every key in effect, defaults included, as "section.key = value": what an output says of its origin. */
     char **provenance;
@@ -80,16 +84,14 @@ typedef struct config {
 /* Exit codes of gearsim. */
 enum exit_code { EXIT_DONE = 0, EXIT_RUN_FAILED = 1, EXIT_BAD_INPUT = 2, EXIT_INTERRUPTED = 130 };
 
-enum config_purpose { CONFIG_FOR_RUN, CONFIG_FOR_GEOMETRY };
-
 /* What the command line asks for. */
 typedef struct config_request {
     const char *path;       /* of the INI file */
     char *const *overrides; /* "section.key=value" of each --set, in order */
     int override_count;
-    const char *output_file;     /* of --output, NULL = not given */
-    int quiet;                   /* no progress, notes and warnings; errors stay */
-    enum config_purpose purpose; /* for geometry only [gears] is required */
+    const char *output_file; /* of --output, NULL = not given */
+    int quiet;               /* no progress, notes and warnings; errors stay */
+    enum config_purpose purpose;
 } config_request;
 
 /*

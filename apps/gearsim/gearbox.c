@@ -289,7 +289,7 @@ int gearbox_open(gearbox *box, const config *conf) {
         return status;
     warn_of_doubts(conf, &box->pair);
     derive_simple_model(box, conf);
-    if (conf->model == MODEL_3D)
+    if (conf->model == MODEL_3D && conf->purpose == CONFIG_FOR_RUN)
         status = load_both_flanks(box, conf);
     if (status != 0)
         gearbox_close(box);

@@ -505,8 +505,8 @@ int key_is_used(const key_spec *key, const config *conf, const char **reason) {
     return lacking == 0;
 }
 
-int key_is_required(const key_spec *key, const config *conf, enum config_purpose purpose) {
-    const unsigned purposes = purpose == CONFIG_FOR_RUN ? FOR_ALL | FOR_RUN : FOR_ALL;
+int key_is_required(const key_spec *key, const config *conf) {
+    const unsigned purposes = conf->purpose == CONFIG_FOR_RUN ? FOR_ALL | FOR_RUN : FOR_ALL;
 
     return key->required != 0 && (key->required & ~(situation_of(conf) | purposes)) == 0;
 }

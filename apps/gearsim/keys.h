@@ -89,7 +89,7 @@ void key_assign_defaults(config *conf);
 
 /* Does the configuration use the key? If not, `reason` is the choice that makes it unused. */
 int key_is_used(const key_spec *key, const config *conf, const char **reason);
-int key_is_required(const key_spec *key, const config *conf, enum config_purpose purpose);
+int key_is_required(const key_spec *key, const config *conf);
 
 /* Zeroed memory, and a copy on the heap; end the program if there is no memory left. */
 void *allocate(size_t size);
