@@ -108,13 +108,22 @@ static double tooth_peak(const gm_flank_tables *side, int tooth) {
     return side->pitch[tooth] + (table < 0 ? 0.0 : side->table_peak[table]);
 }
 
-static void update_peak(gm_flanks *flanks, gm_flank_tables *side) {
+static void find_peak(const gm_flanks *flanks, gm_flank_tables *side) {
     side->peak = tooth_peak(side, 0);
     for (int tooth = 1; tooth < flanks->teeth; ++tooth) {
         const double peak = tooth_peak(side, tooth);
         if (peak > side->peak)
             side->peak = peak;
     }
+}
+
+/* After a change of one tooth, or of all. Looks at all teeth only if the highest one may have come down. */
+static void update_peak(const gm_flanks *flanks, gm_flank_tables *side, int tooth, double before) {
+    const double now = tooth == GM_ALL_TEETH ? before : tooth_peak(side, tooth);
+    if (tooth == GM_ALL_TEETH || (before == side->peak && now < before))
+        find_peak(flanks, side);
+    else if (now > side->peak)
+        side->peak = now;
 }
 
 static int check_deviation(const gm_flank_tables *side, const double *deviation, double factor) {
@@ -173,13 +182,14 @@ int gm_flanks_set_table(gm_flanks *flanks, int side, int tooth, const double *de
     double *table = tables->values + (size_t)place * table_doubles(tables);
     fill_table(tables, table, deviation, factor);
     tables->table_peak[place] = table_maximum(table, table_doubles(tables));
+    const double before = tooth == GM_ALL_TEETH ? 0.0 : tooth_peak(tables, tooth);
     if (tooth != GM_ALL_TEETH) {
         tables->table[tooth] = place;
     } else {
         for (int k = 0; k < flanks->teeth; ++k)
             tables->table[k] = place;
     }
-    update_peak(flanks, tables);
+    update_peak(flanks, tables, tooth, before);
     return GM_OK;
 }
 
@@ -192,13 +202,14 @@ int gm_flanks_set_pitch(gm_flanks *flanks, int side, int tooth, double deviation
     if (!gmi_is_finite(deviation))
         return GM_ERR_DEVIATION;
 
+    const double before = tooth == GM_ALL_TEETH ? 0.0 : tooth_peak(tables, tooth);
     if (tooth != GM_ALL_TEETH) {
         tables->pitch[tooth] = deviation;
     } else {
         for (int k = 0; k < flanks->teeth; ++k)
             tables->pitch[k] = deviation;
     }
-    update_peak(flanks, tables);
+    update_peak(flanks, tables, tooth, before);
     return GM_OK;
 }
 

@@ -13,6 +13,8 @@ static double flank_force(double stiffness, double damping, double sum, double r
 double gm_contact_force(double stiffness, double damping, const gm_penetration *penetration) {
     if (penetration == NULL)
         return gmi_nan();
-    return flank_force(stiffness, damping, penetration->drive, penetration->drive_rate) -
-           flank_force(stiffness, damping, penetration->coast, penetration->coast_rate);
+    const double force =
+        flank_force(stiffness, damping, penetration->drive, penetration->drive_rate) -
+        flank_force(stiffness, damping, penetration->coast, penetration->coast_rate);
+    return gmi_is_finite(force) ? force : gmi_nan();
 }

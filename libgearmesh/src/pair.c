@@ -275,6 +275,30 @@ static problem derive_path(gm_pair *pair) {
     return no_problem;
 }
 
+/* Finite parameters of absurd sizes overflow where they meet. */
+static problem check_finite(const gm_pair *pair) {
+    const double derived[] = {
+        pair->pinion.base_half_thickness,
+        pair->wheel.base_half_thickness,
+        pair->pinion.tip_roll_length,
+        pair->wheel.tip_roll_length,
+        pair->pinion.normal_thickness,
+        pair->wheel.normal_thickness,
+        pair->pinion.profile_shift,
+        pair->wheel.profile_shift,
+        pair->line_of_action,
+        pair->twist,
+        pair->backlash,
+        pair->phase_origin,
+    };
+    for (size_t k = 0; k < sizeof derived / sizeof derived[0]; ++k) {
+        if (!gmi_is_finite(derived[k]))
+            return geometry_problem("normal_module", "one that goes with the other sizes: "
+                                                     "together they overflow");
+    }
+    return no_problem;
+}
+
 static problem derive(gm_pair *pair, const gm_pair_params *params) {
     problem found = check_fields(params);
     if (found.field != NULL)
@@ -289,6 +313,8 @@ static problem derive(gm_pair *pair, const gm_pair_params *params) {
         found = derive_flank_ends(pair, params);
     if (found.field == NULL)
         found = derive_path(pair);
+    if (found.field == NULL)
+        found = check_finite(pair);
     return found;
 }
 

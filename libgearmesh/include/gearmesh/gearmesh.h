@@ -495,7 +495,7 @@ GM_API int gm_wrench_3d_at(const gm_pair *pair, const gm_flanks *pinion_flanks,
  * @param[in]  wheel_torque   load on the wheel, > 0 resists +phi_w and loads the drive flanks (N m)
  * @param[out] offset         x; the transmission error is -x (m)
  * @param[out] result         penetration there; may be NULL
- * @return GM_OK, GM_ERR_NULL, GM_ERR_PARAMETER (stiffness), GM_ERR_TOOTH, GM_STATE_NOT_FINITE,
+ * @return GM_OK, GM_ERR_NULL, GM_ERR_PARAMETER (stiffness or torque), GM_ERR_TOOTH, GM_STATE_NOT_FINITE,
  *         GM_STATE_OUT_OF_RANGE, GM_NO_EQUILIBRIUM, GM_UNDETERMINED (no torque within the backlash)
  */
 GM_API int gm_static_equilibrium(const gm_pair *pair, const gm_flanks *pinion_flanks,
