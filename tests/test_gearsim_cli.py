@@ -559,6 +559,18 @@ class Geometry(Case):
         self.assertRegex(self.doubts("wheel_start_diameter_mm=77"),
                          r"gears\.wheel_start_diameter_mm: warning: .* diameter of 77 mm, below the root form")
 
+    def test_zero_backlash_is_not_taken_for_negative(self):
+        # These leave -5e-14 and -1e-14 um where the profile shifts are derived for zero.
+        self.write("run.ini", without_key(PARAMS, "backlash_um"))
+        for distance in ["85", "84.7"]:
+            result = self.accepted("run.ini", "--geometry", "--set", f"gears.center_distance_mm={distance}")
+            self.assertEqual(result.stderr, "")
+
+    def test_listing_has_finite_numbers_only(self):
+        values = self.listing("--set", "mesh.stiffness_N_per_m=1.7e308")
+        self.assertNotIn("mean_mesh_stiffness_N_per_um", values)
+        self.assertTrue(all(math.isfinite(value) for value in values.values()))
+
     def test_start_below_the_base_circle_is_the_base_circle(self):
         text = self.doubts("pinion_start_diameter_mm=80")
         self.assertRegex(text, r"gears\.pinion_start_diameter_mm: warning: below the base circle .* 83\.7719 mm is taken")

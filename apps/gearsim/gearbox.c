@@ -148,7 +148,8 @@ static void warn_of_doubts(const config *conf, const gm_pair *pair) {
             conf, "gears.center_distance_mm",
             "the transverse contact ratio is %.4f, below 1: no smooth handover between teeth",
             pair->transverse_contact_ratio);
-    if (doubts & GM_DOUBT_BACKLASH)
+    /* Profile shifts made for zero backlash leave a rounding of it, of either sign. */
+    if ((doubts & GM_DOUBT_BACKLASH) && pair->backlash < -1e-12 * pair->transverse_base_pitch)
         config_warn(conf, "gears.backlash_um",
                     "the backlash is %.6g um, negative: both flanks touch and press",
                     1e6 * pair->backlash);
@@ -306,9 +307,9 @@ void gearbox_close(gearbox *box) {
  * The --geometry listing
  * ------------------------------------------------------------------------------------------- */
 
-/* Nothing is printed of a quantity whose inputs are missing. */
+/* Nothing is printed of a quantity whose inputs are missing (NaN), or that no number holds. */
 static void print_value(FILE *stream, const char *name, double value) {
-    if (!isnan(value))
+    if (isfinite(value))
         fprintf(stream, "%s = %.17g\n", name, value);
 }
 
