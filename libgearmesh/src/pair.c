@@ -158,6 +158,10 @@ static double derive_pose(gm_pair *pair, double center_distance) {
     return sin(difference) / (cos(alpha_w) * cos(alpha_t)) - difference;
 }
 
+static int is_thickness(const gm_gear *gear, const gm_pair_params *p) {
+    return gear->normal_thickness > 0.0 && gear->normal_thickness < GMI_PI * p->normal_module;
+}
+
 /*
  * Profile shifts, tooth thicknesses and backlash along the line of action:
  *     p_bt - 2 r_bp psi_p - 2 r_bw psi_w + 2 (r_bp + r_bw) inv(alpha_wt)
@@ -204,14 +208,20 @@ static problem derive_thickness(gm_pair *pair, const gm_pair_params *p,
     pair->phase_origin =
         pinion->base_radius * (pair->working_pressure_angle + pinion->base_half_thickness);
 
-    static const char thickness[] = "a value that leaves both teeth thicker than 0";
-    const int too_thin = !(pinion->normal_thickness > 0.0 && wheel->normal_thickness > 0.0);
-    if (too_thin && !isnan(p->backlash))
+    static const char thickness[] =
+        "a value that leaves both teeth thicker than 0 and thinner than a pitch";
+    const int pinion_fits = is_thickness(pinion, p);
+    const int wheel_fits = is_thickness(wheel, p);
+    if (!(pinion_fits && wheel_fits) && !isnan(p->backlash))
         return geometry_problem("backlash", thickness);
-    if (!(pinion->normal_thickness > 0.0))
-        return geometry_problem("pinion_profile_shift", thickness);
-    if (!(wheel->normal_thickness > 0.0))
-        return geometry_problem("wheel_profile_shift", thickness);
+    if (!pinion_fits)
+        return geometry_problem(isnan(p->pinion_normal_thickness) ? "pinion_profile_shift"
+                                                                  : "pinion_normal_thickness",
+                                thickness);
+    if (!wheel_fits)
+        return geometry_problem(isnan(p->wheel_normal_thickness) ? "wheel_profile_shift"
+                                                                 : "wheel_normal_thickness",
+                                thickness);
     return no_problem;
 }
 
@@ -402,7 +412,7 @@ int gm_pair_doubts(const gm_pair *pair, const gm_pair_params *params) {
         doubts |= GM_DOUBT_WHEEL_ROOT_FORM;
     if (pair->transverse_contact_ratio < 1.0)
         doubts |= GM_DOUBT_CONTACT_RATIO;
-    if (pair->backlash < 0.0)
+    if (pair->backlash < -BACKLASH_ROUNDING * pair->transverse_base_pitch)
         doubts |= GM_DOUBT_BACKLASH;
     if (params->pinion_start_radius < pinion->base_radius)
         doubts |= GM_DOUBT_PINION_START_RADIUS;
