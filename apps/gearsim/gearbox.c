@@ -149,7 +149,7 @@ static void warn_of_doubts(const config *conf, const gm_pair *pair) {
             "the transverse contact ratio is %.4f, below 1: no smooth handover between teeth",
             pair->transverse_contact_ratio);
     /* Profile shifts made for zero backlash leave a rounding of it, of either sign. */
-    if ((doubts & GM_DOUBT_BACKLASH) && pair->backlash < -1e-12 * pair->transverse_base_pitch)
+    if (doubts & GM_DOUBT_BACKLASH)
         config_warn(conf, "gears.backlash_um",
                     "the backlash is %.6g um, negative: both flanks touch and press",
                     1e6 * pair->backlash);
