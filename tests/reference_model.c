@@ -9,9 +9,10 @@
 /* pi = 3.243F6A88 85A308D3 13198A2E ... (hexadecimal) */
 static const long double pi = 0x3.243F6A8885A308D3p0L;
 
-/* 2 pi in parts of 35, 29, 30 and 31 bits: a part times an integer below 2^29 is exact. */
-static const long double two_pi_parts[4] = {0x6487ED511p-32L, 0x0B4611A6p-64L, 0x2633145Cp-96L,
-                                            0x06E0E689p-128L};
+/* 2 pi in parts of 27, 21 and then 24 bits: a part times an integer below 2^37 is exact. */
+enum { PART_COUNT = 6 };
+static const long double two_pi_parts[PART_COUNT] = {
+    0x6487ED5p-24L, 0x110B46p-48L, 0x11A626p-72L, 0x33145Cp-96L, 0x06E0E6p-120L, 0x894812p-144L};
 
 /** More breaks than any table of the tests has grid lines. */
 enum { MAX_BREAKS = 8192 };
@@ -311,7 +312,7 @@ static long double reduce(long double angle, int teeth, long long *turns) {
     const long double product = angle * teeth; /* exact: 53 bits times at most 11 */
     const long double k = roundl(product / (2 * pi));
     long double rest = product;
-    for (int i = 0; i < 4; i++) {
+    for (int i = 0; i < PART_COUNT; i++) {
         rest -= k * two_pi_parts[i];
     }
     *turns = (long long)k;

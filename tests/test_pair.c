@@ -1,0 +1,671 @@
+/* SPDX-FileCopyrightText: The gearmesh authors */
+/* SPDX-License-Identifier: BSD-3-Clause */
+
+/* From a drawing to a pair: derived values, defaults, every range, every doubt. */
+#include "gearmesh/gearmesh.h"
+#include "gm_test.h"
+#include "reference_gear.h"
+
+static const double degree = 0.017453292519943295;
+
+/** All doubles of a pair. */
+enum { GEAR_DOUBLES = 11, PAIR_DOUBLES = 2 * GEAR_DOUBLES + 21 };
+
+static void list_gear(const gm_gear *g, double *out) {
+    const double values[GEAR_DOUBLES] = {
+        g->profile_shift,   g->reference_radius, g->base_radius,          g->tip_radius,
+        g->start_radius,    g->normal_thickness, g->base_half_thickness,  g->start_roll_length,
+        g->tip_roll_length, g->pitch_angle,      g->pitch_angle_remainder};
+    memcpy(out, values, sizeof values);
+}
+
+static void list_pair(const gm_pair *p, double out[PAIR_DOUBLES]) {
+    list_gear(&p->pinion, out);
+    list_gear(&p->wheel, out + GEAR_DOUBLES);
+    const double values[21] = {p->normal_module,
+                               p->transverse_module,
+                               p->normal_pressure_angle,
+                               p->transverse_pressure_angle,
+                               p->helix_angle,
+                               p->base_helix_angle,
+                               p->transverse_base_pitch,
+                               p->face_width,
+                               p->twist,
+                               p->normal_to_transverse,
+                               p->center_distance,
+                               p->reference_center_distance,
+                               p->working_pressure_angle,
+                               p->line_of_action,
+                               p->path_start,
+                               p->path_end,
+                               p->transverse_contact_ratio,
+                               p->overlap_ratio,
+                               p->total_contact_ratio,
+                               p->backlash,
+                               p->phase_origin};
+    memcpy(out + 2 * GEAR_DOUBLES, values, sizeof values);
+}
+
+/** Whether no field of the pair is of use. */
+static void assert_unusable(const gm_pair *pair) {
+    double values[PAIR_DOUBLES];
+    list_pair(pair, values);
+    for (int i = 0; i < PAIR_DOUBLES; i++) {
+        GM_ASSERT_NAN(values[i]);
+    }
+    GM_ASSERT_INT(pair->pinion.teeth, 0);
+    GM_ASSERT_INT(pair->wheel.teeth, 0);
+}
+
+/* ---------------------------------------------------------------------------------------------
+ * The reference gears
+ * ------------------------------------------------------------------------------------------- */
+
+/* Values worked out independently when the gear was chosen (data/paper/README.md), with the digits printed
+ * there; the tolerance is half a unit of the last one. */
+static void reference_gears_have_their_known_geometry(void) {
+    const gm_pair p = reference_pair(REFERENCE_FACE_WIDTH);
+    const double mm = 1e-3;
+    GM_ASSERT_ABS(p.transverse_module, 1.967399 * mm, 0.5e-6 * mm);
+    GM_ASSERT_ABS(p.transverse_pressure_angle, 18.87580 * degree, 0.5e-5 * degree);
+    GM_ASSERT_ABS(p.base_helix_angle, 31.57005 * degree, 0.5e-5 * degree);
+    GM_ASSERT_ABS(p.pinion.base_radius, 41.885928 * mm, 0.5e-6 * mm);
+    GM_ASSERT_ABS(p.wheel.base_radius, 38.162735 * mm, 0.5e-6 * mm);
+    GM_ASSERT_ABS(p.reference_center_distance, 84.598176 * mm, 0.5e-6 * mm);
+    GM_ASSERT_ABS(p.working_pressure_angle, 19.65262 * degree, 0.5e-5 * degree);
+    GM_ASSERT_ABS(p.line_of_action, 28.586911 * mm, 0.5e-6 * mm);
+    GM_ASSERT_ABS(p.transverse_base_pitch, 5.848379 * mm, 0.5e-6 * mm);
+    GM_ASSERT_ABS(p.twist, 10.753467 * mm, 0.5e-6 * mm);
+    GM_ASSERT_ABS(p.normal_to_transverse, 1.17371, 0.5e-5);
+    /* The tip radii are given to 1e-6 mm; at rho they count r_a / rho = 2.3 times as much. */
+    GM_ASSERT_ABS(p.path_start, 8.764840 * mm, 0.5e-6 * mm + 1.2e-6 * mm);
+    GM_ASSERT_ABS(p.path_end, 21.184463 * mm, 0.5e-6 * mm + 1.2e-6 * mm);
+    GM_ASSERT_ABS(p.pinion.start_radius, 42.793147 * mm, 1e-6 * mm);
+    GM_ASSERT_ABS(p.wheel.start_radius, 38.874035 * mm, 1e-6 * mm);
+    GM_ASSERT_ABS(p.transverse_contact_ratio, 2.123601, 1e-6);
+    GM_ASSERT_ABS(p.overlap_ratio, 1.838709, 0.5e-6);
+    GM_ASSERT_ABS(p.total_contact_ratio, 3.962310, 1e-6);
+    GM_ASSERT_ABS(p.pinion.profile_shift + p.wheel.profile_shift, 0.2483897, 0.5e-7);
+    GM_ASSERT_ABS(p.pinion.profile_shift, 0.1241948, 1e-7);
+    GM_ASSERT_ABS(p.pinion.normal_thickness, 2.6650177 * mm, 0.5e-7 * mm);
+    GM_ASSERT_ABS(p.wheel.normal_thickness, 2.6650177 * mm, 0.5e-7 * mm);
+    GM_ASSERT_REL(p.backlash, 100e-6, 1e-15);
+    /* Roll angles chi = rho / r_b. */
+    GM_ASSERT_ABS(p.pinion.start_roll_length / p.pinion.base_radius, 0.209255, 0.6e-6);
+    GM_ASSERT_ABS(p.pinion.tip_roll_length / p.pinion.base_radius, 0.505766, 0.6e-6);
+    GM_ASSERT_ABS(p.wheel.start_roll_length / p.wheel.base_radius, 0.193971, 0.6e-6);
+    GM_ASSERT_ABS(p.wheel.tip_roll_length / p.wheel.base_radius, 0.519409, 0.6e-6);
+    GM_ASSERT_INT(p.pinion.teeth, 45);
+    GM_ASSERT_INT(p.wheel.teeth, 41);
+}
+
+static void wider_reference_gears_have_their_known_overlap(void) {
+    const gm_pair p = reference_pair(20e-3);
+    GM_ASSERT_ABS(p.overlap_ratio, 2.101382, 0.5e-6);
+    GM_ASSERT_ABS(p.total_contact_ratio, 4.224983, 1e-6);
+}
+
+static void standard_rack_has_its_known_path(void) {
+    gm_pair_params params = reference_params(20e-3);
+    params.pinion_tip_radius = 46.113390e-3;
+    params.wheel_tip_radius = 42.178591e-3;
+    const gm_pair p = make_pair(&params);
+    GM_ASSERT_ABS(p.transverse_contact_ratio, 1.481249, 1e-6);
+    GM_ASSERT_ABS(p.path_start, 10.624750e-3, 0.5e-9 + 1.2e-9);
+    GM_ASSERT_ABS(p.path_end, 19.287658e-3, 0.5e-9 + 1.2e-9);
+    GM_ASSERT_ABS(p.pinion.start_radius, 43.212456e-3, 1e-9);
+    GM_ASSERT_ABS(p.wheel.start_radius, 39.279390e-3, 1e-9);
+}
+
+/* [Paper, Eq. 6] as printed: 34.46244 deg, overlap 2.3470 at b = 20 mm. */
+static void paper_base_helix_is_there_on_request_only(void) {
+    gm_pair_params params = reference_params(20e-3);
+    params.base_helix = GM_BASE_HELIX_PAPER;
+    const gm_pair paper = make_pair(&params);
+    GM_ASSERT_ABS(paper.base_helix_angle, 34.46244 * degree, 0.5e-5 * degree);
+    GM_ASSERT_ABS(paper.overlap_ratio, 2.3470, 0.5e-4);
+    GM_ASSERT_ABS(paper.twist, 13.726e-3, 0.5e-6);
+    const gm_pair iso = reference_pair(20e-3);
+    GM_ASSERT_ABS(iso.twist, 12.290e-3, 0.5e-6);
+    GM_ASSERT_REL(paper.transverse_base_pitch, iso.transverse_base_pitch, 0.0);
+}
+
+static void left_hand_changes_signs_alone(void) {
+    gm_pair_params params = reference_params(REFERENCE_FACE_WIDTH);
+    const gm_pair right = make_pair(&params);
+    params.helix_angle = -params.helix_angle;
+    gm_pair left = make_pair(&params);
+    GM_ASSERT(left.helix_angle < 0.0 && left.base_helix_angle < 0.0 && left.twist < 0.0);
+    left.helix_angle = -left.helix_angle;
+    left.base_helix_angle = -left.base_helix_angle;
+    left.twist = -left.twist;
+    double a[PAIR_DOUBLES];
+    double b[PAIR_DOUBLES];
+    list_pair(&right, a);
+    list_pair(&left, b);
+    for (int i = 0; i < PAIR_DOUBLES; i++) {
+        gm_test_context("field %d", i);
+        GM_ASSERT_REL(b[i], a[i], 0.0);
+    }
+}
+
+/* ---------------------------------------------------------------------------------------------
+ * Defaults
+ * ------------------------------------------------------------------------------------------- */
+
+static void defaults_are_missing_or_derived(void) {
+    gm_pair_params p;
+    memset(&p, 1, sizeof p);
+    gm_pair_params_default(&p);
+    GM_ASSERT_INT(p.pinion_teeth, 0);
+    GM_ASSERT_INT(p.wheel_teeth, 0);
+    GM_ASSERT_INT(p.base_helix, GM_BASE_HELIX_ISO);
+    GM_ASSERT_REL(p.helix_angle, 0.0, 0.0);
+    const double missing[] = {
+        p.normal_module,     p.normal_pressure_angle,   p.center_distance,
+        p.face_width,        p.pinion_profile_shift,    p.wheel_profile_shift,
+        p.backlash,          p.pinion_normal_thickness, p.wheel_normal_thickness,
+        p.pinion_tip_radius, p.wheel_tip_radius,        p.pinion_start_radius,
+        p.wheel_start_radius};
+    for (size_t i = 0; i < sizeof missing / sizeof missing[0]; i++) {
+        gm_test_context("field %d", (int)i);
+        GM_ASSERT_NAN(missing[i]);
+    }
+    GM_ASSERT_INT(gm_pair_params_check(&p, NULL, NULL), GM_ERR_PARAMETER);
+    gm_pair_params_default(NULL); /* does nothing */
+}
+
+static void a_zeroed_struct_is_refused(void) {
+    gm_pair_params p;
+    memset(&p, 0, sizeof p);
+    const char *field = NULL;
+    GM_ASSERT_INT(gm_pair_params_check(&p, &field, NULL), GM_ERR_PARAMETER);
+    GM_ASSERT_STRING(field, "pinion_teeth");
+}
+
+static void shifts_default_to_zero_backlash(void) {
+    gm_pair_params params = reference_params(REFERENCE_FACE_WIDTH);
+    params.backlash = NAN;
+    const gm_pair both = make_pair(&params);
+    const double sum = both.pinion.profile_shift + both.wheel.profile_shift;
+    GM_ASSERT_REL(both.pinion.profile_shift, both.wheel.profile_shift, 0.0);
+    /* Backlash is a difference of lengths up to d. */
+    const double rounding = 8.0 * 0x1p-53 * both.center_distance;
+    GM_ASSERT_ABS(both.backlash, 0.0, rounding);
+
+    params.pinion_profile_shift = 0.3;
+    const gm_pair pinion = make_pair(&params);
+    GM_ASSERT_REL(pinion.pinion.profile_shift, 0.3, 0.0);
+    GM_ASSERT_REL(pinion.wheel.profile_shift, sum - 0.3, 1e-13);
+    GM_ASSERT_ABS(pinion.backlash, 0.0, rounding);
+
+    params.pinion_profile_shift = NAN;
+    params.wheel_profile_shift = -0.2;
+    const gm_pair wheel = make_pair(&params);
+    GM_ASSERT_REL(wheel.wheel.profile_shift, -0.2, 0.0);
+    GM_ASSERT_REL(wheel.pinion.profile_shift, sum + 0.2, 1e-13);
+    GM_ASSERT_ABS(wheel.backlash, 0.0, rounding);
+
+    /* Both given: s_n = m_n (pi / 2 + 2 x tan(alpha_n)) */
+    params.pinion_profile_shift = 0.1;
+    const gm_pair given = make_pair(&params);
+    const double m_n = params.normal_module;
+    GM_ASSERT_REL(given.pinion.normal_thickness,
+                  m_n * (1.5707963267948966 + 2.0 * 0.1 * tan(params.normal_pressure_angle)),
+                  1e-15);
+    GM_ASSERT_REL(given.wheel.normal_thickness,
+                  m_n * (1.5707963267948966 - 2.0 * 0.2 * tan(params.normal_pressure_angle)),
+                  1e-15);
+    GM_ASSERT(given.backlash > 0.0);
+}
+
+static void thickness_wins_over_shift(void) {
+    gm_pair_params params = reference_params(REFERENCE_FACE_WIDTH);
+    params.backlash = NAN;
+    params.pinion_profile_shift = 0.3;
+    params.pinion_normal_thickness = 2.6e-3;
+    params.wheel_normal_thickness = 2.7e-3;
+    const gm_pair p = make_pair(&params);
+    GM_ASSERT_REL(p.pinion.normal_thickness, 2.6e-3, 1e-15);
+    GM_ASSERT_REL(p.wheel.normal_thickness, 2.7e-3, 1e-15);
+    GM_ASSERT_REL(p.pinion.profile_shift, 0.3, 0.0); /* nominal */
+    /* Together 30.0 um thicker than the 2 x 2.6650177 mm that give 100 um: each micrometre of normal
+     * thickness is cos(alpha_t) / cos(beta) along the line of action. */
+    const double expected = 100e-6 - (5.3e-3 - 2.0 * 2.6650177e-3) *
+                                         cos(p.transverse_pressure_angle) / cos(p.helix_angle);
+    GM_ASSERT_ABS(p.backlash, expected, 2.0 * 0.5e-10 * 1.2);
+}
+
+static void backlash_thins_both_teeth_equally_and_leaves_the_shifts(void) {
+    gm_pair_params params = reference_params(REFERENCE_FACE_WIDTH);
+    params.pinion_normal_thickness = 2.6e-3;
+    params.wheel_normal_thickness = 2.7e-3;
+    params.backlash = NAN;
+    const gm_pair before = make_pair(&params);
+    params.backlash = 300e-6;
+    const gm_pair after = make_pair(&params);
+    GM_ASSERT_REL(after.backlash, 300e-6, 1e-15);
+    const double thinner = before.pinion.normal_thickness - after.pinion.normal_thickness;
+    GM_ASSERT_ABS(before.wheel.normal_thickness - after.wheel.normal_thickness, thinner, 1e-17);
+    GM_ASSERT_REL(2.0 * thinner * cos(after.transverse_pressure_angle) / cos(after.helix_angle),
+                  300e-6 - before.backlash, 1e-11);
+    GM_ASSERT_REL(after.pinion.profile_shift, before.pinion.profile_shift, 0.0);
+    /* Thinner on the base circle by as much: s_t / (2 r). */
+    GM_ASSERT_REL(before.pinion.base_half_thickness - after.pinion.base_half_thickness,
+                  thinner / cos(after.helix_angle) / 2.0 / after.pinion.reference_radius, 1e-10);
+    params.backlash = -20e-6;
+    GM_ASSERT_REL(make_pair(&params).backlash, -20e-6, 1e-15);
+}
+
+static void tips_default_to_a_standard_addendum(void) {
+    gm_pair_params params = reference_params(REFERENCE_FACE_WIDTH);
+    params.pinion_tip_radius = NAN;
+    params.wheel_tip_radius = NAN;
+    params.pinion_profile_shift = 0.4;
+    const gm_pair p = make_pair(&params);
+    GM_ASSERT_REL(p.pinion.tip_radius, p.pinion.reference_radius + 1.65e-3 * 1.4, 1e-15);
+    GM_ASSERT_REL(p.wheel.tip_radius,
+                  p.wheel.reference_radius + 1.65e-3 * (1.0 + p.wheel.profile_shift), 1e-15);
+}
+
+static void profiles_start_where_the_mates_tip_reaches(void) {
+    const gm_pair p = reference_pair(REFERENCE_FACE_WIDTH);
+    GM_ASSERT_REL(p.pinion.start_roll_length, p.line_of_action - p.wheel.tip_roll_length, 1e-14);
+    GM_ASSERT_REL(p.wheel.start_roll_length, p.line_of_action - p.pinion.tip_roll_length, 1e-14);
+    GM_ASSERT_REL(p.pinion.start_radius, hypot(p.pinion.base_radius, p.pinion.start_roll_length),
+                  1e-15);
+    /* A mate whose tip passes the base tangent point: the profile starts on the base circle. */
+    gm_pair_params params = reference_params(REFERENCE_FACE_WIDTH);
+    params.wheel_tip_radius = 48.2e-3; /* rho = 29.4 mm > 28.6 mm */
+    const gm_pair deep = make_pair(&params);
+    GM_ASSERT_REL(deep.pinion.start_roll_length, 0.0, 0.0);
+    GM_ASSERT_REL(deep.pinion.start_radius, deep.pinion.base_radius, 1e-15);
+}
+
+static void a_start_below_the_base_circle_is_raised(void) {
+    gm_pair_params params = reference_params(REFERENCE_FACE_WIDTH);
+    params.pinion_start_radius = 30e-3;
+    params.wheel_start_radius = 20e-3;
+    const gm_pair p = make_pair(&params);
+    GM_ASSERT_REL(p.pinion.start_radius, p.pinion.base_radius, 0.0);
+    GM_ASSERT_REL(p.pinion.start_roll_length, 0.0, 0.0);
+    GM_ASSERT_REL(p.wheel.start_radius, p.wheel.base_radius, 0.0);
+    GM_ASSERT_REL(p.wheel.start_roll_length, 0.0, 0.0);
+    GM_ASSERT_INT(gm_pair_doubts(&p, &params) &
+                      (GM_DOUBT_PINION_START_RADIUS | GM_DOUBT_WHEEL_START_RADIUS),
+                  GM_DOUBT_PINION_START_RADIUS | GM_DOUBT_WHEEL_START_RADIUS);
+    /* The mate's tips still limit the path. */
+    const gm_pair reference = reference_pair(REFERENCE_FACE_WIDTH);
+    GM_ASSERT_REL(p.path_start, reference.path_start, 1e-15);
+    GM_ASSERT_REL(p.path_end, reference.path_end, 1e-15);
+}
+
+static void a_later_start_shortens_the_path(void) {
+    gm_pair_params params = reference_params(REFERENCE_FACE_WIDTH);
+    params.pinion_start_radius = 43.5e-3;
+    params.wheel_start_radius = 39.5e-3;
+    const gm_pair p = make_pair(&params);
+    GM_ASSERT_REL(p.path_start,
+                  sqrt(43.5e-3 * 43.5e-3 - p.pinion.base_radius * p.pinion.base_radius), 1e-13);
+    GM_ASSERT_REL(p.path_end,
+                  p.line_of_action -
+                      sqrt(39.5e-3 * 39.5e-3 - p.wheel.base_radius * p.wheel.base_radius),
+                  1e-13);
+    GM_ASSERT_REL(p.transverse_contact_ratio, (p.path_end - p.path_start) / p.transverse_base_pitch,
+                  1e-15);
+}
+
+static void pitch_angle_carries_two_doubles(void) {
+    /* z (pitch_angle + remainder) = 2 pi to 100 bits: 2 pi = 0x6.487ED5110B4611A6 2633145C... */
+    const gm_pair p = reference_pair(REFERENCE_FACE_WIDTH);
+    const gm_gear *const gears[2] = {&p.pinion, &p.wheel};
+    for (int g = 0; g < 2; g++) {
+        gm_test_context("gear %d", g);
+        const long double leading = 0x6.487ED5110B46p0L; /* 51 bits */
+        const long double rest = 0x11A62633145C06E1p-112L;
+        const long double high = (long double)gears[g]->pitch_angle * gears[g]->teeth;
+        const long double low = (long double)gears[g]->pitch_angle_remainder * gears[g]->teeth;
+        GM_ASSERT_ABS((double)((high - leading) - rest + low), 0.0, 1e-30);
+    }
+}
+
+/* ---------------------------------------------------------------------------------------------
+ * Ranges
+ * ------------------------------------------------------------------------------------------- */
+
+typedef struct wrong_value {
+    const char *field; /**< expected answer */
+    size_t offset;
+    double value; /**< put there; integers are converted */
+    int is_integer;
+    int status;
+} wrong_value;
+
+#define NUMBER(name, value, status)                                                                \
+    { #name, offsetof(gm_pair_params, name), value, 0, status }
+#define INTEGER(name, value, status)                                                               \
+    { #name, offsetof(gm_pair_params, name), value, 1, status }
+
+static const wrong_value wrong_values[] = {
+    INTEGER(pinion_teeth, 2, GM_ERR_PARAMETER), INTEGER(pinion_teeth, -45, GM_ERR_PARAMETER),
+    INTEGER(pinion_teeth, 100001, GM_ERR_PARAMETER), INTEGER(wheel_teeth, 2, GM_ERR_PARAMETER),
+    INTEGER(wheel_teeth, 0, GM_ERR_PARAMETER), INTEGER(wheel_teeth, 100001, GM_ERR_PARAMETER),
+    INTEGER(base_helix, 2, GM_ERR_PARAMETER), INTEGER(base_helix, -1, GM_ERR_PARAMETER),
+    NUMBER(normal_module, 0.0, GM_ERR_PARAMETER), NUMBER(normal_module, -1e-3, GM_ERR_PARAMETER),
+    NUMBER(normal_module, NAN, GM_ERR_PARAMETER), NUMBER(normal_module, HUGE_VAL, GM_ERR_PARAMETER),
+    NUMBER(normal_pressure_angle, 0.0, GM_ERR_PARAMETER),
+    NUMBER(normal_pressure_angle, -0.1, GM_ERR_PARAMETER),
+    NUMBER(normal_pressure_angle, 0.7854, GM_ERR_PARAMETER),
+    NUMBER(normal_pressure_angle, NAN, GM_ERR_PARAMETER),
+    NUMBER(helix_angle, 1.0472, GM_ERR_PARAMETER), NUMBER(helix_angle, -1.0472, GM_ERR_PARAMETER),
+    NUMBER(helix_angle, NAN, GM_ERR_PARAMETER), NUMBER(center_distance, 0.0, GM_ERR_PARAMETER),
+    NUMBER(center_distance, -85e-3, GM_ERR_PARAMETER),
+    NUMBER(center_distance, NAN, GM_ERR_PARAMETER),
+    NUMBER(center_distance, HUGE_VAL, GM_ERR_PARAMETER), NUMBER(face_width, 0.0, GM_ERR_PARAMETER),
+    NUMBER(face_width, -1e-3, GM_ERR_PARAMETER), NUMBER(face_width, NAN, GM_ERR_PARAMETER),
+    NUMBER(face_width, HUGE_VAL, GM_ERR_PARAMETER),
+    NUMBER(pinion_profile_shift, HUGE_VAL, GM_ERR_PARAMETER),
+    NUMBER(wheel_profile_shift, -HUGE_VAL, GM_ERR_PARAMETER),
+    NUMBER(backlash, HUGE_VAL, GM_ERR_PARAMETER), NUMBER(backlash, -HUGE_VAL, GM_ERR_PARAMETER),
+    NUMBER(pinion_normal_thickness, 0.0, GM_ERR_PARAMETER),
+    NUMBER(pinion_normal_thickness, HUGE_VAL, GM_ERR_PARAMETER),
+    NUMBER(wheel_normal_thickness, -1e-3, GM_ERR_PARAMETER),
+    NUMBER(wheel_normal_thickness, HUGE_VAL, GM_ERR_PARAMETER),
+    NUMBER(pinion_tip_radius, 0.0, GM_ERR_PARAMETER),
+    NUMBER(pinion_tip_radius, HUGE_VAL, GM_ERR_PARAMETER),
+    NUMBER(wheel_tip_radius, -1.0, GM_ERR_PARAMETER),
+    NUMBER(wheel_tip_radius, HUGE_VAL, GM_ERR_PARAMETER),
+    NUMBER(pinion_start_radius, 0.0, GM_ERR_PARAMETER),
+    NUMBER(pinion_start_radius, HUGE_VAL, GM_ERR_PARAMETER),
+    NUMBER(wheel_start_radius, -1.0, GM_ERR_PARAMETER),
+    NUMBER(wheel_start_radius, HUGE_VAL, GM_ERR_PARAMETER),
+    /* Each fine, together not. r_bp + r_bw = 80.05 mm. */
+    NUMBER(center_distance, 80.04e-3, GM_ERR_GEOMETRY),
+    NUMBER(pinion_tip_radius, 41.8e-3, GM_ERR_GEOMETRY), /* below the base circle */
+    NUMBER(wheel_tip_radius, 38.1e-3, GM_ERR_GEOMETRY),
+    NUMBER(pinion_start_radius, 46.94e-3, GM_ERR_GEOMETRY), /* above the tip */
+    NUMBER(wheel_start_radius, 43.01e-3, GM_ERR_GEOMETRY),
+    NUMBER(backlash, 7e-3, GM_ERR_GEOMETRY), /* no tooth left: 2 x 2.7 mm cos(alpha_t)/cos(beta) */
+    NUMBER(pinion_profile_shift, -3.0, GM_ERR_GEOMETRY), /* s_n = m_n (pi/2 - 6 tan(16 deg)) < 0 */
+    NUMBER(wheel_profile_shift, -3.0, GM_ERR_GEOMETRY),
+    NUMBER(face_width, 100.0, GM_ERR_GEOMETRY), /* thousands of lines of contact at once */
+};
+
+static void set_wrong(gm_pair_params *params, const wrong_value *wrong) {
+    char *place = (char *)params + wrong->offset;
+    if (wrong->is_integer) {
+        const int value = (int)wrong->value;
+        memcpy(place, &value, sizeof value);
+    } else {
+        memcpy(place, &wrong->value, sizeof wrong->value);
+    }
+}
+
+static void every_wrong_value_is_named(void) {
+    for (size_t i = 0; i < sizeof wrong_values / sizeof wrong_values[0]; i++) {
+        const wrong_value *wrong = &wrong_values[i];
+        gm_test_context("%s = %g", wrong->field, wrong->value);
+        gm_pair_params params = reference_params(REFERENCE_FACE_WIDTH);
+        if (wrong->status == GM_ERR_GEOMETRY && strstr(wrong->field, "profile_shift") != NULL) {
+            params.backlash = NAN; /* else the backlash decides the thickness */
+        }
+        set_wrong(&params, wrong);
+        const char *field = "";
+        const char *requirement = NULL;
+        GM_ASSERT_INT(gm_pair_params_check(&params, &field, &requirement), wrong->status);
+        GM_ASSERT_STRING(field, wrong->field);
+        GM_ASSERT(requirement != NULL && strlen(requirement) > 3);
+        GM_ASSERT_INT(gm_pair_params_check(&params, NULL, NULL), wrong->status);
+        gm_pair pair;
+        memset(&pair, 0, sizeof pair);
+        GM_ASSERT_INT(gm_pair_init(&pair, &params), wrong->status);
+        assert_unusable(&pair);
+    }
+}
+
+static void values_just_inside_the_ranges_are_taken(void) {
+    gm_pair_params params = reference_params(REFERENCE_FACE_WIDTH);
+    const char *field = "";
+    const char *requirement = "";
+    GM_ASSERT_INT(gm_pair_params_check(&params, &field, &requirement), GM_OK);
+    GM_ASSERT_STRING(field, NULL);
+    GM_ASSERT_STRING(requirement, NULL);
+
+    params = reference_params(REFERENCE_FACE_WIDTH);
+    params.base_helix = GM_BASE_HELIX_PAPER;
+    GM_ASSERT_INT(gm_pair_params_check(&params, NULL, NULL), GM_OK);
+
+    /* 3 and 100000 teeth. The smallest gear is shifted so that its tip is above its base circle. */
+    gm_pair_params_default(&params);
+    params.pinion_teeth = 3;
+    params.wheel_teeth = 100000;
+    params.normal_module = 1e-3;
+    params.normal_pressure_angle = 20.0 * degree;
+    params.center_distance = 100003.0e-3 / 2.0 + 0.4e-3;
+    params.face_width = 10e-3;
+    gm_pair pair;
+    GM_ASSERT_INT(gm_pair_init(&pair, &params), GM_OK);
+    GM_ASSERT_INT(pair.pinion.teeth, 3);
+    GM_ASSERT_INT(pair.wheel.teeth, 100000);
+
+    /* Angles next to their bounds. */
+    params = reference_params(REFERENCE_FACE_WIDTH);
+    params.pinion_tip_radius = NAN;
+    params.wheel_tip_radius = NAN;
+    params.normal_pressure_angle = 44.9 * degree;
+    params.helix_angle = 59.9 * degree;
+    params.center_distance = 86.0 * 1.65e-3 / 2.0 / cos(params.helix_angle) + 0.1e-3;
+    GM_ASSERT_INT(gm_pair_init(&pair, &params), GM_OK);
+    params.helix_angle = -59.9 * degree;
+    GM_ASSERT_INT(gm_pair_init(&pair, &params), GM_OK);
+}
+
+static void tips_that_do_not_reach_each_other_are_refused(void) {
+    gm_pair_params params = reference_params(REFERENCE_FACE_WIDTH);
+    params.pinion_tip_radius = 43.5e-3;
+    params.wheel_tip_radius = 39.5e-3;
+    const char *field = "";
+    GM_ASSERT_INT(gm_pair_params_check(&params, &field, NULL), GM_ERR_GEOMETRY);
+    GM_ASSERT(field != NULL && strstr(field, "tip_radius") != NULL);
+    /* The same if the profiles are said to start further down. */
+    params.pinion_start_radius = 42.0e-3;
+    params.wheel_start_radius = 38.2e-3;
+    GM_ASSERT_INT(gm_pair_params_check(&params, &field, NULL), GM_ERR_GEOMETRY);
+    GM_ASSERT(field != NULL);
+    /* Tips that reach, but only below where the mate's profile starts. */
+    params = reference_params(REFERENCE_FACE_WIDTH);
+    params.pinion_start_radius = 46.5e-3;
+    params.wheel_start_radius = 42.5e-3;
+    GM_ASSERT_INT(gm_pair_params_check(&params, &field, NULL), GM_ERR_GEOMETRY);
+    GM_ASSERT(field != NULL);
+    gm_pair pair;
+    GM_ASSERT_INT(gm_pair_init(&pair, &params), GM_ERR_GEOMETRY);
+    assert_unusable(&pair);
+}
+
+/* The wheel alone at fault: its start is derived from a pinion tip that does not reach. */
+static void the_gear_at_fault_is_named(void) {
+    gm_pair_params params = reference_params(REFERENCE_FACE_WIDTH);
+    params.pinion_start_radius = 42.5e-3;
+    params.pinion_tip_radius = 43.0e-3;
+    params.wheel_tip_radius = 39.0e-3;
+    const char *field = "";
+    GM_ASSERT_INT(gm_pair_params_check(&params, &field, NULL), GM_ERR_GEOMETRY);
+    GM_ASSERT_STRING(field, "wheel_tip_radius");
+}
+
+static void null_pointers_are_refused(void) {
+    gm_pair_params params = reference_params(REFERENCE_FACE_WIDTH);
+    gm_pair pair;
+    const char *field = "";
+    const char *requirement = "";
+    GM_ASSERT_INT(gm_pair_params_check(NULL, &field, &requirement), GM_ERR_NULL);
+    GM_ASSERT_STRING(field, NULL);
+    GM_ASSERT_STRING(requirement, NULL);
+    GM_ASSERT_INT(gm_pair_params_check(NULL, NULL, NULL), GM_ERR_NULL);
+    GM_ASSERT_INT(gm_pair_init(NULL, &params), GM_ERR_NULL);
+    GM_ASSERT_INT(gm_pair_init(NULL, NULL), GM_ERR_NULL);
+    memset(&pair, 0, sizeof pair);
+    GM_ASSERT_INT(gm_pair_init(&pair, NULL), GM_ERR_NULL);
+    assert_unusable(&pair);
+}
+
+/* A pair that is said to be good holds only numbers, however absurd the drawing. */
+static void success_means_finite(void) {
+    static const double extremes[] = {1e-320, 1e-300, 1e-150, 1e150, 1e300, 1.7e308};
+    for (size_t i = 0; i < sizeof wrong_values / sizeof wrong_values[0]; i++) {
+        for (size_t k = 0; k < 2 * sizeof extremes / sizeof extremes[0]; k++) {
+            wrong_value wrong = wrong_values[i];
+            if (wrong.is_integer || (i > 0 && wrong.offset == wrong_values[i - 1].offset)) {
+                continue;
+            }
+            wrong.value = extremes[k / 2] * (k % 2 == 0 ? 1.0 : -1.0);
+            gm_test_context("%s = %g", wrong.field, wrong.value);
+            for (int with_backlash = 0; with_backlash < 2; with_backlash++) {
+                gm_pair_params params = reference_params(REFERENCE_FACE_WIDTH);
+                if (!with_backlash) {
+                    params.backlash = NAN;
+                }
+                set_wrong(&params, &wrong);
+                gm_pair pair;
+                double values[PAIR_DOUBLES];
+                const int status = gm_pair_init(&pair, &params);
+                list_pair(&pair, values);
+                int finite = 1;
+                for (int v = 0; v < PAIR_DOUBLES; v++) {
+                    finite = finite && isfinite(values[v]);
+                }
+                GM_ASSERT((status == GM_OK) == finite);
+            }
+        }
+    }
+}
+
+/* ---------------------------------------------------------------------------------------------
+ * Doubts
+ * ------------------------------------------------------------------------------------------- */
+
+static int doubts_of(const gm_pair_params *params) {
+    const gm_pair pair = make_pair(params);
+    return gm_pair_doubts(&pair, params);
+}
+
+static void reference_gears_are_beyond_doubt(void) {
+    const gm_pair_params params = reference_params(REFERENCE_FACE_WIDTH);
+    GM_ASSERT_INT(doubts_of(&params), 0);
+}
+
+static void doubts_need_both_pointers(void) {
+    gm_pair_params params = reference_params(REFERENCE_FACE_WIDTH);
+    params.backlash = -10e-6;
+    const gm_pair pair = make_pair(&params);
+    GM_ASSERT_INT(gm_pair_doubts(&pair, &params), GM_DOUBT_BACKLASH);
+    GM_ASSERT_INT(gm_pair_doubts(NULL, &params), 0);
+    GM_ASSERT_INT(gm_pair_doubts(&pair, NULL), 0);
+}
+
+/** A small spur gear without shift, cut by a standard rack, with a large mate; by role. */
+static gm_pair_params undercut_params(int small_is_pinion) {
+    gm_pair_params params;
+    gm_pair_params_default(&params);
+    params.pinion_teeth = small_is_pinion ? 10 : 60;
+    params.wheel_teeth = small_is_pinion ? 60 : 10;
+    params.normal_module = 2e-3;
+    params.normal_pressure_angle = 20.0 * degree;
+    params.center_distance = 70e-3;
+    params.face_width = 20e-3;
+    params.pinion_profile_shift = 0.0;
+    params.wheel_profile_shift = 0.0;
+    params.backlash = 50e-6;
+    return params;
+}
+
+/* A rack undercuts below z = 2 (h + 0.05) / sin^2(alpha) = 18 teeth of 20 degrees. */
+static void few_teeth_without_shift_are_undercut(void) {
+    const gm_pair_params pinion = undercut_params(1);
+    GM_ASSERT_INT(doubts_of(&pinion) & (GM_DOUBT_PINION_UNDERCUT | GM_DOUBT_WHEEL_UNDERCUT),
+                  GM_DOUBT_PINION_UNDERCUT);
+    const gm_pair_params wheel = undercut_params(0);
+    GM_ASSERT_INT(doubts_of(&wheel) & (GM_DOUBT_PINION_UNDERCUT | GM_DOUBT_WHEEL_UNDERCUT),
+                  GM_DOUBT_WHEEL_UNDERCUT);
+}
+
+static void thin_and_pointed_tips_are_doubted(void) {
+    /* s_t at the tip = 2 r_a (psi_b - inv(alpha_a)): the reference gear's land is 0.5 m_n; a tip 0.8 mm
+     * larger leaves less than 0.2 m_n, one 2 mm larger nothing. */
+    static const double longer[] = {0.8e-3, 2.0e-3};
+    for (int k = 0; k < 2; k++) {
+        gm_test_context("%g", longer[k]);
+        gm_pair_params params = reference_params(REFERENCE_FACE_WIDTH);
+        params.pinion_tip_radius += longer[k];
+        const gm_pair p = make_pair(&params);
+        const double chi = p.pinion.tip_roll_length / p.pinion.base_radius;
+        const double land =
+            2.0 * p.pinion.tip_radius * (p.pinion.base_half_thickness - (chi - atan(chi)));
+        GM_ASSERT(land * cos(p.helix_angle) < 0.2 * p.normal_module);
+        GM_ASSERT_INT(gm_pair_doubts(&p, &params) &
+                          (GM_DOUBT_PINION_TIP_LAND | GM_DOUBT_WHEEL_TIP_LAND),
+                      GM_DOUBT_PINION_TIP_LAND);
+        params = reference_params(REFERENCE_FACE_WIDTH);
+        params.wheel_tip_radius += longer[k];
+        GM_ASSERT_INT(doubts_of(&params) & (GM_DOUBT_PINION_TIP_LAND | GM_DOUBT_WHEEL_TIP_LAND),
+                      GM_DOUBT_WHEEL_TIP_LAND);
+    }
+}
+
+static void a_start_below_the_root_form_is_doubted(void) {
+    /* A straight rack flank 0.05 m_n deeper than needed ends near rho = 7 mm: the base circle is deeper. */
+    gm_pair_params params = reference_params(REFERENCE_FACE_WIDTH);
+    params.pinion_start_radius = 41.886e-3;
+    GM_ASSERT_INT(doubts_of(&params), GM_DOUBT_PINION_ROOT_FORM);
+    params = reference_params(REFERENCE_FACE_WIDTH);
+    params.wheel_start_radius = 38.163e-3;
+    GM_ASSERT_INT(doubts_of(&params), GM_DOUBT_WHEEL_ROOT_FORM);
+    /* Below the base circle both doubts are named. */
+    params.wheel_start_radius = 38.0e-3;
+    GM_ASSERT_INT(doubts_of(&params), GM_DOUBT_WHEEL_ROOT_FORM | GM_DOUBT_WHEEL_START_RADIUS);
+    params = reference_params(REFERENCE_FACE_WIDTH);
+    params.pinion_start_radius = 41.0e-3;
+    GM_ASSERT_INT(doubts_of(&params), GM_DOUBT_PINION_ROOT_FORM | GM_DOUBT_PINION_START_RADIUS);
+}
+
+static void short_paths_are_doubted(void) {
+    gm_pair_params params = reference_params(REFERENCE_FACE_WIDTH);
+    params.pinion_tip_radius = 45.3e-3;
+    params.wheel_tip_radius = 41.3e-3;
+    GM_ASSERT(make_pair(&params).transverse_contact_ratio < 1.0);
+    GM_ASSERT_INT(doubts_of(&params), GM_DOUBT_CONTACT_RATIO);
+}
+
+int main(int argc, char **argv) {
+    static const gm_test tests[] = {
+        GM_TEST(reference_gears_have_their_known_geometry),
+        GM_TEST(wider_reference_gears_have_their_known_overlap),
+        GM_TEST(standard_rack_has_its_known_path),
+        GM_TEST(paper_base_helix_is_there_on_request_only),
+        GM_TEST(left_hand_changes_signs_alone),
+        GM_TEST(defaults_are_missing_or_derived),
+        GM_TEST(a_zeroed_struct_is_refused),
+        GM_TEST(shifts_default_to_zero_backlash),
+        GM_TEST(thickness_wins_over_shift),
+        GM_TEST(backlash_thins_both_teeth_equally_and_leaves_the_shifts),
+        GM_TEST(tips_default_to_a_standard_addendum),
+        GM_TEST(profiles_start_where_the_mates_tip_reaches),
+        GM_TEST(a_start_below_the_base_circle_is_raised),
+        GM_TEST(a_later_start_shortens_the_path),
+        GM_TEST(pitch_angle_carries_two_doubles),
+        GM_TEST(every_wrong_value_is_named),
+        GM_TEST(values_just_inside_the_ranges_are_taken),
+        GM_TEST(tips_that_do_not_reach_each_other_are_refused),
+        GM_TEST(the_gear_at_fault_is_named),
+        GM_TEST(null_pointers_are_refused),
+        GM_TEST(success_means_finite),
+        GM_TEST(reference_gears_are_beyond_doubt),
+        GM_TEST(doubts_need_both_pointers),
+        GM_TEST(few_teeth_without_shift_are_undercut),
+        GM_TEST(thin_and_pointed_tips_are_doubted),
+        GM_TEST(a_start_below_the_root_form_is_doubted),
+        GM_TEST(short_paths_are_doubted),
+    };
+    return gm_test_main("unit.pair", tests, GM_TEST_COUNT(tests), argc, argv);
+}

@@ -1,0 +1,185 @@
+/* SPDX-FileCopyrightText: The gearmesh authors */
+/* SPDX-License-Identifier: BSD-3-Clause */
+
+/* Forces and moments on both gears. */
+#include "gearmesh/gearmesh.h"
+#include "gm_test.h"
+#include "random_gears.h"
+#include "reference_gear.h"
+
+static void cross(const double a[3], const double b[3], double out[3]) {
+    out[0] = a[1] * b[2] - a[2] * b[1];
+    out[1] = a[2] * b[0] - a[0] * b[2];
+    out[2] = a[0] * b[1] - a[1] * b[0];
+}
+
+/** Force and moment of one side on the wheel, from the line integrals of the second model. */
+static void add_expected_side(const random_case *c, const model_result *m, int side,
+                              double stiffness, double damping, double speed, gm_wrench *w) {
+    const int s = side == 0 ? 1 : -1;
+    const double approach = s * speed;
+    /* Spread over the line: K delta + D v where it touches. Its integral, and that of t1 and rho. */
+    const double force =
+        stiffness * (double)m->sum[side] + damping * approach * (double)m->contact[side];
+    if (force <= 0.0) {
+        return;
+    }
+    const double t1 =
+        (stiffness * (double)m->sum_t1[side] + damping * approach * (double)m->contact_t1[side]) /
+        force;
+    const double rho =
+        (stiffness * (double)m->sum_rho[side] + damping * approach * (double)m->contact_rho[side]) /
+        force;
+    const double cos_w = cos((double)c->model.alpha_wt);
+    const double sin_w = sin((double)c->model.alpha_wt);
+    const double r_bp = (double)c->model.base_radius[0];
+    const double d = c->params.center_distance;
+    /* From the pinion's base tangent point along the line of action; axial part by the base helix. */
+    const double along[3] = {sin_w, s * cos_w, -s * (double)tanl(c->model.beta_b)};
+    const double point[3] = {r_bp * cos_w + rho * sin_w, -s * r_bp * sin_w + s * rho * cos_w,
+                             t1 * c->params.face_width};
+    const double from_wheel[3] = {point[0] - d, point[1], point[2]};
+    double on_wheel[3];
+    double on_pinion[3];
+    cross(from_wheel, along, on_wheel);
+    cross(point, along, on_pinion);
+    for (int k = 0; k < 3; k++) {
+        w->wheel_force[k] += force * along[k];
+        w->pinion_force[k] -= force * along[k];
+        w->wheel_moment[k] += force * on_wheel[k];
+        w->pinion_moment[k] -= force * on_pinion[k];
+    }
+}
+
+static void each_line_of_contact_pushes_where_it_is(void) {
+    uint64_t seed = UINT64_C(41);
+    int touching = 0;
+    int both = 0;
+    for (int i = 0; i < 800; i++) {
+        random_case c;
+        gm_test_context("case %d, seed %llx", i, (unsigned long long)seed);
+        GM_ASSERT_INT(random_case_make(&c, &seed, i % 4 != 0), GM_OK);
+        const double stiffness = 1e8;
+        const double damping = i % 3 == 0 ? 0.0 : 1e3;
+        gm_state state = {.pinion_angle = c.pinion_angle, .wheel_angle = c.wheel_angle};
+        /* Slow enough that nothing pulls but at grazing contact. */
+        state.pinion_speed = gm_test_uniform(&seed, -0.01, 0.01) * c.params.normal_module /
+                             (double)c.model.base_radius[0];
+        const double speed = (double)c.model.base_radius[0] * state.pinion_speed;
+        gm_position position;
+        gm_penetration r;
+        gm_wrench got;
+        GM_ASSERT_INT(gm_position_from_state(&c.pair, &state, &position), GM_OK);
+        GM_ASSERT_INT(gm_penetration_3d_at(&c.pair, c.use[0], c.use[1], &position, &r), GM_OK);
+        GM_ASSERT_INT(
+            gm_wrench_3d_at(&c.pair, c.use[0], c.use[1], &position, stiffness, damping, &got),
+            GM_OK);
+        model_result m;
+        model_evaluate(&c.model, c.model_use[0], c.model_use[1], c.pinion_angle, c.wheel_angle,
+                       0.0L, 0.0L, &m);
+        gm_wrench expected;
+        memset(&expected, 0, sizeof expected);
+        add_expected_side(&c, &m, 0, stiffness, damping, speed, &expected);
+        add_expected_side(&c, &m, 1, stiffness, damping, speed, &expected);
+        touching += r.drive_pairs + r.coast_pairs > 0;
+        both += r.drive_pairs > 0 && r.coast_pairs > 0;
+
+        /* Near an engagement of a (nearly) spur gear a rounding moves a whole pair: not here. */
+        const double e = 4.0 * 0x1p-53 * c.params.center_distance;
+        const int certain = fabs((double)c.model.twist) > 1e-3 * c.params.normal_module;
+        /* Forces are K times lengths that are certain to e, and 1e-10 relative. */
+        const double scale = stiffness * (double)(m.sum[0] + m.sum[1]) +
+                             damping * fabs(speed) * (double)(m.contact[0] + m.contact[1]);
+        const double force = 1e-10 * scale + 4.0 * stiffness * e +
+                             2.0 * damping * fabs(speed) * e / fabs((double)c.model.twist);
+        const double arm = 2.0 * c.params.center_distance + c.params.face_width;
+        int good = 1;
+        for (int k = 0; k < 3 && certain; k++) {
+            good &= GM_ASSERT_ABS(got.wheel_force[k], expected.wheel_force[k], 2.0 * force);
+            good &= GM_ASSERT_ABS(got.pinion_force[k], expected.pinion_force[k], 2.0 * force);
+            good &= GM_ASSERT_ABS(got.wheel_moment[k], expected.wheel_moment[k], 2.0 * force * arm);
+            good &=
+                GM_ASSERT_ABS(got.pinion_moment[k], expected.pinion_moment[k], 2.0 * force * arm);
+        }
+
+        /* Reaction equals action: the force, and the moment about the pinion's axis point. */
+        const double rounding = 32.0 * 0x1p-53 * scale;
+        const double arms[3] = {c.params.center_distance, 0.0, 0.0};
+        double moved[3];
+        cross(arms, got.wheel_force, moved);
+        for (int k = 0; k < 3; k++) {
+            good &= GM_ASSERT_ABS(got.pinion_force[k] + got.wheel_force[k], 0.0, rounding);
+            good &= GM_ASSERT_ABS(got.pinion_moment[k] + got.wheel_moment[k] + moved[k], 0.0,
+                                  rounding * arm);
+        }
+
+        /* Torques about the axes are those of the equations of motion [Paper, Eqs. 1-2, base
+         * radii]: -F r_bp against +phi_p; +F r_bw along +phi_w, which is clockwise. */
+        const double net = gm_contact_force(stiffness, damping, &r);
+        good &= GM_ASSERT_ABS(got.pinion_moment[2], -net * (double)c.model.base_radius[0],
+                              rounding * arm);
+        good &= GM_ASSERT_ABS(-got.wheel_moment[2], net * (double)c.model.base_radius[1],
+                              rounding * arm);
+        /* Axial force F tan(beta_b). */
+        good &=
+            GM_ASSERT_ABS(got.pinion_force[2], net * (double)tanl(c.model.beta_b), rounding * 4.0);
+        /* Power on both gears: -F dx/dt, what springs store and dampers lose. */
+        const double power =
+            got.pinion_moment[2] * state.pinion_speed - got.wheel_moment[2] * state.wheel_speed;
+        good &= GM_ASSERT_ABS(power, -net * speed, rounding * arm * fabs(state.pinion_speed));
+        random_case_free(&c);
+        if (!good) {
+            return;
+        }
+    }
+    gm_test_context("all cases");
+    GM_ASSERT(touching > 500);
+    GM_ASSERT(both > 8);
+}
+
+static void right_handed_driving_pinion_is_pushed_along_z(void) {
+    const gm_pair pair = reference_pair(REFERENCE_FACE_WIDTH); /* beta = 33 deg */
+    gm_position position;
+    gm_wrench w;
+    GM_ASSERT_INT(gm_position_from_pinion_angle(&pair, 0.05, 55e-6, 0.0, &position), GM_OK);
+    GM_ASSERT_INT(gm_wrench_3d_at(&pair, NULL, NULL, &position, REFERENCE_STIFFNESS, 0.0, &w),
+                  GM_OK);
+    GM_ASSERT(w.pinion_force[2] > 0.0);
+    GM_ASSERT(w.wheel_force[2] < 0.0);
+    /* The teeth push the gears apart, the wheel's contact side up (+y), the wheel clockwise. */
+    GM_ASSERT(w.wheel_force[0] > 0.0);
+    GM_ASSERT(w.wheel_force[1] > 0.0);
+    GM_ASSERT(w.wheel_moment[2] < 0.0);
+    GM_ASSERT(w.pinion_moment[2] < 0.0);
+    /* Coast: still apart, all else reversed. */
+    GM_ASSERT_INT(gm_position_from_pinion_angle(&pair, 0.05, -55e-6, 0.0, &position), GM_OK);
+    GM_ASSERT_INT(gm_wrench_3d_at(&pair, NULL, NULL, &position, REFERENCE_STIFFNESS, 0.0, &w),
+                  GM_OK);
+    GM_ASSERT(w.pinion_force[2] < 0.0);
+    GM_ASSERT(w.wheel_force[0] > 0.0);
+    GM_ASSERT(w.wheel_force[1] < 0.0);
+    GM_ASSERT(w.wheel_moment[2] > 0.0);
+}
+
+/* A spur gear touches over the whole width: no axial force, force at mid-face. */
+static void spur_wrench_acts_at_mid_face(void) {
+    const gm_pair pair = spur_pair();
+    gm_position position;
+    gm_wrench w;
+    GM_ASSERT_INT(
+        gm_position_from_pinion_angle(&pair, 0.02, pair.backlash / 2 + 5e-6, 0.0, &position),
+        GM_OK);
+    GM_ASSERT_INT(gm_wrench_3d_at(&pair, NULL, NULL, &position, 1e8, 0.0, &w), GM_OK);
+    GM_ASSERT_ABS(w.pinion_force[2], 0.0, 0.0);
+    GM_ASSERT_REL(w.pinion_moment[0], -pair.face_width / 2 * w.pinion_force[1], 1e-13);
+    GM_ASSERT_REL(w.pinion_moment[1], pair.face_width / 2 * w.pinion_force[0], 1e-13);
+}
+
+int main(int argc, char **argv) {
+    static const gm_test tests[] = {
+        GM_TEST(each_line_of_contact_pushes_where_it_is),
+        GM_TEST(right_handed_driving_pinion_is_pushed_along_z),
+        GM_TEST(spur_wrench_acts_at_mid_face),
+    };
+    return gm_test_main("unit.wrench", tests, GM_TEST_COUNT(tests), argc, argv);
+}
