@@ -388,6 +388,8 @@ static const wrong_value wrong_values[] = {
     NUMBER(backlash, 7e-3, GM_ERR_GEOMETRY), /* no tooth left: 2 x 2.7 mm cos(alpha_t)/cos(beta) */
     NUMBER(pinion_profile_shift, -3.0, GM_ERR_GEOMETRY), /* s_n = m_n (pi/2 - 6 tan(16 deg)) < 0 */
     NUMBER(wheel_profile_shift, -3.0, GM_ERR_GEOMETRY),
+    NUMBER(pinion_normal_thickness, 5.2e-3, GM_ERR_GEOMETRY), /* a normal pitch is 5.184 mm */
+    NUMBER(wheel_normal_thickness, 5.2e-3, GM_ERR_GEOMETRY),
     NUMBER(face_width, 100.0, GM_ERR_GEOMETRY), /* thousands of lines of contact at once */
 };
 
@@ -406,8 +408,9 @@ static void every_wrong_value_is_named(void) {
         const wrong_value *wrong = &wrong_values[i];
         gm_test_context("%s = %g", wrong->field, wrong->value);
         gm_pair_params params = reference_params(REFERENCE_FACE_WIDTH);
-        if (wrong->status == GM_ERR_GEOMETRY && strstr(wrong->field, "profile_shift") != NULL) {
+        if (strstr(wrong->field, "shift") != NULL || strstr(wrong->field, "thickness") != NULL) {
             params.backlash = NAN; /* else the backlash decides the thickness */
+            params.pinion_profile_shift = params.wheel_profile_shift = 0.1;
         }
         set_wrong(&params, wrong);
         const char *field = "";
