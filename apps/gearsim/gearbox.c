@@ -148,7 +148,6 @@ static void warn_of_doubts(const config *conf, const gm_pair *pair) {
             conf, "gears.center_distance_mm",
             "the transverse contact ratio is %.4f, below 1: no smooth handover between teeth",
             pair->transverse_contact_ratio);
-    /* Profile shifts made for zero backlash leave a rounding of it, of either sign. */
     if (doubts & GM_DOUBT_BACKLASH)
         config_warn(conf, "gears.backlash_um",
                     "the backlash is %.6g um, negative: both flanks touch and press",

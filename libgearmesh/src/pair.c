@@ -11,10 +11,14 @@
 
 #define LARGEST_TEETH         100000
 #define LARGEST_CONTACT_RATIO 1000.0 /* keeps the work of an evaluation bounded */
-#define STRAIGHT_RACK_EXTRA                                                                        \
-    0.05 /* straight flank of the assumed rack beyond the mate's tip, in m_n */
-#define BACKLASH_ROUNDING 1e-12 /* of the base pitch: what zero backlash may come out as */
-#define SMALLEST_TIP_LAND 0.2   /* in m_n, below which case-hardened tips crack */
+
+/* Of the base pitch: what zero backlash may come out as. */
+#define BACKLASH_ROUNDING 1e-12
+
+/* In normal modules: straight flank of the assumed rack beyond the mate's tip, and the tip land below which
+ * case-hardened tips crack. */
+#define STRAIGHT_RACK_EXTRA 0.05
+#define SMALLEST_TIP_LAND   0.2
 
 /* What is wrong with the parameters; field NULL = nothing. */
 typedef struct problem {
