@@ -80,21 +80,32 @@ static void tooth_and_phase_are_those_of_the_angle(void) {
     }
 }
 
+/* There the quotient of angle and pitch may round to the wrong side, up or down with the number of teeth. */
 static void multiples_of_the_pitch_stay_in_range(void) {
-    const gm_pair pair = reference_pair(REFERENCE_FACE_WIDTH);
-    for (int n = -100000; n <= 100000; n += 7) {
-        const double exact = pair.pinion.pitch_angle * n;
-        for (int step = -1; step <= 1; step++) {
-            const double angle = step == 0 ? exact : nextafter(exact, step * HUGE_VAL);
-            gm_test_context("%d pitches %+d", n, step);
-            gm_position position;
-            GM_ASSERT_INT(gm_position_from_pinion_angle(&pair, angle, 0.0, 0.0, &position), GM_OK);
-            const int good =
-                GM_ASSERT(position.phase >= 0.0 && position.phase <= pair.transverse_base_pitch) &
-                GM_ASSERT(position.pinion_tooth >= 0 && position.pinion_tooth < 45) &
-                GM_ASSERT(position.wheel_tooth >= 0 && position.wheel_tooth < 41);
-            if (!good) {
-                return;
+    for (int teeth = 40; teeth <= 52; teeth++) {
+        gm_pair_params params = reference_params(REFERENCE_FACE_WIDTH);
+        params.pinion_teeth = teeth;
+        params.center_distance += (teeth - 45) * 0.984e-3;
+        params.pinion_tip_radius += (teeth - 45) * 0.984e-3;
+        const gm_pair pair = make_pair(&params);
+        for (int n = -100000; n <= 100000; n += 77) {
+            const double exact = pair.pinion.pitch_angle * n;
+            for (int step = -1; step <= 1; step++) {
+                const double angle = step == 0 ? exact : nextafter(exact, step * HUGE_VAL);
+                gm_test_context("%d teeth, %d pitches %+d", teeth, n, step);
+                gm_position position;
+                GM_ASSERT_INT(gm_position_from_pinion_angle(&pair, angle, 0.0, 0.0, &position),
+                              GM_OK);
+                /* At the ends of the range a rounding may lead across, with the tooth that
+                 * belongs to it. */
+                const int good =
+                    GM_ASSERT(position.phase >= -0x1p-52 * pair.transverse_base_pitch &&
+                              position.phase <= pair.transverse_base_pitch * (1.0 + 0x1p-52)) &
+                    GM_ASSERT(position.pinion_tooth >= 0 && position.pinion_tooth < teeth) &
+                    GM_ASSERT(position.wheel_tooth >= 0 && position.wheel_tooth < 41);
+                if (!good) {
+                    return;
+                }
             }
         }
     }

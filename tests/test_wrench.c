@@ -175,11 +175,55 @@ static void spur_wrench_acts_at_mid_face(void) {
     GM_ASSERT_REL(w.pinion_moment[1], pair.face_width / 2 * w.pinion_force[0], 1e-13);
 }
 
+/* Per flank max(0, K p + D rate): a side that parts fast gives nothing, the other all the same. */
+static void teeth_do_not_pull(void) {
+    gm_pair_params params = reference_params(REFERENCE_FACE_WIDTH);
+    params.backlash = -20e-6; /* both sides touch */
+    const gm_pair pair = make_pair(&params);
+    for (int s = -1; s <= 1; s += 2) {
+        gm_test_context("dx/dt = %d m/s", s);
+        gm_position position;
+        gm_penetration r;
+        gm_wrench w;
+        GM_ASSERT_INT(gm_position_from_pinion_angle(&pair, 0.1, 1e-6, s, &position), GM_OK);
+        GM_ASSERT_INT(gm_penetration_3d_at(&pair, NULL, NULL, &position, &r), GM_OK);
+        GM_ASSERT_INT(gm_wrench_3d_at(&pair, NULL, NULL, &position, 1e8, 1e6, &w), GM_OK);
+        const double touching = s > 0 ? r.drive_contact : r.coast_contact;
+        const double pressed = s > 0 ? r.drive : r.coast;
+        const double force = 1e8 * pressed + 1e6 * touching;
+        GM_ASSERT_REL(-w.pinion_moment[2] / pair.pinion.base_radius, s * force, 1e-12);
+        /* Pushed apart by one side alone. */
+        GM_ASSERT_REL(w.wheel_force[0], force * sin(pair.working_pressure_angle), 1e-12);
+    }
+}
+
+static void null_pointers_are_refused(void) {
+    const gm_pair pair = spur_pair();
+    gm_position position;
+    gm_wrench w;
+    GM_ASSERT_INT(gm_position_from_pinion_angle(&pair, 0.1, 0.0, 0.0, &position), GM_OK);
+    GM_ASSERT_INT(gm_wrench_3d_at(&pair, NULL, NULL, &position, 1e8, 0.0, NULL), GM_ERR_NULL);
+    for (int k = 0; k < 2; k++) {
+        memset(&w, 0, sizeof w);
+        GM_ASSERT_INT(gm_wrench_3d_at(k == 0 ? NULL : &pair, NULL, NULL, k == 0 ? &position : NULL,
+                                      1e8, 0.0, &w),
+                      GM_ERR_NULL);
+        for (int i = 0; i < 3; i++) {
+            GM_ASSERT_NAN(w.pinion_force[i]);
+            GM_ASSERT_NAN(w.pinion_moment[i]);
+            GM_ASSERT_NAN(w.wheel_force[i]);
+            GM_ASSERT_NAN(w.wheel_moment[i]);
+        }
+    }
+}
+
 int main(int argc, char **argv) {
     static const gm_test tests[] = {
         GM_TEST(each_line_of_contact_pushes_where_it_is),
         GM_TEST(right_handed_driving_pinion_is_pushed_along_z),
         GM_TEST(spur_wrench_acts_at_mid_face),
+        GM_TEST(teeth_do_not_pull),
+        GM_TEST(null_pointers_are_refused),
     };
     return gm_test_main("unit.wrench", tests, GM_TEST_COUNT(tests), argc, argv);
 }
