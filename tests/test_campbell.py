@@ -192,13 +192,15 @@ class Indicators(unittest.TestCase):
         self.assertLess(values["O_N"], 0.6)
 
     def test_modulation_gives_sidebands(self):
-        """cos(c)(1 + m cos(a)) has sidebands of m/2 on either side, here by a turn of each gear."""
+        """cos(c)(1 + m cos(a)) has sidebands of m/2 on either side, here by the turns of each gear."""
         wheel = 45.0 / 41.0
         values = self.order_indicators(
             lambda t, a: 2.0 * np.cos(90 * a) * (1.0 + 0.8 * np.cos(a) + 0.6 * np.cos(3 * wheel * a))
+            + 0.7 * np.cos((90 - 10 * wheel) * a)
+            + 0.9 * np.cos((90 - 12) * a)  # too far off to count
         )
         self.assertAlmostEqual(values["A2_N"], 2.0, delta=0.02)
-        sidebands = 2 * 0.8**2 + 2 * 0.6**2
+        sidebands = 2 * 0.8**2 + 2 * 0.6**2 + 0.7**2
         self.assertAlmostEqual(values["S_N"], np.sqrt(sidebands), delta=0.02)
         self.assertAlmostEqual(values["car2"], 4.0 / (4.0 + sidebands), delta=0.01)
 
