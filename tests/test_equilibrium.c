@@ -90,6 +90,107 @@ static void loaded_transmission_error_of_the_reference_gears(void) {
     }
 }
 
+/* Spur gears drop a pair where its tip passes: the torque may be carried before and again after. What a mesh
+ * reaches from the clearance on comes first. */
+static void the_first_of_two_equilibria_counts(void) {
+    const gm_pair pair = spur_pair();
+    const double p_bt = pair.transverse_base_pitch;
+    const double r_bp = pair.pinion.base_radius;
+    const double target = 20e-6; /* sum of the penetrations (m) */
+    const double torque = 1e8 * pair.wheel.base_radius * target;
+    /* A drive pair ends at rho_p = T0 + delta - rho_w(tip): choose the phase so that it leaves at
+     * delta = 0.75 target. Below it two pairs carry the torque at target / 2; above it one at target. */
+    const double rho_p = pair.line_of_action + 0.75 * target - pair.wheel.tip_roll_length;
+    double angle = (rho_p - pair.phase_origin) / r_bp;
+    GM_ASSERT_INT(at(&pair, NULL, NULL, angle, pair.backlash / 2 + 0.74 * target).drive_pairs, 2);
+    GM_ASSERT_INT(at(&pair, NULL, NULL, angle, pair.backlash / 2 + 0.76 * target).drive_pairs, 1);
+    double x = NAN;
+    gm_penetration r;
+    GM_ASSERT_INT(gm_static_equilibrium(&pair, NULL, NULL, angle, 1e8, torque, &x, &r), GM_OK);
+    GM_ASSERT_ABS(x, pair.backlash / 2 + target / 2, length_rounding(&pair));
+    GM_ASSERT_INT(r.drive_pairs, 2);
+    /* A little more torque than two pairs reach before one leaves: the second branch it is. */
+    const double more = 1.6 * torque;
+    GM_ASSERT_INT(gm_static_equilibrium(&pair, NULL, NULL, angle, 1e8, more, &x, &r), GM_OK);
+    GM_ASSERT_ABS(x, pair.backlash / 2 + 1.6 * target, length_rounding(&pair));
+    GM_ASSERT_INT(r.drive_pairs, 1);
+    GM_ASSERT(p_bt > 0.0);
+}
+
+/* Whatever it answers with GM_OK carries the torque, spur gears included. */
+static void every_equilibrium_found_carries_the_torque(void) {
+    uint64_t seed = UINT64_C(52);
+    int found = 0;
+    for (int i = 0; i < 1500; i++) {
+        random_case c;
+        GM_ASSERT_INT(random_case_make(&c, &seed, i % 2), GM_OK);
+        gm_test_context("case %d, helix %g", i, c.params.helix_angle);
+        const double r_bw = (double)c.model.base_radius[1];
+        const double target = c.params.normal_module * gm_test_uniform(&seed, -1e-2, 1e-2);
+        double x = NAN;
+        gm_penetration r;
+        int good = 1;
+        if (gm_static_equilibrium(&c.pair, c.use[0], c.use[1], c.pinion_angle, 1e8,
+                                  1e8 * r_bw * target, &x, &r) == GM_OK) {
+            const gm_penetration there = at(&c.pair, c.use[0], c.use[1], c.pinion_angle, x);
+            /* x is a double: steps of its rounding times the contact length, and of almost spur
+             * lines times delta / twist. */
+            const double e = 8.0 * 0x1p-53 * c.params.center_distance;
+            const double twist = fabs((double)c.model.twist);
+            const double steep =
+                twist > 0.0 ? fmin(1.0, e / twist) * (fabs(target) + c.amplitude) : 0.0;
+            const double tolerance = 1e-12 * fabs(target) + 10.0 * steep +
+                                     e * (1.0 + there.drive_contact + there.coast_contact);
+            /* A spur pair's sum may step over the torque where a pair enters: x is that place. */
+            const gm_penetration before = at(&c.pair, c.use[0], c.use[1], c.pinion_angle, x - e);
+            const gm_penetration behind = at(&c.pair, c.use[0], c.use[1], c.pinion_angle, x + e);
+            const int steps_over = twist == 0.0 && before.penetration < target - tolerance &&
+                                   behind.penetration > target + tolerance;
+            good = steps_over || GM_ASSERT_ABS(there.penetration, target, tolerance);
+            found++;
+        }
+        random_case_free(&c);
+        if (!good) {
+            return;
+        }
+    }
+    gm_test_context("all cases");
+    GM_ASSERT(found > 1200);
+}
+
+static void the_least_torque_is_carried_at_the_clearance(void) {
+    const gm_pair pair = reference_pair(REFERENCE_FACE_WIDTH);
+    static const double torques[] = {1e-9, -1e-9, 1e-20, -1e-100, 1e-280};
+    for (size_t i = 0; i < sizeof torques / sizeof torques[0]; i++) {
+        gm_test_context("torque %g", torques[i]);
+        double x = NAN;
+        GM_ASSERT_INT(gm_static_equilibrium(&pair, NULL, NULL, 0.1, 1e8, torques[i], &x, NULL),
+                      GM_OK);
+        GM_ASSERT_ABS(fabs(x), pair.backlash / 2, 1e-15);
+        GM_ASSERT((x > 0.0) == (torques[i] > 0.0));
+    }
+}
+
+/* One thick tooth jams between its neighbours; all other positions are open. */
+static void a_thick_tooth_holds_without_torque_where_it_meshes(void) {
+    const gm_pair pair = reference_pair(REFERENCE_FACE_WIDTH);
+    const gm_flanks_params sizes = {45, 0, 0, 0, 0, 0, 0};
+    double memory[256];
+    gm_flanks flanks;
+    GM_ASSERT_INT(gm_flanks_init(&flanks, &sizes, memory, sizeof memory), GM_OK);
+    GM_ASSERT_INT(gm_flanks_set_pitch(&flanks, GM_DRIVE, 0, 60e-6), GM_OK);
+    GM_ASSERT_INT(gm_flanks_set_pitch(&flanks, GM_COAST, 0, 60e-6), GM_OK);
+    double x = NAN;
+    gm_penetration r;
+    GM_ASSERT_INT(gm_static_equilibrium(&pair, &flanks, NULL, 3.0, 1e8, 0.0, &x, &r),
+                  GM_UNDETERMINED);
+    GM_ASSERT_NAN(x);
+    GM_ASSERT_NAN(r.penetration);
+    GM_ASSERT_INT(gm_static_equilibrium(&pair, &flanks, NULL, -0.1, 1e8, 0.0, &x, &r), GM_OK);
+    GM_ASSERT(r.drive > 0.0 && r.coast > 0.0);
+    GM_ASSERT_ABS(r.penetration, 0.0, 1e-15);
+}
+
 static void no_torque_leaves_the_position_open(void) {
     const gm_pair pair = reference_pair(REFERENCE_FACE_WIDTH);
     double x = 0.0;
@@ -138,6 +239,7 @@ static void equilibrium_refuses_what_it_must(void) {
     GM_ASSERT_INT(gm_static_equilibrium(NULL, NULL, NULL, 0.1, 1e8, 1.0, &x, &r), GM_ERR_NULL);
     GM_ASSERT_NAN(x);
     GM_ASSERT_NAN(r.penetration);
+    r.penetration = 0.0;
     GM_ASSERT_INT(gm_static_equilibrium(&pair, NULL, NULL, 0.1, 1e8, 1.0, NULL, &r), GM_ERR_NULL);
     GM_ASSERT_NAN(r.penetration);
     static const double bad_stiffness[] = {0.0, -1.0, NAN, HUGE_VAL};
@@ -178,6 +280,10 @@ int main(int argc, char **argv) {
     static const gm_test tests[] = {
         GM_TEST(equilibrium_inverts_the_sum),
         GM_TEST(loaded_transmission_error_of_the_reference_gears),
+        GM_TEST(the_first_of_two_equilibria_counts),
+        GM_TEST(every_equilibrium_found_carries_the_torque),
+        GM_TEST(the_least_torque_is_carried_at_the_clearance),
+        GM_TEST(a_thick_tooth_holds_without_torque_where_it_meshes),
         GM_TEST(no_torque_leaves_the_position_open),
         GM_TEST(negative_backlash_has_an_equilibrium_without_torque),
         GM_TEST(too_much_torque_has_no_equilibrium),

@@ -170,10 +170,9 @@ static double line_position(const gmi_grid *grid, int axis, int k) {
     return (double)k / (double)(grid->nodes[axis] - 1);
 }
 
+/* Never beyond the last line: positions are at most 1 + 1e-5, lines at least 1e-4 apart. */
 static int nearest_line(const gmi_grid *grid, int axis, double position) {
-    const int last = grid->nodes[axis] - 1;
-    const int k = (int)(position * last + 0.5);
-    return k > last ? last : k;
+    return (int)(position * (grid->nodes[axis] - 1) + 0.5);
 }
 
 static int fail_position(const gmi_grid *grid, const gmi_row *row, int axis, gm_io_error *error) {

@@ -3,11 +3,13 @@
 
 /*
  * Quasi-static equilibrium at one pinion angle: the x at which stiffness * r_bw * net sum = torque. The net
- * sum grows with x (a spur pair may step down where a pair leaves), so the x is bracketed from the
- * clearance outwards and then found by Newton's method, kept inside the bracket by bisection.
+ * sum grows with x (a spur pair may step where a pair enters or leaves), so the x is bracketed from the
+ * clearance outwards and then found by Newton's method, kept inside the bracket by bisection. Where the sum steps
+ * over the torque the bracket closes on the step: there the edge of the entering pair carries the rest.
  */
 #include "internal.h"
 
+#include <float.h>
 #include <math.h>
 
 #define BRACKET_STEPS 200
@@ -55,7 +57,8 @@ static double clamp(double value, double limit) {
 static int bracket(const problem *p, double start, double direction, double *inner, double *outer) {
     const double limit = largest_offset(p);
     gm_penetration result;
-    double step = fabs(p->target);
+    /* A step shorter than the rounding of x would never leave it. */
+    double step = fmax(fabs(p->target), DBL_EPSILON * p->pair->center_distance);
     *inner = *outer = start;
     for (int k = 0; k < BRACKET_STEPS; ++k) {
         if (direction * residual(p, *outer, &result) >= 0.0)
@@ -126,13 +129,13 @@ static int find(const problem *p, double *offset, gm_penetration *result) {
 int gm_static_equilibrium(const gm_pair *pair, const gm_flanks *pinion_flanks,
                           const gm_flanks *wheel_flanks, double pinion_angle, double stiffness,
                           double wheel_torque, double *offset, gm_penetration *result) {
+    gm_penetration found;
+    if (result == NULL)
+        result = &found;
+    (void)gm_penetration_3d_at(NULL, NULL, NULL, NULL, result); /* NaN until found */
     if (offset == NULL)
         return GM_ERR_NULL;
     *offset = gmi_nan();
-    gm_penetration at_equilibrium;
-    if (result == NULL)
-        result = &at_equilibrium;
-    (void)gm_penetration_3d_at(NULL, NULL, NULL, NULL, result); /* NaN until found */
     if (pair == NULL)
         return GM_ERR_NULL;
     if (!(stiffness > 0.0) || !gmi_is_finite(stiffness) || !gmi_is_finite(wheel_torque))
@@ -146,9 +149,9 @@ int gm_static_equilibrium(const gm_pair *pair, const gm_flanks *pinion_flanks,
         return status;
 
     p.target = wheel_torque / (stiffness * pair->wheel.base_radius);
-    gm_penetration found;
-    status = find(&p, offset, &found);
+    gm_penetration at_equilibrium;
+    status = find(&p, offset, &at_equilibrium);
     if (status == GM_OK)
-        *result = found;
+        *result = at_equilibrium;
     return status;
 }

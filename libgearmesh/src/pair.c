@@ -7,6 +7,7 @@
  */
 #include "internal.h"
 
+#include <float.h>
 #include <math.h>
 
 #define LARGEST_TEETH         100000
@@ -139,6 +140,8 @@ static void derive_sections(gm_pair *pair, const gm_pair_params *p) {
                                       : tan(p->helix_angle) * cos_transverse;
     pair->base_helix_angle = atan(tan_base_helix);
     pair->twist = p->face_width * tan_base_helix;
+    if (fabs(pair->twist) < DBL_EPSILON * pair->transverse_base_pitch)
+        pair->twist = 0.0; /* a line climbs less than a phase is rounded: a spur pair */
     pair->normal_to_transverse = sqrt(1.0 + tan_base_helix * tan_base_helix);
 }
 

@@ -357,9 +357,10 @@ typedef struct gm_state {
  * integrates x itself (micrometres matter) fills it with gm_position_from_pinion_angle().
  */
 typedef struct gm_position {
-    int pinion_tooth;   /**< pinion tooth whose phase it is, 0 .. z_p - 1 */
-    int wheel_tooth;    /**< wheel tooth that its drive flank meets, 0 .. z_w - 1 */
-    double phase;       /**< r_bp times the angle of that pinion tooth, in [0, p_bt) (m) */
+    int pinion_tooth; /**< pinion tooth whose phase it is, 0 .. z_p - 1 */
+    int wheel_tooth;  /**< wheel tooth that its drive flank meets, 0 .. z_w - 1 */
+    double
+        phase; /**< r_bp times the angle of that pinion tooth, in [0, p_bt) up to a rounding (m) */
     double offset;      /**< x = r_bp phi_p - r_bw phi_w, |x| < p_bt / 2 (m) */
     double offset_rate; /**< dx/dt (m/s) */
 } gm_position;
@@ -485,7 +486,8 @@ GM_API int gm_wrench_3d_at(const gm_pair *pair, const gm_flanks *pinion_flanks,
 
 /**
  * Quasi-static equilibrium at one pinion angle: the smallest |x| beyond the clearance for which
- * stiffness * r_bw * penetration(x) = torque.
+ * stiffness * r_bw * penetration(x) = torque. Where the sum of a spur pair steps over the torque (a pair with
+ * pitch deviations enters), x is the place of the step and result one of its sides.
  *
  * @param[in]  pair           the pair
  * @param[in]  pinion_flanks  NULL = ideal
