@@ -696,6 +696,48 @@ static void spur_is_the_limit_of_small_helix_angles(void) {
     GM_ASSERT(compared > 300);
 }
 
+/* However small the helix angle is, down to the least number there is. */
+static void no_helix_angle_is_too_small(void) {
+    gm_pair_params params = reference_params(REFERENCE_FACE_WIDTH);
+    params.helix_angle = 0.0;
+    params.center_distance = 71.2e-3;
+    params.pinion_tip_radius = 39.0e-3;
+    params.wheel_tip_radius = 35.7e-3;
+    const gm_pair spur = make_pair(&params);
+    gm_flanks flanks;
+    void *memory = set_flanks(&flanks, 45, 3, 1);
+    static const double angles[] = {1e-13, 1e-16, 1e-20, 1e-100, 1e-300, 1e-308, 1e-312, 5e-324};
+    for (size_t i = 0; i < sizeof angles / sizeof angles[0]; i++) {
+        for (int hand = -1; hand <= 1; hand += 2) {
+            params.helix_angle = hand * angles[i];
+            const gm_pair almost = make_pair(&params);
+            for (int k = 0; k < 100; k++) {
+                gm_test_context("helix %g, position %d", params.helix_angle, k);
+                const double angle = spur.pinion.pitch_angle * (k + 0.37) / 100.0;
+                for (int s = -1; s <= 1; s += 2) {
+                    const double x = s * (spur.backlash / 2 + 7e-6);
+                    const gm_flanks *use = k % 2 == 0 ? NULL : &flanks;
+                    const gm_penetration exact = at(&spur, use, NULL, angle, x);
+                    const gm_penetration got = at(&almost, use, NULL, angle, x);
+                    /* No event comes nearer than 1e-4 of a pitch to these positions. */
+                    const int good =
+                        GM_ASSERT_REL(got.drive, exact.drive, 1e-9) &
+                        GM_ASSERT_REL(got.coast, exact.coast, 1e-9) &
+                        GM_ASSERT_REL(got.drive_contact, exact.drive_contact, 1e-9) &
+                        GM_ASSERT_REL(got.coast_contact, exact.coast_contact, 1e-9) &
+                        GM_ASSERT_NEAR(got.d_pinion_angle, exact.d_pinion_angle, 1e-9, 0.0) &
+                        GM_ASSERT_NEAR(got.d_wheel_angle, exact.d_wheel_angle, 1e-9, 0.0);
+                    if (!good) {
+                        free(memory);
+                        return;
+                    }
+                }
+            }
+        }
+    }
+    free(memory);
+}
+
 static void spur_jumps_where_a_pair_enters_and_helical_does_not(void) {
     const gm_pair spur = spur_pair();
     const double r_bp = spur.pinion.base_radius;
@@ -807,6 +849,7 @@ int main(int argc, char **argv) {
         GM_TEST(derivatives_are_those_of_the_second_model),
         GM_TEST(ideal_derivatives_by_x_are_the_contact_length),
         GM_TEST(spur_is_the_limit_of_small_helix_angles),
+        GM_TEST(no_helix_angle_is_too_small),
         GM_TEST(spur_jumps_where_a_pair_enters_and_helical_does_not),
         GM_TEST(rate_is_approach_speed_times_touching_length),
         GM_TEST(mean_stiffness_is_contact_ratio_times_that_of_a_pair),
