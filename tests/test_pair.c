@@ -388,8 +388,7 @@ static const wrong_value wrong_values[] = {
     NUMBER(backlash, 7e-3, GM_ERR_GEOMETRY), /* no tooth left: 2 x 2.7 mm cos(alpha_t)/cos(beta) */
     NUMBER(pinion_profile_shift, -3.0, GM_ERR_GEOMETRY), /* s_n = m_n (pi/2 - 6 tan(16 deg)) < 0 */
     NUMBER(wheel_profile_shift, -3.0, GM_ERR_GEOMETRY),
-    NUMBER(pinion_normal_thickness, 5.2e-3, GM_ERR_GEOMETRY), /* a normal pitch is 5.184 mm */
-    NUMBER(wheel_normal_thickness, 5.2e-3, GM_ERR_GEOMETRY),
+    NUMBER(backlash, -5.85e-3, GM_ERR_GEOMETRY), /* the base pitch is 5.848 mm */
     NUMBER(face_width, 100.0, GM_ERR_GEOMETRY), /* thousands of lines of contact at once */
 };
 

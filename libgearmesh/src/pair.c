@@ -166,10 +166,6 @@ static double derive_pose(gm_pair *pair, double center_distance) {
     return sin(difference) / (cos(alpha_w) * cos(alpha_t)) - difference;
 }
 
-static int is_thickness(const gm_gear *gear, const gm_pair_params *p) {
-    return gear->normal_thickness > 0.0 && gear->normal_thickness < GMI_PI * p->normal_module;
-}
-
 /*
  * Profile shifts, tooth thicknesses and backlash along the line of action:
  *     p_bt - 2 r_bp psi_p - 2 r_bw psi_w + 2 (r_bp + r_bw) inv(alpha_wt)
@@ -216,10 +212,9 @@ static problem derive_thickness(gm_pair *pair, const gm_pair_params *p,
     pair->phase_origin =
         pinion->base_radius * (pair->working_pressure_angle + pinion->base_half_thickness);
 
-    static const char thickness[] =
-        "a value that leaves both teeth thicker than 0 and thinner than a pitch";
-    const int pinion_fits = is_thickness(pinion, p);
-    const int wheel_fits = is_thickness(wheel, p);
+    static const char thickness[] = "a value that leaves the teeth thicker than 0";
+    const int pinion_fits = pinion->normal_thickness > 0.0;
+    const int wheel_fits = wheel->normal_thickness > 0.0;
     if (!(pinion_fits && wheel_fits) && !isnan(p->backlash))
         return geometry_problem("backlash", thickness);
     if (!pinion_fits)
@@ -230,6 +225,8 @@ static problem derive_thickness(gm_pair *pair, const gm_pair_params *p,
         return geometry_problem(isnan(p->wheel_normal_thickness) ? "wheel_profile_shift"
                                                                  : "wheel_normal_thickness",
                                 thickness);
+    if (!isnan(p->backlash) && !(p->backlash > -pair->transverse_base_pitch))
+        return geometry_problem("backlash", "a value above minus one base pitch");
     return no_problem;
 }
 
