@@ -261,16 +261,16 @@ int dynamics_run(const config *conf, const gearbox *gears) {
     dynamic_run run = {.conf = conf,
                        .rows = floor(conf->duration * conf->output_rate + 1e-9) + 1.0};
 
+    interrupt_watch();
     progress_start(&run.progress, conf->duration, conf->quiet);
 
     int exit_code = start_run(&run, gears);
     if (exit_code == 0) {
-        interrupt_watch();
         exit_code = end_run(&run, take_all(&run));
-        interrupt_unwatch();
     } else if (run.output != NULL) {
         output_close(run.output, "the run could not be started");
     }
+    interrupt_unwatch();
     decimator_free(run.filter);
     integrator_free(run.solver);
     model_free(&run.model);

@@ -25,6 +25,10 @@
 #define NO_COMMUNICATOR NULL
 #endif
 
+/* So many steps in a row that are next to nothing of a vibration (in rad of it): the solver is stuck. */
+enum { STALLED_STEPS = 100 };
+static const double stalled_step = 1e-10;
+
 struct integrator {
     const gear_model *model;
     integrator_options options;
@@ -35,6 +39,7 @@ struct integrator {
     SUNMatrix matrix;
     SUNLinearSolver linear_solver;
     sunrealtype time;  /* end of the last step (s) */
+    int stalled;       /* steps of next to nothing in a row */
     int status;        /* of the last evaluation of the model that went wrong */
     char message[256]; /* what CVODE said last */
     char failure[512];
@@ -221,11 +226,18 @@ static double longest_step(const integrator *solver) {
     return asked > 0.0 ? asked : needed;
 }
 
-static int step(integrator *solver, double target) {
-    /* A fault that CVODE got over by a smaller step is not the reason of a later failure. */
-    solver->status = GM_OK;
+static int step(integrator *solver) {
+    /* CVODE takes its first step by this; not the next sample, so that no result depends on sampling. */
+    const double target = 1.0 / solver->model->natural_frequency;
+
+    /* A fault that CVODE got over by a smaller step is not the reason of a later failure, unless the steps
+     * have been next to nothing since. */
+    if (solver->stalled == 0) {
+        solver->status = GM_OK;
+    }
     solver->message[0] = '\0';
 
+    const double before = solver->time;
     CVodeSetMaxStep(solver->cvode, longest_step(solver));
     const int flag = CVode(solver->cvode, target, solver->state, &solver->time, CV_ONE_STEP);
     if (flag < 0) {
@@ -237,6 +249,13 @@ static int step(integrator *solver, double target) {
         free(name);
         return fail(solver, what);
     }
+
+    /* In front of a state that the model refuses CVODE would creep up to it for ever. */
+    const double turned = (solver->time - before) * solver->model->natural_frequency;
+    solver->stalled = turned > stalled_step ? 0 : solver->stalled + 1;
+    if (solver->stalled >= STALLED_STEPS) {
+        return fail(solver, "the solver's steps became too short");
+    }
     return 0;
 }
 
@@ -247,7 +266,7 @@ int integrator_advance(integrator *solver, double time, double state[]) {
         if (interrupt_requested()) {
             return EXIT_INTERRUPTED;
         }
-        const int failed = step(solver, time);
+        const int failed = step(solver);
         if (failed) {
             return failed;
         }

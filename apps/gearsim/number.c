@@ -103,7 +103,9 @@ static int decompose(double value, int digits, uint64_t *mantissa, int *exponent
     int e = guess_exponent(value);
     double_double m = scaled(value, digits - 1 - e);
 
-    if (m.high >= power_of_ten[digits].high) {
+    /* The high part alone may have been rounded up to the power. */
+    const double power = power_of_ten[digits].high;
+    if (m.high > power || (m.high == power && m.low >= 0.0)) {
         ++e;
         m = scaled(value, digits - 1 - e);
     }

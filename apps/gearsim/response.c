@@ -8,7 +8,8 @@
 /* Solutions between two noise values that are kept; a solver looks back by a step or two. */
 enum { KEPT = 512 };
 
-/* Below, the coefficients of the polynomial are 1e4 times as large as their sum. */
+/* Below, the terms of the closed form are more than 1e7 times as large as their sum - 12 zeta over the
+ * cube of this - and p is worse than 1e-15 m. */
 static const double shortest_interval = 1e-2; /* rad of the frequency */
 
 /* p = polynomial + exp(-decay s) (cosine cos(wd s) + sine sin(wd s)), s = time since its start. */

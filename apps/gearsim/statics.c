@@ -111,12 +111,12 @@ static int write_all(const config *conf, const gearbox *gears, output_file *outp
 
 int statics_run(const config *conf, const gearbox *gears) {
     int exit_code = 0;
-    output_file *const output = output_open(conf, static_columns, static_column_count, &exit_code);
 
+    interrupt_watch();
+    output_file *const output = output_open(conf, static_columns, static_column_count, &exit_code);
     if (output != NULL) {
-        interrupt_watch();
         exit_code = write_all(conf, gears, output);
-        interrupt_unwatch();
     }
+    interrupt_unwatch();
     return exit_code;
 }

@@ -1,0 +1,438 @@
+#!/usr/bin/env python3
+# SPDX-FileCopyrightText: The gearmesh authors
+# SPDX-License-Identifier: BSD-3-Clause
+"""
+Whole runs of gearsim against closed forms and against each other.
+
+    test_gearsim_runs.py GEARSIM [-v] [name of a test]...
+"""
+import math
+import os
+import pty
+import resource
+import signal
+import statistics
+import subprocess
+import sys
+import tempfile
+import time
+import unittest
+
+GEARSIM = os.environ.get("GEARSIM", "gearsim")
+OLD_RESULT = "an older result\n"
+
+# The gears of data/paper/ in short runs. K, D and inertias are used by the closed forms below.
+K, D, I_W, I_P, LOAD, GAP = 1.05e8, 844.361, 2.1e-3, 1.7e-3, 20.0, 100e-6
+PARAMS = f"""\
+[gears]
+pinion_teeth = 45
+wheel_teeth = 41
+normal_module_mm = 1.65
+normal_pressure_angle_deg = 16
+helix_angle_deg = 33
+center_distance_mm = 85
+face_width_mm = 17.5
+backlash_um = 100
+pinion_tip_diameter_mm = 93.876780
+wheel_tip_diameter_mm = 86.007182
+[mesh]
+stiffness_N_per_m = {K}
+damping_Ns_per_m = {D}
+[bodies]
+wheel_inertia_kg_m2 = {I_W}
+[drive]
+start_rpm = 1000
+end_rpm = 1000
+[load]
+mean_Nm = {LOAD}
+[analysis]
+duration_s = 0.02
+[output]
+digits = 17
+"""
+SIMPLE = ["mesh.model=simple"]
+TIGHT = ["solver.relative_tolerance=1e-9", "solver.absolute_tolerance_um=1e-8"]
+PLAIN = ["output.oversampling=1"]
+TORQUE = ["drive.kind=torque", "drive.torque_Nm=22", f"bodies.pinion_inertia_kg_m2={I_P}"]
+STATIC = ["analysis.type=static", "analysis.positions=60"]
+
+
+class Case(unittest.TestCase):
+    """A folder of its own for every test."""
+
+    def setUp(self):
+        self.scratch = tempfile.TemporaryDirectory()
+        self.addCleanup(self.scratch.cleanup)
+        self.folder = self.scratch.name
+        with open(self.path("run.ini"), "w") as file:
+            file.write(PARAMS)
+
+    def path(self, name):
+        return os.path.join(self.folder, name)
+
+    def command(self, settings, *options):
+        return [GEARSIM, "run.ini", *options, *[word for text in settings for word in ("--set", text)]]
+
+    def gearsim(self, settings, *options, **others):
+        return subprocess.run(self.command(settings, *options), cwd=self.folder, capture_output=True, text=True,
+                              stdin=subprocess.DEVNULL, timeout=240, **others)
+
+    def text(self, name):
+        with open(self.path(name)) as file:
+            return file.read()
+
+    def run_columns(self, settings=()):
+        """Columns of a run, by name."""
+        result = self.gearsim(settings, "--output", "run.csv")
+        self.assertEqual(result.returncode, 0, result.stderr)
+        lines = [line for line in self.text("run.csv").splitlines() if not line.startswith("#")]
+        rows = [[float(field) for field in line.split(",")] for line in lines[1:]]
+        return dict(zip(lines[0].split(","), map(list, zip(*rows))))
+
+    def geometry(self, settings=()):
+        result = self.gearsim(settings, "--geometry")
+        self.assertEqual(result.returncode, 0, result.stderr)
+        pairs = [line.split(" = ") for line in result.stdout.splitlines()]
+        return {name: float(value) for name, value in pairs}
+
+    def assert_close(self, got, expected, relative=0.0, absolute=0.0, what=""):
+        tolerance = relative * abs(expected) + absolute
+        self.assertLessEqual(abs(got - expected), tolerance, f"{what}: got {got!r}, expected {expected!r}")
+
+    def assert_all_close(self, got, expected, relative=0.0, absolute=0.0):
+        self.assertEqual(len(got), len(expected))
+        for i, (one, other) in enumerate(zip(got, expected)):
+            self.assert_close(one, other, relative, absolute, f"row {i}")
+
+
+def largest_difference(one, other):
+    return max(abs(a - b) for a, b in zip(one, other, strict=True))
+
+
+def spread(values):
+    return statistics.pstdev(values)
+
+
+class Rows(Case):
+    def test_rows_stand_at_multiples_of_the_period_up_to_the_end(self):
+        for rate, duration, count in [(25600, 0.01, 257), (20000, 0.01, 201), (1000, 0.0105, 11), (3, 1.0, 4)]:
+            columns = self.run_columns([f"output.rate_Hz={rate}", f"analysis.duration_s={duration}",
+                                        "output.columns=time_s"])
+            # Correctly rounded quotients, written with 17 digits: equal to the last bit.
+            self.assertEqual(columns["time_s"], [k / rate for k in range(count)])
+
+    def test_same_seed_same_file_and_another_seed_another(self):
+        def file(seed):
+            self.run_columns(["load.noise_amplitude_Nm=10", f"load.seed={seed}"])
+            return [line for line in self.text("run.csv").splitlines() if "load.seed" not in line]
+
+        self.assertEqual(file(7), file(7))
+        self.assertNotEqual(file(7), file(8))
+        # All 64 bits count.
+        self.assertNotEqual(file(7), file(7 + 2**63))
+
+    def test_columns_alone_are_those_of_all(self):
+        settings = ["load.noise_amplitude_Nm=10"]
+        everything = self.run_columns(settings)
+        self.assertEqual(len(everything), 11)
+        for name, values in everything.items():
+            self.assertEqual(self.run_columns([*settings, f"output.columns={name}"]), {name: values}, name)
+
+    def test_header_says_how_the_result_was_made(self):
+        self.run_columns(["load.seed=18446744073709551615"])
+        comments = [line for line in self.text("run.csv").splitlines() if line.startswith("#")]
+        version = self.gearsim([], "--version").stdout.split()[-1]
+        self.assertEqual(comments[0], f"# gearsim {version}")
+        for line in ["# load.seed = 18446744073709551615", "# output.digits = 17", "# load.noise_interval_s = 1e-5"]:
+            self.assertIn(line, comments)
+
+    def test_columns_belong_together(self):
+        """Each column from the others, with plain samples."""
+        geometry = self.geometry()
+        r_bp, r_bw = geometry["pinion_base_radius_mm"] * 1e-3, geometry["wheel_base_radius_mm"] * 1e-3
+        for settings in [PLAIN, PLAIN + TORQUE]:
+            c = self.run_columns([*settings, "load.noise_amplitude_Nm=10"])
+            # Roundings: of angles of up to 2 rad times 42 mm, 1e-17 m, against x in um: 1e-11.
+            self.assert_all_close(c["dte_um"], [(r_bw * w - r_bp * p) * 1e6 for p, w in
+                                                zip(c["pinion_angle_rad"], c["wheel_angle_rad"])], absolute=1e-9)
+            force = [K * p * 1e-6 + D * r * 1e-6 for p, r in zip(c["penetration_um"], c["penetration_rate_um_per_s"])]
+            self.assert_all_close(c["contact_force_N"], force, relative=1e-13)
+            self.assertTrue(all(pairs in (3, 4, 5) for pairs in c["pairs_in_contact"]))
+            # Noise within its amplitude and the overshoot of a quarter.
+            self.assertTrue(all(abs(m - LOAD) < 12.5 for m in c["load_torque_Nm"]))
+            self.assertGreater(spread(c["load_torque_Nm"]), 3.0)
+
+    def test_filter_neither_delays_nor_damps_what_is_below_its_edge(self):
+        """Tooth frequency 150 Hz and some sixty multiples, sampled plainly and filtered: the same."""
+        slow = ["drive.start_rpm=200", "drive.end_rpm=200", *TIGHT]
+        plain = self.run_columns(slow + PLAIN)
+        filtered = self.run_columns(slow)
+        for name in ["time_s", "pinion_speed_rpm", "pinion_angle_rad", "wheel_angle_rad", "pairs_in_contact"]:
+            self.assertEqual(plain[name], filtered[name])
+        # 16 rows at the start see the held past. In the pass band 0.01 % are promised; what the filter rightly
+        # takes off are orders above 68: order k has 1/k^2 of the first in the force, whose kinks are
+        # rounded, 1/k^3 in the speed and 1/k^4 in the position. A delay of a single sample would be 12 %
+        # of a vibration of 2 kHz.
+        for name, share in [("contact_force_N", 0.2), ("wheel_speed_rpm", 0.01), ("dte_um", 1e-3)]:
+            one, other = plain[name][16:], filtered[name][16:]
+            self.assertGreater(spread(one), 0.0)
+            self.assertLess(largest_difference(one, other), share * spread(one), name)
+            self.assertNotEqual(one, other)
+
+
+class ClosedForms(Case):
+    def test_simple_model_at_constant_acceleration_rests(self):
+        """x'' = 0 from the start: the penetration carries load and acceleration torque for ever."""
+        g = self.geometry(SIMPLE)
+        ratio = g["pinion_base_radius_mm"] / g["wheel_base_radius_mm"]
+        acceleration = 1000 * 2 * math.pi / 60 / 0.02 * ratio
+        force = (LOAD + I_W * acceleration) / (g["wheel_base_radius_mm"] * 1e-3)
+        dte = -(GAP / 2 + force / (K * g["transverse_contact_ratio"])) * 1e6
+        c = self.run_columns([*SIMPLE, "drive.start_rpm=0", "drive.end_rpm=1000"])
+        # The solver may use its tolerance of 1e-4 um + 1e-4 of the penetration; it starts at rest, to rounding.
+        self.assert_all_close(c["dte_um"], [dte] * len(c["dte_um"]), absolute=1e-6)
+        self.assert_all_close(c["contact_force_N"], [force] * len(c["dte_um"]), relative=1e-6)
+        self.assert_all_close(c["pinion_speed_rpm"], [50000 * t for t in c["time_s"]], relative=1e-14)
+
+    def test_ideal_flanks_stay_near_the_mean_penetration(self):
+        g = self.geometry()
+        expected = -(GAP / 2 + LOAD / (g["wheel_base_radius_mm"] * 1e-3 * K * g["transverse_contact_ratio"])) * 1e6
+        c = self.run_columns()
+        # The contact length varies by some percent (c_1 = 0.5 %, c_2, ..), the penetration of 2.35 um alike.
+        self.assert_close(statistics.fmean(c["dte_um"]), expected, absolute=0.05)
+        self.assertGreater(spread(c["dte_um"]), 1e-4)
+
+    def test_integer_overlap_has_no_tooth_excitation(self):
+        """The total contact length is constant then, and nothing moves."""
+        overlap = self.geometry()["overlap_ratio"]
+        integer = [f"gears.face_width_mm={17.5 * 2 / overlap!r}"]
+        self.assert_close(self.geometry(integer)["overlap_ratio"], 2.0, relative=1e-14)
+        still, moving = self.run_columns(integer), self.run_columns()
+        # Forces of 524 N: left is what the tolerance of 1e-4 um makes of rounding errors, K eps 1e-4 um = 0.02 N.
+        self.assertLess(spread(still["contact_force_N"]), 1e-3)
+        self.assertGreater(spread(moving["contact_force_N"]), 1.0)
+
+    def test_torque_speeds_up_both_bodies_as_one(self):
+        g = self.geometry(SIMPLE)
+        ratio = g["pinion_base_radius_mm"] / g["wheel_base_radius_mm"]
+        alpha = (22.0 - LOAD * ratio) / (I_P + I_W * ratio**2)
+        for start in (0.0, 3000.0):
+            c = self.run_columns([*SIMPLE, *TORQUE, *TIGHT, *PLAIN, f"drive.start_rpm={start}", "analysis.duration_s=0.2"])
+            speed = start * 2 * math.pi / 60
+            for t, rpm, wheel, angle in zip(c["time_s"], c["pinion_speed_rpm"], c["wheel_speed_rpm"],
+                                            c["pinion_angle_rad"]):
+                # Tolerances of 1e-8 um per step add up over some hundred steps, of arcs of 1e4 um and more.
+                now = speed + alpha * t
+                self.assert_close(rpm * math.pi / 30, now, relative=1e-9, absolute=1e-9, what=f"t = {t}")
+                self.assert_close(wheel, rpm * ratio, relative=1e-9, absolute=1e-9, what=f"t = {t}")
+                self.assert_close(angle, speed * t + alpha * t * t / 2, relative=1e-9, absolute=1e-9, what=f"t = {t}")
+
+    def test_torque_with_contact_changing_keeps_the_momentum_balance(self):
+        """Whatever the mesh does, its force cancels in I_p phi_p'' / r_bp + I_w phi_w'' / r_bw."""
+        g = self.geometry()
+        r_bp, r_bw = g["pinion_base_radius_mm"] * 1e-3, g["wheel_base_radius_mm"] * 1e-3
+        c = self.run_columns([*TORQUE, *TIGHT, *PLAIN, "drive.start_rpm=3000", "analysis.duration_s=0.1"])
+        momenta = [(I_P * p / r_bp + I_W * w / r_bw) * math.pi / 30
+                   for p, w in zip(c["pinion_speed_rpm"], c["wheel_speed_rpm"])]
+        for t, momentum in zip(c["time_s"], momenta):
+            # About 30 N s; errors of the speeds, 2e-7 um w0 per step over some thousand steps, make 1e-6 of it.
+            self.assert_close(momentum, momenta[0] + (22.0 / r_bp - LOAD / r_bw) * t, relative=1e-7, what=f"t = {t}")
+        self.assertGreater(spread(c["contact_force_N"]), 1.0)
+
+    def test_slow_turning_follows_the_static_transmission_error(self):
+        static = self.run_columns(STATIC)
+        # One pitch in 60 rows: 1 rpm makes 0.75 pitches per second.
+        dynamic = self.run_columns([*PLAIN, "drive.start_rpm=1", "drive.end_rpm=1", "output.rate_Hz=45",
+                                    "analysis.duration_s=1.32", *TIGHT])
+        self.assert_all_close(dynamic["pinion_angle_rad"][:60], static["pinion_angle_rad"], absolute=1e-14)
+        # Kinks of the curve ring at (0.75 Hz / 2 kHz)^2 of its 0.1 um; damping lags by as little.
+        self.assert_all_close(dynamic["dte_um"][:60], static["te_um"], absolute=1e-5)
+        self.assertGreater(spread(static["te_um"]), 1e-3)
+
+
+class Solver(Case):
+    NOISY = ["load.noise_amplitude_Nm=10", "drive.start_rpm=4000", "drive.end_rpm=5000", "output.columns=dte_um", *PLAIN]
+
+    def tolerance(self, value, *others):
+        return self.run_columns([*self.NOISY, f"solver.relative_tolerance={value}",
+                                 f"solver.absolute_tolerance_um={value}", *others])["dte_um"]
+
+    def test_error_falls_with_the_tolerance(self):
+        exact = self.tolerance(1e-10)
+        errors = [largest_difference(self.tolerance(value), exact) for value in (1e-3, 1e-5, 1e-7)]
+        # The coarsest has more steps than its tolerance asks for, as a step may not miss a tooth.
+        self.assertLess(errors[1], 0.5 * errors[0])
+        self.assertLess(errors[2], 0.1 * errors[1])
+        # The default of 1e-4: 1 % of a vibration of 0.5 um.
+        self.assertLess(largest_difference(self.run_columns(self.NOISY)["dte_um"], exact), 0.02)
+
+    def test_methods_agree(self):
+        adams, bdf = self.tolerance(1e-8, "solver.method=adams"), self.tolerance(1e-8, "solver.method=bdf")
+        self.assertLess(largest_difference(adams, bdf), 1e-4)
+        self.assertNotEqual(adams, bdf)
+
+    def test_longest_step_is_kept(self):
+        result = self.gearsim([*SIMPLE, "solver.max_step_s=1e-5"], "--output", "run.csv")
+        steps = int(result.stderr.split(" steps")[0].split()[-1])
+        self.assertGreaterEqual(steps, 2000)
+        result = self.gearsim(SIMPLE, "--output", "run.csv")
+        self.assertLess(int(result.stderr.split(" steps")[0].split()[-1]), 100)
+
+
+class Static(Case):
+    def static(self, *settings):
+        return self.run_columns([*STATIC, *settings])
+
+    def test_integer_overlap_is_the_closed_form(self):
+        """The contact length is (g_alpha - delta) / p_bt face widths: F = K delta (g_alpha - delta) / p_bt."""
+        overlap = self.geometry()["overlap_ratio"]
+        width = f"gears.face_width_mm={17.5 * 2 / overlap!r}"
+        g = self.geometry([width])
+        pitch = g["transverse_base_pitch_mm"] * 1e-3
+        path = g["transverse_contact_ratio"] * pitch
+        force = LOAD / (g["wheel_base_radius_mm"] * 1e-3)
+        depth = path / 2 - math.sqrt(path**2 / 4 - force * pitch / K)
+        c = self.static(width)
+        # 1e-9 is asked for. The closed form's difference loses three digits of sixteen.
+        self.assert_all_close(c["te_um"], [-(GAP / 2 + depth) * 1e6] * 60, relative=1e-9)
+        length = (path - depth) / pitch * g["overlap_ratio"] * g["transverse_base_pitch_mm"] / abs(
+            math.sin(math.radians(g["base_helix_angle_deg"])))
+        self.assert_all_close(c["contact_length_mm"], [length] * 60, relative=1e-9)
+        self.assert_all_close(c["mesh_stiffness_N_per_um"], [K * 1e-6 * (path - depth) / pitch] * 60, relative=1e-9)
+
+    def test_te_carries_the_load(self):
+        """Ideal flanks: penetration times touching width is the load, at every position."""
+        c = self.static()
+        force = LOAD / (self.geometry()["wheel_base_radius_mm"] * 1e-3)
+        carried = [(-te - GAP / 2 * 1e6) * k for te, k in zip(c["te_um"], c["mesh_stiffness_N_per_um"])]
+        self.assert_all_close(carried, [force] * 60, relative=1e-9)
+
+    def test_positions_divide_the_period(self):
+        for period, passes in [("mesh", 1), ("pinion", 45), ("hunting", 45 * 41)]:
+            angles = self.static(f"analysis.period={period}", "analysis.positions=7")["pinion_angle_rad"]
+            self.assert_all_close(angles, [2 * math.pi / 45 * passes * k / 7 for k in range(7)], relative=4e-16)
+
+    def test_coast_side_mirrors_the_drive_side(self):
+        """Without flank files: the mean of one side is minus that of the other."""
+        drive, coast = self.static("analysis.positions=500"), self.static("load.mean_Nm=-20", "analysis.positions=500")
+        self.assert_close(statistics.fmean(coast["te_um"]), -statistics.fmean(drive["te_um"]), relative=1e-6)
+        self.assertGreater(min(coast["te_um"]), 50.0)
+
+
+class Ends(Case):
+    ENDLESS = ["analysis.duration_s=30000", "load.noise_amplitude_Nm=10"]
+
+    def setUp(self):
+        super().setUp()
+        with open(self.path("run.csv"), "w") as file:
+            file.write(OLD_RESULT)
+
+    def assert_part_has_whole_lines(self, reason):
+        """Provenance, header, full rows, and the reason at last. Returns the number of rows."""
+        self.assertEqual(self.text("run.csv"), OLD_RESULT)
+        text = self.text("run.csv.part")
+        self.assertTrue(text.endswith("\n"))
+        lines = text.splitlines()
+        if reason is not None:
+            self.assertRegex(lines.pop(), "^# incomplete: " + reason)
+        table = [line for line in lines if not line.startswith("#")]
+        self.assertTrue(table[0].startswith("time_s,"))
+        for row in table[1:]:
+            self.assertEqual(len([float(field) for field in row.split(",")]), len(table[0].split(",")))
+        return len(table) - 1
+
+    def test_interrupted_runs_keep_what_there_is(self):
+        for number in (signal.SIGINT, signal.SIGTERM):
+            part = self.path("run.csv.part")
+            if os.path.exists(part):
+                os.remove(part)
+            process = subprocess.Popen(self.command(self.ENDLESS, "--output", "run.csv"), cwd=self.folder,
+                                       stderr=subprocess.PIPE, text=True)
+            deadline = time.monotonic() + 60
+            while time.monotonic() < deadline:
+                if os.path.exists(part) and os.path.getsize(part) > 200000:
+                    break
+                time.sleep(0.02)
+            process.send_signal(number)
+            errors = process.communicate(timeout=60)[1]
+            self.assertEqual(process.returncode, 130, errors)
+            self.assertIn("interrupted at t = ", errors)
+            self.assertGreater(self.assert_part_has_whole_lines("interrupted at t = [0-9.]+ s$"), 100)
+
+    def test_full_disk(self):
+        """A limit on the size of a file stands for it."""
+        result = self.gearsim(self.ENDLESS, "--output", "run.csv",
+                              preexec_fn=lambda: resource.setrlimit(resource.RLIMIT_FSIZE, (300000, 300000)))
+        self.assertEqual(result.returncode, 1, result.stderr)
+        self.assertIn("run.csv.part: File too large", result.stderr)
+        self.assertGreater(self.assert_part_has_whole_lines(None), 1000)
+        self.assertGreater(os.path.getsize(self.path("run.csv.part")), 299000)
+
+    def test_full_disk_static(self):
+        result = self.gearsim(["analysis.type=static", "analysis.positions=20000"], "--output", "run.csv",
+                              preexec_fn=lambda: resource.setrlimit(resource.RLIMIT_FSIZE, (300000, 300000)))
+        self.assertEqual(result.returncode, 1, result.stderr)
+        self.assertEqual(self.text("run.csv"), OLD_RESULT)
+        self.assertTrue(self.text("run.csv.part").endswith("\n"))
+
+    def test_skipped_tooth_fails_with_time_and_reason(self):
+        result = self.gearsim(["load.noise_amplitude_Nm=1e6", "analysis.duration_s=1"], "--output", "run.csv")
+        self.assertEqual(result.returncode, 1, result.stderr)
+        self.assertRegex(result.stderr, "at t = [0-9.e-]+ s; the gears: ")
+        self.assert_part_has_whole_lines(".*at t = [0-9.e-]+ s; the gears: ")
+
+    def test_no_start_leaves_no_file(self):
+        result = self.gearsim(["load.mean_Nm=1e7"], "--output", "run.csv")
+        self.assertEqual(result.returncode, 1, result.stderr)
+        self.assertIn("quasi-static start", result.stderr)
+        self.assertEqual(sorted(os.listdir(self.folder)), ["run.csv", "run.ini"])
+        self.assertEqual(self.text("run.csv"), OLD_RESULT)
+
+    def test_whole_run_replaces_the_old_result(self):
+        result = self.gearsim([], "--output", "run.csv")
+        self.assertEqual(result.returncode, 0, result.stderr)
+        self.assertTrue(self.text("run.csv").startswith("# gearsim"))
+        self.assertEqual(sorted(os.listdir(self.folder)), ["run.csv", "run.ini"])
+
+
+class Progress(Case):
+    def test_file_gets_a_summary_and_no_progress(self):
+        result = self.gearsim([], "--output", "run.csv")
+        self.assertRegex(result.stderr, r"^gearsim: 0\.02\S* s simulated in .* steps .* right-hand sides, .*\n$")
+        self.assertNotIn("\r", result.stderr)
+
+    def test_quiet_says_nothing(self):
+        self.assertEqual(self.gearsim([], "--quiet", "--output", "run.csv").stderr, "")
+
+    def test_terminal_shows_time_speed_steps_and_time_left(self):
+        """At most about five times a second."""
+        for options, shown in [((), True), (("--quiet",), False)]:
+            master, slave = pty.openpty()
+            process = subprocess.Popen(self.command(Ends.ENDLESS, "--output", "run.csv", *options), cwd=self.folder,
+                                       stderr=slave, stdin=subprocess.DEVNULL)
+            os.close(slave)
+            time.sleep(1.5)
+            process.send_signal(signal.SIGINT)
+            text = b""
+            while True:
+                try:
+                    chunk = os.read(master, 65536)
+                except OSError:
+                    break
+                if not chunk:
+                    break
+                text += chunk
+            os.close(master)
+            self.assertEqual(process.wait(timeout=60), 130)
+            updates = [part for part in text.decode().split("\r") if "rpm" in part]
+            if shown:
+                self.assertRegex(updates[0], r"[0-9.]+ of 30000 s, 1000 rpm, [0-9]+ steps, [0-9]+ s left")
+                self.assertLessEqual(len(updates), 10)
+            else:
+                self.assertEqual(updates, [])
+
+
+if __name__ == "__main__":
+    if len(sys.argv) > 1 and not sys.argv[1].startswith("-"):
+        GEARSIM = os.path.abspath(sys.argv.pop(1))
+    unittest.main()

@@ -1,0 +1,307 @@
+/* SPDX-FileCopyrightText: The gearmesh authors */
+/* SPDX-License-Identifier: BSD-3-Clause */
+
+/* apps/gearsim/model.c: equations of motion, their Jacobian, the quasi-static start. */
+#include "model.h"
+
+#include "gearsim_case.h"
+#include "gm_test.h"
+
+static const double micrometre = 1e-6;
+static const enum mesh_model meshes[] = {MODEL_SIMPLE, MODEL_3D};
+static const enum drive_kind drives[] = {DRIVE_SPEED, DRIVE_TORQUE};
+
+/* A scaled state from x (m), x' (m/s), phi_p (rad), phi_p' (rad/s), without noise. */
+static void set_state(const gear_model *model, double x, double rate, double angle, double speed,
+                      double state[STATES_MAX]) {
+    const double r_bp = model->gears->pair.pinion.base_radius;
+    const double speed_unit = model->natural_frequency * micrometre;
+
+    state[STATE_OFFSET] = x / micrometre;
+    state[STATE_OFFSET_RATE] = rate / speed_unit;
+    state[STATE_PINION_ARC] = r_bp * angle / micrometre;
+    state[STATE_PINION_SPEED] = r_bp * speed / speed_unit;
+}
+
+/* x'' and phi_p'' in SI units from the derivative of the scaled state. */
+static void accelerations(const gear_model *model, double time, const double state[STATES_MAX],
+                          double *offset, double *pinion) {
+    const double unit = model->natural_frequency * micrometre;
+    double derivative[STATES_MAX] = {0.0};
+
+    GM_ASSERT_INT(model_derivative(model, time, state, derivative), GM_OK);
+    *offset = derivative[STATE_OFFSET_RATE] * unit;
+    *pinion = derivative[STATE_PINION_SPEED] * unit / model->gears->pair.pinion.base_radius;
+}
+
+/* Newton's law for each body by itself, with the force of the simple model written out. */
+static void bodies_obey_newton(void) {
+    const double offsets[] = {52e-6, 40e-6, -55e-6};
+    const double rate = 2e-3, angle = 3.0, speed = 120.0;
+
+    for (int d = 0; d < 2; ++d) {
+        config conf = case_config(MODEL_SIMPLE, drives[d]);
+        conf.end_speed = 400.0;
+        const gearbox gears = case_gearbox(&conf);
+        gear_model model;
+        GM_ASSERT_INT(model_init(&model, &conf, &gears), 0);
+
+        for (int i = 0; i < 3; ++i) {
+            const double x = offsets[i];
+            const double over = fabs(x) - 50e-6;
+            const double sign = x > 0.0 ? 1.0 : -1.0;
+            const double spring =
+                gears.simple_stiffness * over + gears.simple_damping * rate * sign;
+            const double force = over > 0.0 ? sign * fmax(spring, 0.0) : 0.0;
+
+            const double r_bp = gears.pair.pinion.base_radius, r_bw = gears.pair.wheel.base_radius;
+            const double wheel = (-20.0 + force * r_bw) / case_wheel_inertia;
+            const double pinion = d == 0 ? 300.0 : (22.0 - force * r_bp) / case_pinion_inertia;
+
+            double state[STATES_MAX], offset_got, pinion_got;
+            set_state(&model, x, rate, angle, speed, state);
+            accelerations(&model, 0.0, state, &offset_got, &pinion_got);
+            gm_test_context("drive %d, x = %g", d, x);
+            /* x - 50 um loses three digits of sixteen. */
+            GM_ASSERT_NEAR(offset_got, r_bp * pinion - r_bw * wheel, 1e-12, 1e-12);
+            if (d == 1) {
+                GM_ASSERT_NEAR(pinion_got, pinion, 1e-12, 1e-12);
+            }
+        }
+        model_free(&model);
+    }
+}
+
+/* Derivative row by central differences along one state. */
+static void difference(const gear_model *model, const double state[STATES_MAX], int column,
+                       double step, double result[STATES_MAX]) {
+    double below[STATES_MAX] = {0.0}, above[STATES_MAX] = {0.0}, moved[STATES_MAX];
+
+    memcpy(moved, state, sizeof moved);
+    moved[column] = state[column] - step;
+    GM_ASSERT_INT(model_derivative(model, 0.1, moved, below), GM_OK);
+    moved[column] = state[column] + step;
+    GM_ASSERT_INT(model_derivative(model, 0.1, moved, above), GM_OK);
+    for (int row = 0; row < model->states; ++row) {
+        result[row] = (above[row] - below[row]) / (2.0 * step);
+    }
+}
+
+/*
+ * At x' = 0, where nothing is left out of the Jacobian. Differences over 1e-4 um: their rounding is that
+ * of F (1e-16 * 500 N out of 50 um + 2 um: 1e-12 relative) over 1e-4 of 2 um; truncation is small, as the
+ * force is quadratic in x between kinks. A state whose difference straddles a kink may be off: few are.
+ */
+static void jacobian_is_that_of_differences(void) {
+    for (int m = 0; m < 2; ++m) {
+        for (int d = 0; d < 2; ++d) {
+            config conf = case_config(meshes[m], drives[d]);
+            const gearbox gears = case_gearbox(&conf);
+            gear_model model;
+            int compared = 0, kinks = 0;
+            uint64_t seed = 5;
+            model_init(&model, &conf, &gears);
+
+            for (int i = 0; i < 200; ++i) {
+                double state[STATES_MAX], jacobian[STATES_MAX][STATES_MAX], expected[STATES_MAX];
+                const double side = i % 4 == 0 ? -1.0 : 1.0;
+                set_state(&model, side * gm_test_uniform(&seed, 45e-6, 60e-6), 0.0,
+                          gm_test_uniform(&seed, 0.0, 20.0), 100.0, state);
+                GM_ASSERT_INT(model_jacobian(&model, 0.1, state, jacobian), GM_OK);
+
+                for (int column = 0; column < model.states; ++column) {
+                    difference(&model, state, column, 1e-4, expected);
+                    for (int row = 0; row < model.states; ++row) {
+                        /* Speed rows have the size w0, which is what the solver sees. */
+                        const double scale = model.natural_frequency;
+                        ++compared;
+                        kinks += fabs(jacobian[column][row] - expected[row]) > 1e-6 * scale;
+                    }
+                }
+            }
+            gm_test_context("mesh %d, drive %d: %d of %d differ", m, d, kinks, compared);
+            GM_ASSERT(compared >= 800);
+            GM_ASSERT(kinks * 200 <= compared);
+            model_free(&model);
+        }
+    }
+}
+
+/* The damping's entry needs x' != 0 on neither side of zero: in firm contact it is D times the contact. */
+static void jacobian_knows_when_flanks_would_pull(void) {
+    const config conf = case_config(MODEL_SIMPLE, DRIVE_SPEED);
+    const gearbox gears = case_gearbox(&conf);
+    gear_model model;
+    double state[STATES_MAX], jacobian[STATES_MAX][STATES_MAX];
+    model_init(&model, &conf, &gears);
+
+    /* Parting so fast that the damper would pull: no force, no derivative. */
+    set_state(&model, 50.1e-6, -1.0, 0.0, 0.0, state);
+    model_jacobian(&model, 0.0, state, jacobian);
+    GM_ASSERT(jacobian[STATE_OFFSET][STATE_OFFSET_RATE] == 0.0);
+    GM_ASSERT(jacobian[STATE_OFFSET_RATE][STATE_OFFSET_RATE] == 0.0);
+
+    set_state(&model, 52e-6, 1e-3, 0.0, 0.0, state);
+    model_jacobian(&model, 0.0, state, jacobian);
+    const double mobility = pow(gears.pair.wheel.base_radius, 2) / case_wheel_inertia;
+    GM_ASSERT_REL(jacobian[STATE_OFFSET_RATE][STATE_OFFSET_RATE], -gears.simple_damping * mobility,
+                  1e-13);
+    GM_ASSERT_REL(jacobian[STATE_OFFSET][STATE_OFFSET_RATE],
+                  -gears.simple_stiffness * mobility / model.natural_frequency, 1e-13);
+    model_free(&model);
+}
+
+/* Nothing moves relative to the rigid motion, under load both ways, at rest and speeding up. */
+static void start_is_an_equilibrium(void) {
+    const double loads[] = {20.0, -20.0};
+
+    for (int m = 0; m < 2; ++m) {
+        for (int d = 0; d < 2; ++d) {
+            for (int l = 0; l < 2; ++l) {
+                config conf = case_config(meshes[m], drives[d]);
+                conf.mean_load = loads[l];
+                conf.drive_torque = 1.2 * loads[l];
+                conf.end_speed = 400.0;
+                const gearbox gears = case_gearbox(&conf);
+                gear_model model;
+                double state[STATES_MAX], offset, pinion;
+                model_init(&model, &conf, &gears);
+
+                gm_test_context("mesh %d, drive %d, load %g", m, d, loads[l]);
+                GM_ASSERT_INT(model_quasi_static_start(&model, state), GM_OK);
+                accelerations(&model, 0.0, state, &offset, &pinion);
+                /* Without contact it would be 400 m/s2. 1e-12: the rounding of 52 um against 2 um. */
+                GM_ASSERT_ABS(offset, 0.0, 400.0 * 1e-12 * 30.0);
+                GM_ASSERT(state[STATE_OFFSET] * loads[l] > 50.0 * fabs(loads[l]));
+                GM_ASSERT(state[STATE_OFFSET_RATE] == 0.0);
+                model_free(&model);
+            }
+        }
+    }
+}
+
+/* Simple model: gap / 2 + F / K with the load and the torque that speeds up the wheel. */
+static void simple_start_is_the_closed_form(void) {
+    config conf = case_config(MODEL_SIMPLE, DRIVE_SPEED);
+    conf.end_speed = 400.0;
+    const gearbox gears = case_gearbox(&conf);
+    const double r_bp = gears.pair.pinion.base_radius, r_bw = gears.pair.wheel.base_radius;
+    const double force = (20.0 + case_wheel_inertia * 300.0 * r_bp / r_bw) / r_bw;
+    gear_model model;
+    double state[STATES_MAX];
+
+    model_init(&model, &conf, &gears);
+    GM_ASSERT_INT(model_quasi_static_start(&model, state), GM_OK);
+    GM_ASSERT_REL(state[STATE_OFFSET], 50.0 + 1e6 * force / gears.simple_stiffness, 1e-14);
+    model_free(&model);
+}
+
+static void without_a_force_it_starts_in_the_middle(void) {
+    for (int m = 0; m < 2; ++m) {
+        config conf = case_config(meshes[m], DRIVE_SPEED);
+        conf.mean_load = 0.0;
+        const gearbox gears = case_gearbox(&conf);
+        gear_model model;
+        double state[STATES_MAX];
+
+        model_init(&model, &conf, &gears);
+        GM_ASSERT_INT(model_quasi_static_start(&model, state), GM_OK);
+        GM_ASSERT(state[STATE_OFFSET] == 0.0);
+        model_free(&model);
+    }
+}
+
+/* Both flanks push against each other; the closed form of two springs. */
+static void negative_backlash_starts_preloaded(void) {
+    const double loads[] = {0.0, 2.0, 200.0};
+
+    for (int i = 0; i < 3; ++i) {
+        config conf = case_config(MODEL_SIMPLE, DRIVE_SPEED);
+        conf.gears.backlash = -10e-6;
+        conf.mean_load = loads[i];
+        const gearbox gears = case_gearbox(&conf);
+        gear_model model;
+        double state[STATES_MAX], offset, pinion;
+
+        model_init(&model, &conf, &gears);
+        GM_ASSERT_INT(model_quasi_static_start(&model, state), GM_OK);
+        accelerations(&model, 0.0, state, &offset, &pinion);
+        gm_test_context("load %g", loads[i]);
+        GM_ASSERT_ABS(offset, 0.0, 1e-8);
+        model_free(&model);
+    }
+}
+
+/* The library's status comes through: a skipped tooth is for a smaller step, a bad call is for nobody. */
+static void library_status_is_handed_on(void) {
+    const config conf = case_config(MODEL_3D, DRIVE_SPEED);
+    const gearbox gears = case_gearbox(&conf);
+    gear_model model;
+    double state[STATES_MAX], derivative[STATES_MAX], jacobian[STATES_MAX][STATES_MAX];
+    model_init(&model, &conf, &gears);
+
+    set_state(&model, 3e-3, 0.0, 0.0, 0.0, state);
+    GM_ASSERT_INT(model_derivative(&model, 0.0, state, derivative), GM_STATE_OUT_OF_RANGE);
+    GM_ASSERT_INT(model_jacobian(&model, 0.0, state, jacobian), GM_STATE_OUT_OF_RANGE);
+    set_state(&model, (double)NAN, 0.0, 0.0, 0.0, state);
+    GM_ASSERT_INT(model_derivative(&model, 0.0, state, derivative), GM_STATE_NOT_FINITE);
+    model_free(&model);
+}
+
+/* However far the pinion has turned, its tolerance is the same: relative ones would grow without end. */
+static void tolerance_of_the_angle_never_loosens(void) {
+    const config conf = case_config(MODEL_3D, DRIVE_TORQUE);
+    const gearbox gears = case_gearbox(&conf);
+    gear_model model;
+    double state[STATES_MAX], early[STATES_MAX], late[STATES_MAX];
+    model_init(&model, &conf, &gears);
+
+    set_state(&model, 52e-6, 0.0, 0.0, 100.0, state);
+    model_error_weights(&model, 1e-4, 1e-10, state, early);
+    set_state(&model, 52e-6, 0.0, 1e5, 1000.0, state);
+    model_error_weights(&model, 1e-4, 1e-10, state, late);
+    for (int i = 0; i < STATES_MAX; ++i) {
+        GM_ASSERT_REL(late[i], early[i], 1e-12);
+    }
+    /* And the tolerance of x is as documented: 1e-4 of the 2 um beyond the backlash and 1e-4 um. */
+    GM_ASSERT_REL(1.0 / early[STATE_OFFSET], 1e-4 * 2.0 + 1e-4, 1e-9);
+    model_free(&model);
+}
+
+/* A step cannot pass a tooth unseen, whether at speed or from standstill. */
+static void longest_step_is_a_part_of_a_tooth(void) {
+    config conf = case_config(MODEL_3D, DRIVE_SPEED);
+    conf.start_speed = 0.0;
+    conf.end_speed = 1000.0;
+    const gearbox gears = case_gearbox(&conf);
+    gear_model model;
+    double state[STATES_MAX];
+    model_init(&model, &conf, &gears);
+    set_state(&model, 52e-6, 0.0, 0.0, 0.0, state);
+
+    for (double t = 0.0; t <= 1.0; t += 0.1) {
+        const double step = model_max_step(&model, t, state);
+        const double turned = (1000.0 * t + 500.0 * step) * step;
+        gm_test_context("t = %g", t);
+        GM_ASSERT(step > 0.0);
+        /* An eighth of a pitch, by the closed form of the motion. */
+        GM_ASSERT_REL(turned, 6.283185307179586 / 45 / 8, 1e-12);
+    }
+    model_free(&model);
+}
+
+int main(int argc, char **argv) {
+    static const gm_test tests[] = {
+        GM_TEST(bodies_obey_newton),
+        GM_TEST(jacobian_is_that_of_differences),
+        GM_TEST(jacobian_knows_when_flanks_would_pull),
+        GM_TEST(start_is_an_equilibrium),
+        GM_TEST(simple_start_is_the_closed_form),
+        GM_TEST(without_a_force_it_starts_in_the_middle),
+        GM_TEST(negative_backlash_starts_preloaded),
+        GM_TEST(library_status_is_handed_on),
+        GM_TEST(tolerance_of_the_angle_never_loosens),
+        GM_TEST(longest_step_is_a_part_of_a_tooth),
+    };
+    return gm_test_main("gearsim.model", tests, GM_TEST_COUNT(tests), argc, argv);
+}

@@ -1,0 +1,117 @@
+/* SPDX-FileCopyrightText: The gearmesh authors */
+/* SPDX-License-Identifier: BSD-3-Clause */
+
+/* apps/gearsim/response.c: the closed form solves its differential equation. */
+#include "response.h"
+
+#include "gm_test.h"
+
+static const double gain = 18.0, frequency = 12000.0;
+
+static load_signal noise(double interval) {
+    return load_create(20.0, 10.0, interval, 4);
+}
+
+/*
+ * p' is the derivative of p, and p'' - from differences of p' - what the equation says; within the noise
+ * intervals. Central differences over 2 e are off by e^2/6 times the next but one derivative, which for
+ * p'' is gain * 100 / interval^2 at most: 1e-6 * 300 m/s2. Roundings: the terms of p are up to
+ * 12 zeta / (w0 interval)^3 * gain * 10 / w0^2 = 0.5 m for the shortest interval; 1e-16 of that over 2 e is
+ * 1.4e-8 m/s, and several of them add up.
+ */
+static void it_solves_its_equation(void) {
+    const double intervals[] = {2e-6, 1e-5, 1e-4, 1e-3};
+    const double ratios[] = {0.02, 0.05, 0.5};
+
+    for (int i = 0; i < 4; ++i) {
+        for (int r = 0; r < 3; ++r) {
+            const double interval = intervals[i], e = 1e-3 * fmin(interval, 1e-5);
+            const load_signal load = noise(interval);
+            response *const linear = response_create(&load, gain, frequency, ratios[r]);
+            gm_test_context("interval %g, ratio %g", interval, ratios[r]);
+
+            for (int k = 0; k < 1000; ++k) {
+                const double t = (k + 0.1 + 0.8e-3 * k) * interval;
+                const response_value before = response_at(linear, t - e),
+                                     at = response_at(linear, t),
+                                     after = response_at(linear, t + e);
+                const double acceleration = gain * (load_torque(&load, t) - 20.0) -
+                                            2.0 * ratios[r] * frequency * at.rate -
+                                            frequency * frequency * at.offset;
+                if (!GM_ASSERT_ABS((after.rate - before.rate) / (2.0 * e), acceleration, 2e-3) ||
+                    !GM_ASSERT_ABS((after.offset - before.offset) / (2.0 * e), at.rate, 2e-7)) {
+                    break;
+                }
+            }
+            response_free(linear);
+        }
+    }
+}
+
+/* p and p' go on without a jump from one noise value to the next. */
+static void it_is_smooth_across_the_noise_values(void) {
+    const double interval = 1e-5;
+    const load_signal load = noise(interval);
+    response *const linear = response_create(&load, gain, frequency, 0.05);
+
+    for (int k = 1; k < 2000; ++k) {
+        const double e = 1e-9 * interval;
+        const response_value before = response_at(linear, k * interval - e),
+                             after = response_at(linear, k * interval + e);
+        /* Over 2 e p moves by 2 e p' and p' by 2e-14 s * 225 m/s2; roundings: terms of p up to
+         * 6 / (w0 interval)^2 * 1e-6 m = 4e-4 m, ten of them. */
+        GM_ASSERT_ABS(after.offset - before.offset, 2.0 * e * after.rate, 2e-18);
+        GM_ASSERT_ABS(after.rate - before.rate, 0.0, 1e-11);
+    }
+    response_free(linear);
+}
+
+static void it_starts_at_rest(void) {
+    const load_signal load = noise(1e-5);
+    response *const linear = response_create(&load, gain, frequency, 0.05);
+    const response_value start = response_at(linear, 0.0);
+
+    /* Roundings of terms of the size gain * 10 / frequency^2 = 1e-6 m times 1e2. */
+    GM_ASSERT_ABS(start.offset, 0.0, 1e-19);
+    GM_ASSERT_ABS(start.rate, 0.0, 1e-14);
+    response_free(linear);
+}
+
+/* Looking back by a little or by much: the same bits. */
+static void it_may_be_asked_in_any_order(void) {
+    enum { TIMES = 3000 };
+    const load_signal load = noise(1e-5);
+    response *const linear = response_create(&load, gain, frequency, 0.05);
+    static response_value forward[TIMES];
+    uint64_t seed = 8;
+
+    for (int i = 0; i < TIMES; ++i) {
+        forward[i] = response_at(linear, 0.7e-5 * i);
+    }
+    for (int i = 0; i < 200; ++i) {
+        const int at = gm_test_integer(&seed, 0, TIMES - 1);
+        const response_value again = response_at(linear, 0.7e-5 * at);
+        GM_ASSERT(again.offset == forward[at].offset && again.rate == forward[at].rate);
+    }
+    response_free(linear);
+}
+
+static void useful_only_with_noise_that_is_not_too_dense(void) {
+    const load_signal silent = load_create(20.0, 0.0, 1e-5, 1);
+    const load_signal usual = noise(1e-5), dense = noise(1e-8);
+
+    GM_ASSERT(!response_is_useful(&silent, frequency));
+    GM_ASSERT(response_is_useful(&usual, frequency));
+    GM_ASSERT(!response_is_useful(&dense, frequency));
+}
+
+int main(int argc, char **argv) {
+    static const gm_test tests[] = {
+        GM_TEST(it_solves_its_equation),
+        GM_TEST(it_is_smooth_across_the_noise_values),
+        GM_TEST(it_starts_at_rest),
+        GM_TEST(it_may_be_asked_in_any_order),
+        GM_TEST(useful_only_with_noise_that_is_not_too_dense),
+    };
+    return gm_test_main("gearsim.response", tests, GM_TEST_COUNT(tests), argc, argv);
+}
