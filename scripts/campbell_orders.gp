@@ -5,6 +5,9 @@
 # file. Colours are told apart with any colour vision (blue, orange, green, purple).
 
 array colours[4] = ['#0072b2', '#d55e00', '#009e73', '#aa4499']
+# Three times the range of the map's colours at either end.
+amplitude_low = 10.0**colour_low / 3.0
+amplitude_high = 10.0**colour_high * 3.0
 highest = word(harmonics, words(harmonics)) * pinion_teeth + 15
 
 do for [format in 'png svg'] {
@@ -34,7 +37,7 @@ do for [format in 'png svg'] {
     set xrange [speed_low:speed_high]
     set xtics autofreq
     set mxtics 2
-    set yrange [0.1:300]
+    set yrange [amplitude_low:amplitude_high]
     set key at graph 1, screen 0.912 right horizontal samplen 1.5 width -1 font ',12'
     plot for [i = 1:words(harmonics)] stem . '_cuts.dat' using 1:(column(i + 1)) with lines lw 1.4 \
         lc rgb colours[i] title sprintf('order %d', word(harmonics, i) * pinion_teeth)
@@ -48,7 +51,6 @@ do for [format in 'png svg'] {
     set xrange [0:highest]
     set xtics pinion_teeth
     set mxtics default
-    set yrange [0.03:300]
     spectrum = stem . '_spectrum.dat'
     if (eigenfrequency > 0) {
         plot spectrum using 1:2 with lines lw 0.8 lc rgb '#bdbdbd' title 'all speeds', \
