@@ -471,6 +471,9 @@ static void what_could_not_be_read_back_is_not_written(void) {
     own.profile_nodes = 1;
     not_written("7 x 1 nodes");
     make_own(0);
+    own.face_nodes = 1;
+    not_written("1 x 4 nodes");
+    make_own(0);
     own.face_nodes = 10001;
     not_written("10001 x 4 nodes");
     make_own(0);

@@ -100,7 +100,9 @@ static void teeth_without_a_set_are_ideal(void) {
     begin();
     add_set(2, GM_COAST, 1e-6);
     GM_ASSERT_INT(build(&deviations, NULL), GM_IO_OK);
+    GM_ASSERT_INT(flanks.drive.capacity, 0);
     GM_ASSERT_INT(flanks.drive.table[2], -1);
+    GM_ASSERT_INT(flanks.coast.capacity, 1);
     GM_ASSERT_INT(flanks.coast.table[1], -1);
     GM_ASSERT_INT(flanks.coast.table[3], -1);
     end();
@@ -275,7 +277,7 @@ static void refused(const char *value) {
 static void options_out_of_range_are_refused(void) {
     begin();
     options.scale = (double)NAN;
-    refused("scale");
+    refused("the scale is not finite");
     begin();
     options.normal_factor = 0.0;
     refused("normal factor");

@@ -255,6 +255,34 @@ static void refusing_a_file_leaves_nothing_behind(void) {
     }
 }
 
+static void refusing_to_write_or_to_build_leaves_nothing_behind(void) {
+    path = file_of(deviation_text);
+    GM_ASSERT_INT(read_deviations(), GM_IO_OK);
+    path = file_of(pitch_text);
+    GM_ASSERT_INT(read_pitch(), GM_IO_OK);
+    const long alive_before = alive;
+
+    deviations.sets[1].tooth = TEETH;
+    GM_ASSERT_INT(write_deviations(), GM_IO_ERR_OPTION);
+    GM_ASSERT_INT(build(), GM_IO_ERR_OPTION);
+    deviations.sets[1].tooth = 4;
+    gm_flanks_options options;
+    gm_flanks_options_default(&options);
+    options.scale = 1e308;
+    options.normal_factor = 1e308;
+    GM_ASSERT_INT(gm_flanks_build(&flanks, &memory, TEETH, &deviations, &pitch, &options, &error),
+                  GM_IO_ERR_OPTION);
+    pitch.drive[0] = (double)NAN;
+    GM_ASSERT_INT(build(), GM_IO_ERR_OPTION);
+    GM_ASSERT_INT(gm_pitch_write(&pitch, IO_TEST_PATH("out.csv"), &error), GM_IO_ERR_OPTION);
+    GM_ASSERT_INT(gm_deviations_write(&deviations, GM_TEST_FOLDER, &error), GM_IO_ERR_FILE);
+
+    GM_ASSERT_INT(alive, alive_before);
+    GM_ASSERT_INT(open_files, 0);
+    free_all();
+    GM_ASSERT_INT(alive, 0);
+}
+
 static void a_file_of_endless_text_is_refused_in_little_memory(void) {
     /* 10 MB without a line end, behind a comment of 10 MB */
     const size_t size = 20000000;
@@ -315,6 +343,7 @@ int main(int argc, char **argv) {
         GM_TEST(building_flanks_survives_any_failed_allocation),
         GM_TEST(writing_survives_any_failed_allocation),
         GM_TEST(refusing_a_file_leaves_nothing_behind),
+        GM_TEST(refusing_to_write_or_to_build_leaves_nothing_behind),
         GM_TEST(a_file_of_endless_text_is_refused_in_little_memory),
         GM_TEST(a_locale_with_a_decimal_comma_changes_nothing),
     };

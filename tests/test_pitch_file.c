@@ -145,6 +145,9 @@ static void a_wrong_header_is_refused(void) {
             "'tooth,flank,t1,t2,deviation_um'", "tooth,flank,deviation_um is right");
     refused("tooth,flank,deviation\n1,drive,1\n", 1, "'tooth,flank,deviation'",
             "tooth,flank,deviation_um is right");
+    refused("tooth,flank\n1,drive\n", 1, "'tooth,flank'", "tooth,flank,deviation_um is right");
+    refused("tooth,flank,deviation_um,note\n1,drive,1\n", 1, "'tooth,flank,deviation_um,note'",
+            "tooth,flank,deviation_um is right");
     refused("flank,tooth,deviation_um\ndrive,1,1\n", 1, "'flank,tooth,deviation_um'",
             "tooth,flank,deviation_um is right");
     refused("Tooth,flank,deviation_um\n1,drive,1\n", 1, "'Tooth,flank,deviation_um'",
@@ -386,6 +389,7 @@ static void text_behind_a_number_is_refused(void) {
 static void a_number_beyond_the_range_of_a_double_is_refused(void) {
     refused(HEADER "1,drive,1e400\n", 2, "'1e400', which is too large", "a finite number");
     refused(HEADER "1,drive,-1e400\n", 2, "'-1e400', which is too large", "a finite number");
+    refused(HEADER "1,drive,1e4294967297\n", 2, "which is too large", "a finite number");
     refused(HEADER "1,drive,1e99999999999999999999\n", 2, "which is too large", "a finite number");
 }
 
@@ -468,6 +472,10 @@ static void a_written_file_reads_back_to_the_same_bits(void) {
 static void a_written_file_holds_the_rows_that_are_set_and_no_others(void) {
     static const char path[] = IO_TEST_PATH("out.csv");
     make_own();
+    drive[0] = -1.25e-11;
+    drive[1] = 1.25e-13;
+    drive[3] = 1.2e8;
+    drive[4] = 1.2e12;
     GM_ASSERT_INT(gm_pitch_write(&own, path, &error), GM_IO_OK);
     char text[1000] = "";
     FILE *file = fopen(path, "rb");
@@ -475,8 +483,8 @@ static void a_written_file_holds_the_rows_that_are_set_and_no_others(void) {
         text[fread(text, 1, sizeof text - 1, file)] = '\0';
         fclose(file);
     }
-    GM_ASSERT_STRING(text, HEADER "0,drive,0\n1,drive,1.5\n2,drive,3\n2,coast,-0.25\n"
-                                  "3,drive,4.5\n4,drive,6\n");
+    GM_ASSERT_STRING(text, HEADER "0,drive,-0.0000125\n1,drive,1.25e-7\n2,drive,3\n"
+                                  "2,coast,-0.25\n3,drive,120000000000000\n4,drive,1.2e18\n");
 }
 
 static void a_file_that_cannot_be_written_is_an_error(void) {
