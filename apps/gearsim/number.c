@@ -95,7 +95,9 @@ static double_double scaled(double value, int power) {
 static int guess_exponent(double value) {
     int binary;
     (void)frexp(value, &binary);
-    return (int)floor((binary - 1) * 0.30103);
+
+    /* The shift by 100 makes truncation a floor. */
+    return (int)((binary - 1) * 0.30103 + 100.0) - 100;
 }
 
 /* value = mantissa * 10^(exponent + 1 - digits) with just so many digits; 0 if that is in doubt. */
@@ -160,11 +162,20 @@ static char *put_fixed(char *out, const char *figures, int count, int exponent) 
         memcpy(out, figures, (size_t)count);
         return out + count;
     }
-    for (int i = 0; i < count || i <= exponent; ++i) {
-        if (i == exponent + 1) {
-            *out++ = '.';
-        }
-        *out++ = i < count ? figures[i] : '0';
+
+    /* Figures before the point, zeros where there are none, then the rest. */
+    const int whole = exponent + 1 < count ? exponent + 1 : count;
+    int i = 0;
+    for (; i < whole; ++i) {
+        *out++ = figures[i];
+    }
+    for (; i <= exponent; ++i) {
+        *out++ = '0';
+    }
+    if (whole < count) {
+        *out++ = '.';
+        memcpy(out, figures + whole, (size_t)(count - whole));
+        out += count - whole;
     }
     return out;
 }
