@@ -47,7 +47,10 @@ GM_TEST_UNUSED static void assert_error(const gm_io_error *error, const char *pa
 
 /** Whether a and b are the same bits, so that -0 is not 0 and no rounding passes. */
 GM_TEST_UNUSED static int same_bits(double a, double b) {
-    return memcmp(&a, &b, sizeof a) == 0;
+    uint64_t bits[2];
+    memcpy(&bits[0], &a, sizeof a);
+    memcpy(&bits[1], &b, sizeof b);
+    return bits[0] == bits[1];
 }
 
 #endif /* IO_TEST_H */

@@ -243,6 +243,24 @@ static int check_inputs(int teeth, const gm_deviations *deviations, const gm_pit
     return status == GM_IO_OK && pitch != NULL ? gmi_pitch_check(pitch, error) : status;
 }
 
+/* On an error memory may be allocated and the flanks half done: for the caller to undo. */
+static int build_flanks(builder *build, int teeth, const gm_pitch *pitch, void **memory) {
+    int *set_of_slot = NULL;
+    int status = check_inputs(teeth, build->deviations, pitch, build->options, build->error);
+    if (status == GM_IO_OK && build->deviations != NULL) {
+        status = gmi_deviations_index(build->deviations, &set_of_slot, build->error);
+        build->set_of_slot = set_of_slot;
+    }
+    if (status == GM_IO_OK) {
+        status = make_ideal(build, teeth, memory);
+    }
+    if (status == GM_IO_OK) {
+        status = fill_flanks(build, pitch);
+    }
+    free(set_of_slot);
+    return status;
+}
+
 int gm_flanks_build(gm_flanks *flanks, void **memory, int teeth, const gm_deviations *deviations,
                     const gm_pitch *pitch, const gm_flanks_options *options, gm_io_error *error) {
     gmi_error_begin(error, NULL);
@@ -257,21 +275,9 @@ int gm_flanks_build(gm_flanks *flanks, void **memory, int teeth, const gm_deviat
     }
     gm_flanks_options defaults;
     gm_flanks_options_default(&defaults);
-
-    int *set_of_slot = NULL;
     builder build = {flanks, deviations, NULL, options != NULL ? options : &defaults, NULL, error};
-    int status = check_inputs(teeth, deviations, pitch, build.options, error);
-    if (status == GM_IO_OK && deviations != NULL) {
-        status = gmi_deviations_index(deviations, &set_of_slot, error);
-        build.set_of_slot = set_of_slot;
-    }
-    if (status == GM_IO_OK) {
-        status = make_ideal(&build, teeth, memory);
-    }
-    if (status == GM_IO_OK) {
-        status = fill_flanks(&build, pitch);
-    }
-    free(set_of_slot);
+
+    const int status = build_flanks(&build, teeth, pitch, memory);
     if (status != GM_IO_OK) {
         free(*memory);
         *memory = NULL;
