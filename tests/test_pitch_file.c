@@ -492,6 +492,7 @@ static void a_written_file_holds_the_rows_that_are_set_and_no_others(void) {
     make_own();
     drive[0] = -1.25e-11;
     drive[1] = 1.25e-13;
+    drive[2] = 0.0;
     drive[3] = 1.2e8;
     drive[4] = 1.2e12;
     GM_ASSERT_INT(gm_pitch_write(&own, path, &error), GM_IO_OK);
@@ -501,7 +502,7 @@ static void a_written_file_holds_the_rows_that_are_set_and_no_others(void) {
         text[fread(text, 1, sizeof text - 1, file)] = '\0';
         fclose(file);
     }
-    GM_ASSERT_STRING(text, HEADER "0,drive,-0.0000125\n1,drive,1.25e-7\n2,drive,3\n"
+    GM_ASSERT_STRING(text, HEADER "0,drive,-0.0000125\n1,drive,1.25e-7\n2,drive,0\n"
                                   "2,coast,-0.25\n3,drive,120000000000000\n4,drive,1.2e18\n");
 }
 
