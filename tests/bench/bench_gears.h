@@ -1,0 +1,58 @@
+/* SPDX-FileCopyrightText: The gearmesh authors */
+/* SPDX-License-Identifier: BSD-3-Clause */
+
+/**
+ * @file bench_gears.h
+ * Gear pairs to measure with: the reference pair and its relatives with other numbers of teeth, helix angles and
+ * tables. All teeth of both gears have different tables, made as those of data/paper/ are.
+ */
+#ifndef BENCH_GEARS_H
+#define BENCH_GEARS_H
+
+#include "gearmesh/gearmesh.h"
+
+#define BENCH_STIFFNESS 1.05e8 /**< K of one tooth pair (N/m) */
+#define BENCH_DAMPING   844.361
+#define BENCH_TORQUE    20.0 /**< wheel torque of the states (N m) */
+
+/** Number of states that every measurement goes through again and again. */
+enum { BENCH_STATES = 256 };
+
+/** What can be varied; bench_params_default() is the reference pair. */
+typedef struct bench_params {
+    int pinion_teeth, wheel_teeth;
+    double helix_angle_deg;
+    int face_nodes, profile_nodes; /**< of the tables; 0 = ideal flanks */
+    double first_angle;            /**< pinion angle from which on the states lie (rad) */
+} bench_params;
+
+/** Flanks of one gear and their memory. */
+typedef struct bench_flanks {
+    gm_flanks flanks;
+    void *memory;
+} bench_flanks;
+
+/** A pair, its flanks, and states in quasi-static equilibrium all over the hunting period. */
+typedef struct bench_gears {
+    gm_pair pair;
+    bench_flanks own[2];                 /**< pinion, wheel */
+    const gm_flanks *pinion, *wheel;     /**< NULL = ideal */
+    gm_state states[BENCH_STATES];       /**< as angles */
+    gm_position positions[BENCH_STATES]; /**< the same, reduced */
+    double mean_sum;                     /**< mean penetration of the states (m) */
+    double mean_pieces, mean_lines;      /**< smooth pieces and lines of contact per evaluation */
+} bench_gears;
+
+bench_params bench_params_default(void);
+
+/** Ends the program with a message if anything fails. */
+void bench_gears_make(bench_gears *gears, const bench_params *params);
+void bench_gears_free(bench_gears *gears);
+
+/** Uniform in [0, 1), the same on every machine. */
+double bench_uniform(unsigned long long *seed);
+
+/** Ends the program unless the status is GM_OK. */
+void bench_check(int status, const char *what);
+
+#endif /* BENCH_GEARS_H */

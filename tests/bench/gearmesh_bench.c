@@ -1,0 +1,359 @@
+/* SPDX-FileCopyrightText: The gearmesh authors */
+/* SPDX-License-Identifier: BSD-3-Clause */
+
+/*
+ * What an evaluation costs. `gearmesh_bench --help` says how to ask; scripts/bench asks everything.
+ *
+ * Every measurement goes through the same 256 states in quasi-static equilibrium at 20 N m, all over the hunting
+ * period. Times are the shortest of several repetitions in processor time; instructions are for callgrind:
+ * `--count CASE N` does nothing but set up and evaluate N times, so the difference of two N is exact.
+ */
+#include "bench_gears.h"
+#include "slices.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <time.h>
+
+enum { REPETITIONS = 7, NAME_MAX_LENGTH = 40, COUNTS_MAX = 64 };
+
+static const double shortest_batch_s = 0.02;
+
+typedef struct bench {
+    const bench_gears *gears;
+    int slices;
+} bench;
+
+/* What the evaluations give must be used, or the compiler leaves them out. */
+static volatile double sink;
+
+/* ---------------------------------------------------------------------------------------------
+ * The cases: each evaluates `count` times
+ * ------------------------------------------------------------------------------------------- */
+
+typedef int (*evaluation)(const gm_pair *, const gm_flanks *, const gm_flanks *,
+                          const gm_position *, gm_penetration *);
+
+static void run_positions(const bench *b, long count, evaluation evaluate) {
+    const bench_gears *g = b->gears;
+    gm_penetration result;
+    double sum = 0.0;
+    for (long k = 0; k < count; ++k) {
+        (void)evaluate(&g->pair, g->pinion, g->wheel, &g->positions[k % BENCH_STATES], &result);
+        sum += result.penetration;
+    }
+    sink = sum;
+}
+
+static void run_sum(const bench *b, long count) {
+    run_positions(b, count, gm_penetration_3d_sum_at);
+}
+
+static void run_derivatives(const bench *b, long count) {
+    run_positions(b, count, gm_penetration_3d_at);
+}
+
+static void run_angles(const bench *b, long count) {
+    const bench_gears *g = b->gears;
+    gm_penetration result;
+    double sum = 0.0;
+    for (long k = 0; k < count; ++k) {
+        (void)gm_penetration_3d(&g->pair, g->pinion, g->wheel, &g->states[k % BENCH_STATES],
+                                &result);
+        sum += result.penetration;
+    }
+    sink = sum;
+}
+
+static void run_wrench(const bench *b, long count) {
+    const bench_gears *g = b->gears;
+    gm_wrench wrench;
+    double sum = 0.0;
+    for (long k = 0; k < count; ++k) {
+        (void)gm_wrench_3d_at(&g->pair, g->pinion, g->wheel, &g->positions[k % BENCH_STATES],
+                              BENCH_STIFFNESS, BENCH_DAMPING, &wrench);
+        sum += wrench.wheel_moment[2];
+    }
+    sink = sum;
+}
+
+static void run_equilibrium(const bench *b, long count) {
+    const bench_gears *g = b->gears;
+    double offset, sum = 0.0;
+    for (long k = 0; k < count; ++k) {
+        (void)gm_static_equilibrium(&g->pair, g->pinion, g->wheel,
+                                    g->states[k % BENCH_STATES].pinion_angle, BENCH_STIFFNESS,
+                                    BENCH_TORQUE, &offset, NULL);
+        sum += offset;
+    }
+    sink = sum;
+}
+
+/* A curve of 1000 positions over one turn of the pinion. */
+static void run_curve(const bench *b, long count) {
+    enum { POSITIONS = 1000 };
+    const bench_gears *g = b->gears;
+    double offset, sum = 0.0;
+    for (long k = 0; k < count * POSITIONS; ++k) {
+        const double angle = 6.283185307179586 * (double)(k % POSITIONS) / POSITIONS;
+        (void)gm_static_equilibrium(&g->pair, g->pinion, g->wheel, angle, BENCH_STIFFNESS,
+                                    BENCH_TORQUE, &offset, NULL);
+        sum += offset;
+    }
+    sink = sum;
+}
+
+static void run_slices(const bench *b, long count, enum slice_pairs pairs) {
+    const bench_gears *g = b->gears;
+    double sum = 0.0;
+    for (long k = 0; k < count; ++k)
+        sum += slices_sum(&g->pair, g->pinion, g->wheel, &g->positions[k % BENCH_STATES], b->slices,
+                          pairs);
+    sink = sum;
+}
+
+static void run_slices_all(const bench *b, long count) {
+    run_slices(b, count, SLICES_ALL_TEETH);
+}
+
+static void run_slices_touching(const bench *b, long count) {
+    run_slices(b, count, SLICES_TOUCHING);
+}
+
+typedef struct bench_case {
+    const char *name;
+    const char *text;
+    int ideal;
+    void (*run)(const bench *b, long count);
+} bench_case;
+
+static const bench_case cases[] = {
+    {"ideal.sum", "ideal flanks, sum", 1, run_sum},
+    {"ideal.derivatives", "   with exact derivatives", 1, run_derivatives},
+    {"ideal.angles", "   from angles, with derivatives", 1, run_angles},
+    {"ideal.wrench", "   wrench", 1, run_wrench},
+    {"ideal.equilibrium", "   equilibrium", 1, run_equilibrium},
+    {"ideal.curve", "   static curve, 1000 positions", 1, run_curve},
+    {"tables.sum", "tables, sum", 0, run_sum},
+    {"tables.derivatives", "   with exact derivatives", 0, run_derivatives},
+    {"tables.angles", "   from angles, with derivatives", 0, run_angles},
+    {"tables.wrench", "   wrench", 0, run_wrench},
+    {"tables.equilibrium", "   equilibrium", 0, run_equilibrium},
+    {"tables.curve", "   static curve, 1000 positions", 0, run_curve},
+    {"slices.all", "slices, all teeth", 0, run_slices_all},
+    {"slices.touching", "slices, pairs that can touch", 0, run_slices_touching},
+};
+enum { CASES = sizeof cases / sizeof cases[0] };
+
+static const bench_case *find_case(const char *name) {
+    for (int k = 0; k < CASES; ++k) {
+        if (strcmp(cases[k].name, name) == 0)
+            return &cases[k];
+    }
+    fprintf(stderr, "gearmesh_bench: no such case: %s; there are:", name);
+    for (int k = 0; k < CASES; ++k)
+        fprintf(stderr, " %s", cases[k].name);
+    fprintf(stderr, "\n");
+    exit(2);
+}
+
+/* ---------------------------------------------------------------------------------------------
+ * Time
+ * ------------------------------------------------------------------------------------------- */
+
+static double batch_seconds(const bench_case *c, const bench *b, long count) {
+    const clock_t begin = clock();
+    c->run(b, count);
+    return (double)(clock() - begin) / CLOCKS_PER_SEC;
+}
+
+/* Seconds of one evaluation: the shortest of the repetitions. */
+static double measure(const bench_case *c, const bench *b) {
+    long count = 1;
+    double shortest = batch_seconds(c, b, count);
+    while (shortest < shortest_batch_s) {
+        count *= shortest < 0.1 * shortest_batch_s ? 8 : 2;
+        shortest = batch_seconds(c, b, count);
+    }
+    for (int k = 1; k < REPETITIONS; ++k)
+        shortest = fmin(shortest, batch_seconds(c, b, count));
+    return shortest / (double)count;
+}
+
+/* ---------------------------------------------------------------------------------------------
+ * Commands
+ * ------------------------------------------------------------------------------------------- */
+
+/* Instructions counted elsewhere: lines "case,instructions" of a file. */
+typedef struct counts {
+    int number;
+    char name[COUNTS_MAX][NAME_MAX_LENGTH + 1];
+    double value[COUNTS_MAX];
+} counts;
+
+static int read_counts(counts *read, const char *file_name) {
+    FILE *file = fopen(file_name, "r");
+    char line[200];
+    if (file == NULL) {
+        perror(file_name);
+        return 2;
+    }
+    while (read->number < COUNTS_MAX && fgets(line, sizeof line, file) != NULL) {
+        if (sscanf(line, "%40[^,],%lf", read->name[read->number], &read->value[read->number]) == 2)
+            read->number++;
+    }
+    fclose(file);
+    return 0;
+}
+
+static double count_of(const counts *read, const char *name) {
+    for (int k = 0; k < read->number; ++k) {
+        if (strcmp(read->name[k], name) == 0)
+            return read->value[k];
+    }
+    return (double)NAN;
+}
+
+static void print_table(const bench_gears *ideal, const bench_gears *tables,
+                        const counts *counted) {
+    printf("%-34s %14s %14s %14s\n", "", "evaluations/s", "ns", "instructions");
+    for (int k = 0; k < CASES; ++k) {
+        const bench b = {cases[k].ideal ? ideal : tables, 51};
+        const double seconds = measure(&cases[k], &b);
+        const double instructions = count_of(counted, cases[k].name);
+        printf("%-34s %14.0f %14.1f ", cases[k].text, 1.0 / seconds, 1e9 * seconds);
+        if (instructions > 0.0)
+            printf("%14.0f\n", instructions);
+        else
+            printf("%14s\n", "-");
+        fflush(stdout);
+    }
+    printf(
+        "\nWith tables: %.2f lines of contact and %.1f smooth pieces per evaluation; slices: 51.\n",
+        tables->mean_lines, tables->mean_pieces);
+}
+
+/* Error of the sum, in parts of the mean sum. */
+static void slice_errors(const bench *b, double *rms, double *largest) {
+    const bench_gears *g = b->gears;
+    double squares = 0.0;
+    *largest = 0.0;
+    for (int k = 0; k < BENCH_STATES; ++k) {
+        gm_penetration exact;
+        bench_check(
+            gm_penetration_3d_sum_at(&g->pair, g->pinion, g->wheel, &g->positions[k], &exact),
+            "evaluation");
+        const double sum =
+            slices_sum(&g->pair, g->pinion, g->wheel, &g->positions[k], b->slices, SLICES_TOUCHING);
+        const double error = (sum - exact.drive) / g->mean_sum;
+        squares += error * error;
+        *largest = fmax(*largest, fabs(error));
+    }
+    *rms = sqrt(squares / BENCH_STATES);
+}
+
+static void print_slices(const bench_gears *tables) {
+    static const int numbers[] = {5, 11, 21, 51, 101, 201, 501, 1001, 2001, 5001, 10001};
+    printf("slices,error_rms,error_max,ns\n");
+    for (size_t k = 0; k < sizeof numbers / sizeof numbers[0]; ++k) {
+        const bench b = {tables, numbers[k]};
+        double rms, largest;
+        slice_errors(&b, &rms, &largest);
+        printf("%d,%.3e,%.3e,%.1f\n", numbers[k], rms, largest,
+               1e9 * measure(find_case("slices.touching"), &b));
+    }
+}
+
+static void print_help(void) {
+    puts(
+        "gearmesh_bench [--instructions FILE]   the table of all cases, with instructions from "
+        "lines case,number\n"
+        "gearmesh_bench --count CASE N [OPTION]...   sets up and evaluates N times, for callgrind\n"
+        "gearmesh_bench --time CASE [OPTION]...      ns, lines of contact and pieces of one "
+        "evaluation as CSV\n"
+        "gearmesh_bench --slices                     error and time of slices as CSV\n"
+        "\n"
+        "Options: --teeth Z, --helix DEGREES, --grid FACE PROFILE (nodes), --angle RADIANS, "
+        "--number SLICES");
+}
+
+/* Reads the options of --count and --time; returns 0 or 2. */
+static int read_options(int argc, char **argv, bench_params *params, int *slices) {
+    for (int k = 0; k < argc; ++k) {
+        const char *name = argv[k];
+        if (strcmp(name, "--teeth") == 0 && k + 1 < argc) {
+            params->pinion_teeth = atoi(argv[++k]);
+            params->wheel_teeth = params->pinion_teeth + 1;
+        } else if (strcmp(name, "--helix") == 0 && k + 1 < argc) {
+            params->helix_angle_deg = strtod(argv[++k], NULL);
+        } else if (strcmp(name, "--grid") == 0 && k + 2 < argc) {
+            params->face_nodes = atoi(argv[++k]);
+            params->profile_nodes = atoi(argv[++k]);
+        } else if (strcmp(name, "--angle") == 0 && k + 1 < argc) {
+            params->first_angle = strtod(argv[++k], NULL);
+        } else if (strcmp(name, "--number") == 0 && k + 1 < argc) {
+            *slices = atoi(argv[++k]);
+        } else {
+            fprintf(stderr, "gearmesh_bench: what is %s?\n", name);
+            return 2;
+        }
+    }
+    return 0;
+}
+
+static bench_params params_of(int ideal) {
+    bench_params params = bench_params_default();
+    if (ideal)
+        params.face_nodes = params.profile_nodes = 0;
+    return params;
+}
+
+/* count < 0: measure the time instead. */
+static int run_one(const char *name, long count, int argc, char **argv) {
+    static bench_gears gears;
+    const bench_case *c = find_case(name);
+    bench_params params = params_of(c->ideal);
+    bench b = {&gears, 51};
+    if (read_options(argc, argv, &params, &b.slices) != 0)
+        return 2;
+    bench_gears_make(&gears, &params);
+    if (count < 0)
+        printf("%.1f,%.2f,%.1f\n", 1e9 * measure(c, &b), gears.mean_lines, gears.mean_pieces);
+    else
+        c->run(&b, count);
+    bench_gears_free(&gears);
+    return 0;
+}
+
+static int run_all(const char *command, const char *instructions) {
+    static bench_gears ideal, tables;
+    static counts counted;
+    const bench_params ideal_params = params_of(1), table_params = params_of(0);
+    if (instructions != NULL && read_counts(&counted, instructions) != 0)
+        return 2;
+    bench_gears_make(&ideal, &ideal_params);
+    bench_gears_make(&tables, &table_params);
+    if (strcmp(command, "--slices") == 0)
+        print_slices(&tables);
+    else
+        print_table(&ideal, &tables, &counted);
+    bench_gears_free(&ideal);
+    bench_gears_free(&tables);
+    return 0;
+}
+
+int main(int argc, char **argv) {
+    const char *command = argc > 1 ? argv[1] : "";
+    if (strcmp(command, "--count") == 0 && argc >= 4)
+        return run_one(argv[2], atol(argv[3]), argc - 4, argv + 4);
+    if (strcmp(command, "--time") == 0 && argc >= 3)
+        return run_one(argv[2], -1, argc - 3, argv + 3);
+    if (argc == 1 || strcmp(command, "--slices") == 0)
+        return run_all(command, NULL);
+    if (strcmp(command, "--instructions") == 0 && argc == 3)
+        return run_all(command, argv[2]);
+    print_help();
+    return strcmp(command, "--help") == 0 ? 0 : 2;
+}
