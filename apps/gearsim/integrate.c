@@ -151,13 +151,14 @@ static int set_up(integrator *solver) {
     const int formulas = solver->options.method == METHOD_BDF ? CV_BDF : CV_ADAMS;
 
     solver->cvode = CVodeCreate(formulas, solver->context);
-    /* -1: any number of steps, as each is asked for by itself. */
+    /* -1: any number of steps, as each is asked for by itself; no warnings of short ones, see step(). */
     return solver->cvode == NULL || redirect_messages(solver) ||
            CVodeInit(solver->cvode, derivative, 0.0, solver->state) ||
            CVodeSetUserData(solver->cvode, solver) ||
            CVodeWFtolerances(solver->cvode, error_weights) ||
            CVodeSetLinearSolver(solver->cvode, solver->linear_solver, solver->matrix) ||
-           CVodeSetJacFn(solver->cvode, jacobian) || CVodeSetMaxNumSteps(solver->cvode, -1);
+           CVodeSetJacFn(solver->cvode, jacobian) || CVodeSetMaxNumSteps(solver->cvode, -1) ||
+           CVodeSetMaxHnilWarns(solver->cvode, -1);
 }
 
 integrator *integrator_create(const gear_model *model, const integrator_options *options,
