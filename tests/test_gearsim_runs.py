@@ -162,6 +162,13 @@ class Rows(Case):
             self.assertTrue(all(abs(m - LOAD) < 12.5 for m in c["load_torque_Nm"]))
             self.assertGreater(spread(c["load_torque_Nm"]), 3.0)
 
+    def test_pairs_of_both_flanks_count(self):
+        """Total contact ratio 3.96: three to five pairs touch, whichever flank carries."""
+        for load in ("20", "-20"):
+            for settings in (PLAIN, STATIC):
+                pairs = self.run_columns([*settings, f"load.mean_Nm={load}"])["pairs_in_contact"]
+                self.assertTrue(all(count in (3, 4, 5) for count in pairs), f"{load}, {settings}: {set(pairs)}")
+
     def test_filter_neither_delays_nor_damps_what_is_below_its_edge(self):
         """Tooth frequency 150 Hz and some sixty multiples, sampled plainly and filtered: the same."""
         slow = ["drive.start_rpm=200", "drive.end_rpm=200", *TIGHT]
