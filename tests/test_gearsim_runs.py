@@ -105,6 +105,11 @@ class Case(unittest.TestCase):
             self.assert_close(one, other, relative, absolute, f"row {i}")
 
 
+def listen_to_interrupts():
+    """In the child: a shell starts background jobs with SIGINT ignored, and gearsim would leave it so."""
+    signal.signal(signal.SIGINT, signal.SIG_DFL)
+
+
 def largest_difference(one, other):
     return max(abs(a - b) for a, b in zip(one, other, strict=True))
 
@@ -354,7 +359,7 @@ class Ends(Case):
             if os.path.exists(part):
                 os.remove(part)
             process = subprocess.Popen(self.command(self.ENDLESS, "--output", "run.csv"), cwd=self.folder,
-                                       stderr=subprocess.PIPE, text=True)
+                                       stderr=subprocess.PIPE, text=True, preexec_fn=listen_to_interrupts)
             deadline = time.monotonic() + 60
             while time.monotonic() < deadline:
                 if os.path.exists(part) and os.path.getsize(part) > 200000:
@@ -416,7 +421,7 @@ class Progress(Case):
         for options, shown in [((), True), (("--quiet",), False)]:
             master, slave = pty.openpty()
             process = subprocess.Popen(self.command(Ends.ENDLESS, "--output", "run.csv", *options), cwd=self.folder,
-                                       stderr=slave, stdin=subprocess.DEVNULL)
+                                       stderr=slave, stdin=subprocess.DEVNULL, preexec_fn=listen_to_interrupts)
             os.close(slave)
             time.sleep(1.5)
             process.send_signal(signal.SIGINT)
