@@ -99,24 +99,25 @@ enum gmi_wanted { GMI_SUM = 0, GMI_DERIVATIVES = 1, GMI_MOMENTS = 2 };
 /* line.c: the integral along one line of contact. */
 
 /*
- * How the lines of one side run through the tables of one gear, v1 = face_rate t1 and v2 = profile + rate t1 in
- * grid units: the same for all its teeth and all lines. All zero for ideal flanks.
+ * How the lines of one side run through the tables of one gear: the same for all its teeth and all lines. Lines are
+ * followed in grid units: v1 = face_rate t1 across the face, s = v1 of the table whose face lines lead, and along
+ * the profile u = v2 counted in the direction in which the lines climb. All zero for ideal flanks.
  */
 typedef struct gmi_grid {
     int last_face, last_profile; /* indices of the last cell */
     ptrdiff_t row;               /* doubles from one face line to the next */
-    ptrdiff_t step;              /* doubles from cell to cell across the profile lines, signed */
-    ptrdiff_t ahead;             /* doubles from a cell's corner to the profile line ahead */
+    ptrdiff_t step;              /* doubles from one profile line to the next, signed */
+    ptrdiff_t corner;            /* doubles from node 0 of a face line to that with u = 0 */
+    double base, direction;      /* u = base + direction v2, direction +1 or -1 */
+    double profile_cells;        /* largest u */
     double face_rate;            /* d v1 / d t1 */
-    double face_spacing;    /* its inverse, rounded up: the last face line is not before t1 = 1 */
-    double rate;            /* d v2 / d t1, signed */
-    double profile_spacing; /* its inverse */
-    double direction;       /* +1 or -1, the sign of rate */
-    double ahead_number;    /* 1 or 0: profile lines from a cell's corner to the one ahead */
-    double per_rho;         /* d v2 / d rho (1/m) */
+    double climb;                /* d u / d t1 >= 0 */
+    double per_rho;              /* d v2 / d rho (1/m) */
+    double face_ratio;           /* d v1 / d s: 1 for the table that leads */
+    double rate;                 /* d u / d s > 0 */
+    double profile_spacing;      /* its inverse */
     /* Half slope and curvature of f change by these times the second difference of the nodes. */
-    double face_kick, face_bend;
-    double profile_kick, profile_bend;
+    double face_kick, profile_kick, bend;
 } gmi_grid;
 
 /* climb: d rho / d t1 of this gear along a line, signed (m); length: rho from start to tip (m). */

@@ -4,21 +4,29 @@
 /*
  * The integral of max(0, f) along one line of contact, f = gap + deviation of both flanks, exactly.
  *
- * In grid units the line runs through a flank's table as v1 = face_rate t1, v2 = profile + rate t1, and within a
- * cell the bilinear surface is quadratic in t1 there. At a grid line only slope and curvature change, by the
- * second difference of the nodes across that grid line, interpolated along it (flank.c keeps it beside each
- * node). So value, slope and curvature of f are carried along the line and corrected at each crossing: two node
- * reads and no division per crossing. Each piece between crossings is integrated in closed form, split at its
- * roots where f changes its sign.
+ * In grid units the line climbs straight through a flank's table, and within a cell the bilinear surface is quadratic
+ * along it. At a grid line only slope and curvature change, by the second difference of the nodes across that grid
+ * line, interpolated along it (flank.c keeps it beside each node). So value, slope and curvature of f are carried
+ * along the line and corrected at each crossing: two node reads and no division per crossing. Each piece between
+ * crossings is integrated in closed form, split at its roots where f changes its sign.
+ *
+ * The place on the line is s, in cells of the leading table from the face line behind: it begins again with each face
+ * line, so it is also the place between two nodes of a profile line. Along the profile u counts cells in the
+ * direction in which the line climbs, whichever that is.
  *
  * Crossings come in order from two to four arithmetic sequences: face lines (constant t1; one sequence for both
- * tables if their grids agree) and profile lines (constant t2) of each table.
+ * tables if their grids agree) and profile lines (constant t2) of each table. Rounding may place a crossing just
+ * behind the end of the table instead of on it: that one step beyond reads zeros or the neighbouring row.
  */
 #include "internal.h"
 
 #include <math.h>
 
-#define NO_CROSSING 2.0 /* later than any: t1 ends at 1 */
+#define NO_CROSSING 1e300 /* farther ahead than any place on a line */
+
+/* Spur gears: the line climbs by nothing that could be seen, and yet u follows from the crossing ahead. */
+#define LEAST_RATE     1e-30
+#define LEAST_DISTANCE 1e-20 /* to the profile line ahead (cells) */
 
 /* The walk is compiled once for each combination of its constant arguments. */
 #if defined(__GNUC__)
@@ -28,22 +36,20 @@
 #endif
 
 /* In place of a table that is not there: zeros wherever one looks. */
-static const double ideal_nodes[GMI_NODE_DOUBLES + GMI_NODE_DOUBLES] = {0.0};
+static const double ideal_nodes[GMI_NODE_DOUBLES] = {0.0};
 static const gmi_grid ideal_grid = {0};
 
 /* Where the line is in one flank's table. */
 typedef struct trace {
-    const double *cell;   /* corner node of the current cell with the lowest indices */
-    double face, profile; /* indices of that node */
-    double origin;        /* v2 at t1 = 0 */
-    double profile_shift; /* next_profile = profile * spacing + shift */
-    double next_face;     /* t1 of the next crossings */
-    double next_profile;
-    double profile_slope; /* d deviation / d v2 here (m) */
-    double slope_rate;    /* its d / d t1 within the cell (m) */
+    const double *ahead; /* node of the profile line ahead on the face line behind */
+    double next_profile; /* s of the profile line ahead */
+    double next_face;    /* s of the face line ahead, where the other table leads */
+    int faces;           /* face lines still to cross */
+    double slope;        /* d deviation / d u here (m) */
+    double slope_rate;   /* its d / d s within the cell (m) */
 } trace;
 
-/* f around the current t1: value, half the slope, half the second derivative. */
+/* f around the current s: value, half the slope, half the second derivative. */
 typedef struct quadratic {
     double value, half_slope, curvature;
 } quadratic;
@@ -56,28 +62,35 @@ static inline double larger(double a, double b) {
     return a > b ? a : b;
 }
 
+/* face_ratio: d v1 / d s. */
+static void set_rates(gmi_grid *grid, double face_ratio) {
+    grid->face_ratio = face_ratio;
+    grid->rate = larger(grid->climb * face_ratio / grid->face_rate, LEAST_RATE);
+    grid->profile_spacing = 1.0 / grid->rate;
+    grid->face_kick = 0.5 * face_ratio;
+    grid->profile_kick = 0.5 * grid->rate;
+    grid->bend = grid->rate * face_ratio;
+}
+
 void gmi_grid_init(gmi_grid *grid, const gm_flank_tables *tables, double climb, double length) {
     if (tables == NULL || tables->profile_nodes == 0) {
         *grid = ideal_grid;
         return;
     }
     const int upwards = climb > 0.0;
+    const double profile_cells = (double)(tables->profile_nodes - 1);
     grid->last_face = tables->face_nodes - 2;
     grid->last_profile = tables->profile_nodes - 2;
     grid->row = (ptrdiff_t)tables->profile_nodes * GMI_NODE_DOUBLES;
     grid->step = upwards ? GMI_NODE_DOUBLES : -GMI_NODE_DOUBLES;
-    grid->ahead = upwards ? GMI_NODE_DOUBLES : 0;
+    grid->corner = upwards ? 0 : grid->row - GMI_NODE_DOUBLES;
     grid->direction = upwards ? 1.0 : -1.0;
-    grid->ahead_number = upwards ? 1.0 : 0.0;
+    grid->base = upwards ? 0.0 : profile_cells;
+    grid->profile_cells = profile_cells;
     grid->face_rate = (double)(tables->face_nodes - 1);
-    grid->face_spacing = (1.0 + 4e-16) / grid->face_rate;
-    grid->per_rho = (double)(tables->profile_nodes - 1) / length;
-    grid->rate = climb * grid->per_rho;
-    grid->profile_spacing = 1.0 / grid->rate; /* infinite for spur gears, and then not used */
-    grid->face_kick = 0.5 * grid->face_rate;
-    grid->face_bend = grid->rate * grid->face_rate;
-    grid->profile_kick = 0.5 * fabs(grid->rate);
-    grid->profile_bend = fabs(grid->rate) * grid->face_rate;
+    grid->per_rho = profile_cells / length;
+    grid->climb = fabs(climb) * grid->per_rho;
+    set_rates(grid, 1.0);
 }
 
 /* Index of the cell that holds v, clamped into the table against rounding at its rim. */
@@ -87,90 +100,71 @@ static inline int cell_of(double v, int last) {
 }
 
 static void begin_ideal(trace *path) {
-    const trace ideal = {ideal_nodes, 0.0, 0.0, 0.0, 0.0, NO_CROSSING, NO_CROSSING, 0.0, 0.0};
+    const trace ideal = {ideal_nodes, NO_CROSSING, NO_CROSSING, 0, 0.0, 0.0};
     *path = ideal;
 }
 
-/* Enters the table at t1 = from and adds its deviation to f. Returns the t1 at which the table ends. */
-static double begin(trace *path, const gmi_grid *grid, const double *table, double origin,
-                    double from, quadratic *f) {
-    const double v1 = from * grid->face_rate;
-    const double v2 = origin + from * grid->rate;
-    const int face = cell_of(v1, grid->last_face);
-    const int profile = cell_of(v2, grid->last_profile);
-    const double *cell = table + face * grid->row + profile * GMI_NODE_DOUBLES;
-    path->cell = cell;
-    path->face = (double)face;
-    path->profile = (double)profile;
-    path->origin = origin;
+/*
+ * Enters the table in its cell number `face`, at the place p between the face lines of that cell and at `s` of the
+ * table that leads, and adds its deviation to f. Returns the s at which the table ends.
+ */
+SPECIALIZED double begin(trace *path, const gmi_grid *grid, const double *table, double profile,
+                         double t1, int face, double p, double s, quadratic *f) {
+    const double u = grid->base + (grid->direction * profile + t1 * grid->climb);
+    const int cell = cell_of(u, grid->last_profile);
+    const double *behind = table + (face * grid->row + cell * grid->step + grid->corner);
+    const double *ahead = behind + grid->step;
 
     /* w = corner + along_face p + along_profile q + mixed p q with p, q in [0, 1] */
-    const double p = v1 - path->face;
-    const double q = v2 - path->profile;
-    const double corner = cell[0];
-    const double along_face = cell[grid->row] - corner;
-    const double along_profile = cell[GMI_NODE_DOUBLES] - corner;
-    const double mixed = (cell[grid->row + GMI_NODE_DOUBLES] - cell[grid->row]) - along_profile;
-    path->profile_slope = along_profile + mixed * p;
-    path->slope_rate = mixed * grid->face_rate;
-    f->value += corner + along_face * p + path->profile_slope * q;
-    f->half_slope +=
-        grid->face_kick * (along_face + mixed * q) + 0.5 * grid->rate * path->profile_slope;
-    f->curvature += grid->face_bend * mixed;
+    const double q = u - (double)cell;
+    const double corner = behind[0];
+    const double along_face = behind[grid->row] - corner;
+    const double along_profile = ahead[0] - corner;
+    const double mixed = (ahead[grid->row] - behind[grid->row]) - along_profile;
+    path->ahead = ahead;
+    path->slope = along_profile + mixed * p;
+    path->slope_rate = mixed * grid->face_ratio;
+    f->value += corner + along_face * p + path->slope * q;
+    f->half_slope += grid->face_kick * (along_face + mixed * q) + grid->profile_kick * path->slope;
+    f->curvature += grid->bend * mixed;
 
-    path->next_face = (path->face + 1.0) * grid->face_spacing;
-    if (grid->rate == 0.0) { /* spur: along a profile line, never across one */
-        path->profile_shift = path->next_profile = NO_CROSSING;
-        return 1.0;
-    }
-    path->profile_shift = (grid->ahead_number - origin) * grid->profile_spacing;
-    path->next_profile = path->profile * grid->profile_spacing + path->profile_shift;
-    const double last_cell = grid->rate > 0.0 ? (double)grid->last_profile : 0.0;
-    return last_cell * grid->profile_spacing + path->profile_shift;
+    path->next_profile = s + larger(1.0 - q, LEAST_DISTANCE) * grid->profile_spacing;
+    return s + larger(grid->profile_cells - u, LEAST_DISTANCE) * grid->profile_spacing;
 }
 
-/* Across the face line (constant t1) ahead. */
-SPECIALIZED void cross_face(trace *path, const gmi_grid *grid, double t1, int wanted,
-                            quadratic *f) {
-    path->cell += grid->row;
-    const double q = t1 * grid->rate + (path->origin - path->profile);
-    const double near = path->cell[GMI_NODE_FACE];
-    const double change = path->cell[GMI_NODE_DOUBLES + GMI_NODE_FACE] - near;
-    f->half_slope += grid->face_kick * (near + q * change);
-    f->curvature += grid->face_bend * change;
+/* Across the face line ahead, at `s`; `ahead` is already that of the new cell. */
+SPECIALIZED void cross_face(trace *path, const gmi_grid *grid, double s, int wanted, quadratic *f) {
+    path->ahead += grid->row;
+    const double ahead = path->ahead[GMI_NODE_FACE];
+    const double back = path->ahead[GMI_NODE_FACE - grid->step] - ahead;
+    const double distance = (path->next_profile - s) * grid->rate;
+    f->half_slope += grid->face_kick * (ahead + distance * back);
+    f->curvature -= grid->bend * back;
     if (wanted & GMI_DERIVATIVES)
-        path->slope_rate += grid->face_rate * change;
+        path->slope_rate -= grid->face_ratio * back;
 }
 
-SPECIALIZED void count_face(trace *path, const gmi_grid *grid) {
-    path->face += 1.0;
-    path->next_face = (path->face + 1.0) * grid->face_spacing;
-}
-
-/* Across the profile line (constant t2) ahead, upwards or downwards. `face` = v1 index of the cell. */
-SPECIALIZED void cross_profile(trace *path, const gmi_grid *grid, double face, double t1,
-                               int wanted, quadratic *f) {
-    const double *line = path->cell + grid->ahead;
-    const double p = t1 * grid->face_rate - face;
-    const double near = line[GMI_NODE_PROFILE];
-    const double change = line[grid->row + GMI_NODE_PROFILE] - near;
-    const double kink = near + p * change;
+/* Across the profile line ahead, at the place p between its nodes on the face lines behind and ahead. */
+SPECIALIZED void cross_profile(trace *path, const gmi_grid *grid, double p, int wanted,
+                               quadratic *f) {
+    const double behind = path->ahead[GMI_NODE_PROFILE];
+    const double change = path->ahead[grid->row + GMI_NODE_PROFILE] - behind;
+    const double kink = behind + p * change;
     f->half_slope += grid->profile_kick * kink;
-    f->curvature += grid->profile_bend * change;
+    f->curvature += grid->bend * change;
     if (wanted & GMI_DERIVATIVES) {
-        path->profile_slope += grid->direction * kink;
-        path->slope_rate += grid->direction * (grid->face_rate * change);
+        path->slope += kink;
+        path->slope_rate += grid->face_ratio * change;
     }
-    path->cell += grid->step;
-    path->profile += grid->direction;
-    path->next_profile = path->profile * grid->profile_spacing + path->profile_shift;
+    path->ahead += grid->step;
+    path->next_profile += grid->profile_spacing;
 }
 
 /* What a piece is made of: copied for the slow case, so that the walk itself stays in registers. */
 typedef struct piece {
-    double t1, length;
+    double s, length; /* s from the first face line on (GMI_MOMENTS) */
     quadratic f;
-    double first_slope, first_rate; /* d deviation / d v2 of both flanks, and its rate */
+    double first_slope, first_rate; /* d deviation / d u of both flanks, and its rate */
     double second_slope, second_rate;
 } piece;
 
@@ -191,10 +185,10 @@ static inline void add_touching(const piece *part, double begin, double end, int
         total->wheel += length * (part->second_slope + middle * part->second_rate);
     }
     if (wanted & GMI_MOMENTS) {
-        const double t1 = part->t1 + middle;
+        const double s = part->s + middle;
         const double slope_at_middle = 2.0 * (f.half_slope + middle * f.curvature);
-        total->sum_t1 += t1 * integral + length * second * slope_at_middle;
-        total->contact_t1 += t1 * length;
+        total->sum_t1 += s * integral + length * second * slope_at_middle;
+        total->contact_t1 += s * length;
     }
 }
 
@@ -223,93 +217,124 @@ static void add_split(const piece *part, int wanted, gmi_line_sum *total) {
 
 /* A walk along a line: where it is, f there, and the sums over whole pieces so far. */
 typedef struct walk_state {
-    double t1;
+    double s;
     quadratic f;
-    trace first, second; /* through the tables of both flanks */
+    trace first, second; /* through the tables of both flanks; the first one's face lines lead */
+    double faces;        /* face lines behind that one (GMI_MOMENTS) */
     double three_sums;   /* three times the sum */
     double contact;
-    double first_sum, second_sum; /* of d deviation / d v2 of both flanks */
+    double two_first, two_second; /* twice the sums of d deviation / d u of both flanks */
 } walk_state;
 
 /* Integrates the piece up to `end` and goes there. */
 SPECIALIZED void advance(walk_state *at, double end, int wanted, gmi_line_sum *split) {
     /* A quadratic stays within the hull of its three Bezier points, and their mean is its own. */
-    const double length = end - at->t1;
+    const double length = end - at->s;
     const double value = at->f.value;
     const double control = value + length * at->f.half_slope;
     const double end_half_slope = at->f.half_slope + length * at->f.curvature;
     const double end_value = control + length * end_half_slope;
+    const double first_slope = at->first.slope + length * at->first.slope_rate;
+    const double second_slope = at->second.slope + length * at->second.slope_rate;
     if (!(wanted & GMI_MOMENTS) && smaller(smaller(value, control), end_value) > 0.0) {
         at->three_sums += length * (value + control + end_value);
         at->contact += length;
         if (wanted & GMI_DERIVATIVES) {
-            at->first_sum +=
-                length * (at->first.profile_slope + 0.5 * length * at->first.slope_rate);
-            at->second_sum +=
-                length * (at->second.profile_slope + 0.5 * length * at->second.slope_rate);
+            at->two_first += length * (at->first.slope + first_slope);
+            at->two_second += length * (at->second.slope + second_slope);
         }
     } else if (larger(larger(value, control), end_value) > 0.0) {
-        const piece part = {at->t1,
+        const piece part = {wanted & GMI_MOMENTS ? at->faces + at->s : 0.0,
                             length,
                             at->f,
-                            at->first.profile_slope,
+                            at->first.slope,
                             at->first.slope_rate,
-                            at->second.profile_slope,
+                            at->second.slope,
                             at->second.slope_rate};
         add_split(&part, wanted, split);
     }
-    at->t1 = end;
+    at->s = end;
     at->f.value = end_value;
     at->f.half_slope = end_half_slope;
     if (wanted & GMI_DERIVATIVES) {
-        at->first.profile_slope += length * at->first.slope_rate;
-        at->second.profile_slope += length * at->second.slope_rate;
+        at->first.slope = first_slope;
+        at->second.slope = second_slope;
     }
 }
 
 /*
- * Walks a line piece by piece through the tables of two flanks, from face line to face line. same_faces: the first
- * table's face lines serve both. `wanted` and `same_faces` are constants at each call. In the result "pinion" is
- * the first flank.
+ * Walks on through the tables of two flanks until s = end, behind any face line. same_faces: the first table's
+ * face lines serve both. `wanted` and `same_faces` are constants at each call.
  */
-SPECIALIZED void walk(walk_state at, const gmi_grid *first, const gmi_grid *second, double to,
-                      int wanted, int same_faces, gmi_line_sum *result) {
+SPECIALIZED void walk_cell(walk_state *at, const gmi_grid *first, const gmi_grid *second,
+                           double end, int wanted, int same_faces, gmi_line_sum *split) {
     for (;;) {
-        double face_line = at.first.next_face;
-        if (!same_faces)
-            face_line = smaller(face_line, at.second.next_face);
-        face_line = smaller(face_line, to);
+        const double face_line =
+            same_faces || at->second.faces <= 0 ? end : smaller(end, at->second.next_face);
         for (;;) {
-            if (at.first.next_profile < at.second.next_profile) {
-                if (!(at.first.next_profile < face_line))
+            if (at->first.next_profile < at->second.next_profile) {
+                if (!(at->first.next_profile < face_line))
                     break;
-                advance(&at, at.first.next_profile, wanted, result);
-                cross_profile(&at.first, first, at.first.face, at.t1, wanted, &at.f);
+                advance(at, at->first.next_profile, wanted, split);
+                cross_profile(&at->first, first, at->s, wanted, &at->f);
             } else {
-                if (!(at.second.next_profile < face_line))
+                if (!(at->second.next_profile < face_line))
                     break;
-                advance(&at, at.second.next_profile, wanted, result);
-                cross_profile(&at.second, second, same_faces ? at.first.face : at.second.face,
-                              at.t1, wanted, &at.f);
+                advance(at, at->second.next_profile, wanted, split);
+                const double p =
+                    same_faces ? at->s : 1.0 - (at->second.next_face - at->s) * second->face_ratio;
+                cross_profile(&at->second, second, p, wanted, &at->f);
             }
         }
-        advance(&at, face_line, wanted, result);
-        if (face_line >= to)
-            break;
-        if (same_faces || at.first.next_face == face_line) {
-            cross_face(&at.first, first, face_line, wanted, &at.f);
-            count_face(&at.first, first);
-            if (same_faces)
-                cross_face(&at.second, second, face_line, wanted, &at.f);
-        } else {
-            cross_face(&at.second, second, face_line, wanted, &at.f);
-            count_face(&at.second, second);
-        }
+        advance(at, face_line, wanted, split);
+        if (same_faces || !(face_line < end))
+            return;
+        cross_face(&at->second, second, face_line, wanted, &at->f);
+        at->second.faces -= 1;
+        at->second.next_face += 1.0 / second->face_ratio;
     }
-    result->sum += at.three_sums * (1.0 / 3.0);
-    result->contact += at.contact;
-    result->pinion += at.first_sum;
-    result->wheel += at.second_sum;
+}
+
+/* Across the face line of the leading table, where s begins again. */
+SPECIALIZED void enter_next_cell(walk_state *at, const gmi_grid *first, const gmi_grid *second,
+                                 int wanted, int same_faces) {
+    at->s = 0.0;
+    if (wanted & GMI_MOMENTS)
+        at->faces += 1.0;
+    at->first.faces -= 1;
+    at->first.next_profile -= 1.0;
+    at->second.next_profile -= 1.0;
+    if (!same_faces)
+        at->second.next_face -= 1.0;
+    cross_face(&at->first, first, 0.0, wanted, &at->f);
+    if (same_faces)
+        cross_face(&at->second, second, 0.0, wanted, &at->f);
+}
+
+/*
+ * Walks a line piece by piece to `end`, which is counted from the face line behind its beginning. In the result
+ * "pinion" is the first flank.
+ */
+SPECIALIZED void walk(walk_state at, const gmi_grid *first, const gmi_grid *second, double end,
+                      int wanted, int same_faces, gmi_line_sum *result) {
+    const double end_in_last = end - (double)at.first.faces;
+    for (;;) {
+        const int is_last = at.first.faces <= 0;
+        walk_cell(&at, first, second, is_last ? end_in_last : 1.0, wanted, same_faces, result);
+        if (is_last)
+            break;
+        enter_next_cell(&at, first, second, wanted, same_faces);
+    }
+
+    const double per_rate = 1.0 / first->face_rate; /* from s to t1 */
+    result->sum = per_rate * (result->sum + at.three_sums * (1.0 / 3.0));
+    result->contact = per_rate * (result->contact + at.contact);
+    result->sum_t1 *= per_rate * per_rate;
+    result->contact_t1 *= per_rate * per_rate;
+    if (wanted & GMI_DERIVATIVES) {
+        result->pinion = per_rate * first->direction * (result->pinion + 0.5 * at.two_first);
+        result->wheel = per_rate * second->direction * (result->wheel + 0.5 * at.two_second);
+    }
     result->at_to = at.f.value;
 }
 
@@ -330,30 +355,49 @@ static void integrate_tables(const gmi_line *line, const gmi_grid *first, const 
                              double first_profile, const gmi_grid *second,
                              const double *second_table, double second_profile, int wanted,
                              gmi_line_sum *result) {
-    walk_state at; /* every field is set below; zeroing all first costs as much as ten pieces */
-    at.t1 = line->from;
-    at.f = (quadratic){line->gap, 0.0, 0.0};
-    at.three_sums = at.contact = at.first_sum = at.second_sum = 0.0;
-    double to =
-        smaller(line->to, begin(&at.first, first, first_table, first_profile, line->from, &at.f));
+    const double v1 = line->from * first->face_rate;
+    const double to = line->to * first->face_rate;
+    const int face = cell_of(v1, first->last_face);
+    const double s = v1 - (double)face;
     int same_faces = 1;
+    gmi_grid scaled;
+    walk_state at; /* every field is set below; zeroing all first costs as much as ten pieces */
+    at.s = s;
+    at.faces = (double)face;
+    at.f = (quadratic){line->gap, 0.0, 0.0};
+    at.three_sums = at.contact = at.two_first = at.two_second = 0.0;
+    at.first.faces = cell_of(to, first->last_face) - face;
+    double end = smaller(to - (double)face, begin(&at.first, first, first_table, first_profile,
+                                                  line->from, face, s, s, &at.f));
     if (second_table == NULL) {
         begin_ideal(&at.second);
         second = &ideal_grid;
+    } else if (first->last_face == second->last_face) {
+        at.second.faces = 0;
+        end = smaller(end, begin(&at.second, second, second_table, second_profile, line->from, face,
+                                 s, s, &at.f));
     } else {
-        to =
-            smaller(to, begin(&at.second, second, second_table, second_profile, line->from, &at.f));
-        same_faces = first->last_face == second->last_face;
+        same_faces = 0;
+        scaled = *second;
+        set_rates(&scaled, second->face_rate / first->face_rate);
+        second = &scaled;
+        const double second_v1 = line->from * second->face_rate;
+        const int second_face = cell_of(second_v1, second->last_face);
+        const double p = second_v1 - (double)second_face;
+        at.second.faces = cell_of(line->to * second->face_rate, second->last_face) - second_face;
+        at.second.next_face = s + (1.0 - p) / second->face_ratio;
+        end = smaller(end, begin(&at.second, second, second_table, second_profile, line->from,
+                                 second_face, p, s, &at.f));
     }
     result->at_from = at.f.value;
-    if (wanted & GMI_MOMENTS)
-        walk(at, first, second, to, GMI_MOMENTS, 0, result);
-    else if (!same_faces)
-        walk(at, first, second, to, GMI_DERIVATIVES, 0, result);
+    if (!same_faces)
+        walk(at, first, second, end, wanted, 0, result);
+    else if (wanted & GMI_MOMENTS)
+        walk(at, first, second, end, GMI_MOMENTS, 1, result);
     else if (wanted & GMI_DERIVATIVES)
-        walk(at, first, second, to, GMI_DERIVATIVES, 1, result);
+        walk(at, first, second, end, GMI_DERIVATIVES, 1, result);
     else
-        walk(at, first, second, to, GMI_SUM, 1, result);
+        walk(at, first, second, end, GMI_SUM, 1, result);
 }
 
 void gmi_line_integrate(const gmi_line *line, const gmi_grid *pinion, const gmi_grid *wheel,
