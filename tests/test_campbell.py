@@ -317,6 +317,15 @@ class CommandLine(unittest.TestCase):
             names = [line.split(",")[0] for line in file]
         self.assertEqual(names, ["indicator"] + indicators.INDICATORS)
 
+    def test_eigenfrequency_comes_from_the_head_lines(self):
+        asked = self.campbell(self.write(), "--eigenfrequency", "1979.16", "--output", "asked")
+        noted = self.campbell(self.write(head=HEAD + "# eigenfrequency_Hz = 1979.16\n"), "--output", "noted")
+        self.assertEqual((asked.returncode, noted.returncode, noted.stderr), (0, 0, ""))
+        with open(os.path.join(self.folder, "asked_indicators.csv"), "rb") as file:
+            indicators_asked = file.read()
+        with open(os.path.join(self.folder, "noted_indicators.csv"), "rb") as file:
+            self.assertEqual(file.read(), indicators_asked)
+
     def test_columns_go_by_name(self):
         self.run.time_s, self.run.force_N = self.run.force_N, self.run.time_s
         path = self.write(columns="contact_force_N,pinion_speed_rpm,pinion_angle_rad,time_s")

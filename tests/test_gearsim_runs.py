@@ -126,6 +126,13 @@ class Rows(Case):
             # Correctly rounded quotients, written with 17 digits: equal to the last bit.
             self.assertEqual(columns["time_s"], [k / rate for k in range(count)])
 
+    def test_head_lines_say_the_eigenfrequency(self):
+        self.run_columns(["analysis.duration_s=0.001"])
+        noted = [line for line in self.text("run.csv").splitlines() if line.startswith("# eigenfrequency_Hz = ")]
+        self.assertEqual(len(noted), 1)
+        # Written with 9 digits.
+        self.assert_close(float(noted[0].split(" = ")[1]), self.geometry()["eigenfrequency_Hz"], 1e-8)
+
     def test_same_seed_same_file_and_another_seed_another(self):
         def file(seed):
             self.run_columns(["load.noise_amplitude_Nm=10", f"load.seed={seed}"])

@@ -389,7 +389,7 @@ static const wrong_value wrong_values[] = {
     NUMBER(pinion_profile_shift, -3.0, GM_ERR_GEOMETRY), /* s_n = m_n (pi/2 - 6 tan(16 deg)) < 0 */
     NUMBER(wheel_profile_shift, -3.0, GM_ERR_GEOMETRY),
     NUMBER(backlash, -5.85e-3, GM_ERR_GEOMETRY), /* the base pitch is 5.848 mm */
-    NUMBER(face_width, 100.0, GM_ERR_GEOMETRY), /* thousands of lines of contact at once */
+    NUMBER(face_width, 100.0, GM_ERR_GEOMETRY),  /* thousands of lines of contact at once */
 };
 
 static void set_wrong(gm_pair_params *params, const wrong_value *wrong) {

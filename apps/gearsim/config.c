@@ -474,21 +474,30 @@ static const char *effective_text(const config *conf, int index) {
     return keys[index].standard;
 }
 
+static void add_provenance(config *conf, const char *name, const char *text) {
+    const size_t size = strlen(name) + sizeof " = " + strlen(text);
+
+    conf->provenance[conf->provenance_count] = allocate(size);
+    snprintf(conf->provenance[conf->provenance_count++], size, "%s = %s", name, text);
+}
+
 static void record_provenance(config *conf) {
     const char *reason;
 
-    conf->provenance = allocate((size_t)key_count * sizeof *conf->provenance);
+    conf->provenance = allocate((size_t)(key_count + PROVENANCE_NOTES) * sizeof *conf->provenance);
     for (int i = 0; i < key_count; ++i) {
         const char *text = effective_text(conf, i);
-        size_t size;
 
-        if (text == NULL || !key_is_used(&keys[i], conf, &reason))
-            continue;
-        size = strlen(keys[i].full_name) + sizeof " = " + strlen(text);
-        conf->provenance[conf->provenance_count] = allocate(size);
-        snprintf(conf->provenance[conf->provenance_count++], size, "%s = %s", keys[i].full_name,
-                 text);
+        if (text != NULL && key_is_used(&keys[i], conf, &reason))
+            add_provenance(conf, keys[i].full_name, text);
     }
+}
+
+void config_note(config *conf, const char *name, double value) {
+    char text[32];
+
+    snprintf(text, sizeof text, "%.9g", value);
+    add_provenance(conf, name, text);
 }
 
 static void start(config *conf, const config_request *request) {

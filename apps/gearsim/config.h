@@ -74,12 +74,16 @@ typedef struct config {
     int quiet; /* no progress, notes and warnings on stderr; errors stay */
     enum config_purpose purpose;
 
-    /* Every key in effect, defaults included, as "section.key = value": what an output says of its origin. */
+    /* Every key in effect, defaults included, as "section.key = value", and some values that follow from them
+     * as "name = value": what an output says of its origin. */
     char **provenance;
     int provenance_count;
 
     struct key_entry *entries; /* [key_count] what was given, and where: see keys.h */
 } config;
+
+/* Room for config_note(). */
+enum { PROVENANCE_NOTES = 4 };
 
 /* Exit codes of gearsim. */
 enum exit_code { EXIT_DONE = 0, EXIT_RUN_FAILED = 1, EXIT_BAD_INPUT = 2, EXIT_INTERRUPTED = 130 };
@@ -116,5 +120,8 @@ void config_warn(const config *config, const char *section_and_key, const char *
 /* The INI key "section.key" that sets a field of gm_pair_params, and the text it was given (NULL = none). */
 const char *config_key_of_field(const char *field);
 const char *config_text(const config *config, const char *section_and_key);
+
+/* One more line of provenance, at most PROVENANCE_NOTES of them: a value that follows from the keys. */
+void config_note(config *config, const char *name, double value);
 
 #endif

@@ -368,3 +368,10 @@ void gearbox_print_geometry(const gearbox *box, const config *conf, FILE *stream
     print_value(stream, "eigenfrequency_Hz", eigenfrequency(box, conf));
     print_value(stream, "mesh_frequency_per_rpm_Hz", box->pair.pinion.teeth / 60.0);
 }
+
+void gearbox_note(const gearbox *box, config *conf) {
+    const double frequency = eigenfrequency(box, conf);
+
+    if (isfinite(frequency))
+        config_note(conf, "eigenfrequency_Hz", frequency);
+}

@@ -22,6 +22,9 @@ typedef struct gearbox {
 int gearbox_open(gearbox *gearbox, const config *config);
 void gearbox_close(gearbox *gearbox);
 
+/* Notes what follows from the configuration and a reader of the output needs. */
+void gearbox_note(const gearbox *gearbox, config *config);
+
 /* The `--geometry` listing: `name = value` lines. */
 void gearbox_print_geometry(const gearbox *gearbox, const config *config, FILE *stream);
 

@@ -48,6 +48,7 @@ static int load_and_perform(const arguments *args) {
         return status;
     status = gearbox_open(&box, &conf);
     if (status == 0) {
+        gearbox_note(&box, &conf);
         status = perform(args->task, &conf, &box);
         gearbox_close(&box);
     }

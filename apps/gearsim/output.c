@@ -262,8 +262,8 @@ output_file *output_open(const config *conf, const char *const names[], int name
     ignore_file_size_signal();
     opened->file = open(opened->part, O_WRONLY | O_CREAT | O_TRUNC, FILE_MODE);
     if (opened->file < 0) {
-        fprintf(stderr, "gearsim: %s: %s\n", opened->part, strerror(errno));
-        *exit_code = EXIT_RUN_FAILED;
+        config_complain(conf, file_key, "cannot write '%s': %s", opened->part, strerror(errno));
+        *exit_code = EXIT_BAD_INPUT;
         output_free(opened);
         return NULL;
     }
