@@ -51,10 +51,6 @@ static limits find_limits(const gm_pair *pair, double delta) {
     return found;
 }
 
-double gmi_ideal_penetration(const gm_pair *pair, int side, double offset) {
-    return (side == GM_DRIVE ? offset : -offset) - 0.5 * pair->backlash;
-}
-
 /* Where line 0 enters and leaves the flanks as t1 grows, and which lines do so within the face. */
 static void find_ends(const gm_pair *pair, const limits *range, gmi_lines *lines) {
     const double below = range->lower - lines->origin;
@@ -81,23 +77,70 @@ static void find_ends(const gm_pair *pair, const limits *range, gmi_lines *lines
     lines->last = floor_to_int((above - fall) * per_pitch);
 }
 
-void gmi_lines_find(const gm_pair *pair, int side, const gm_position *position, gmi_lines *lines) {
-    int wheel_tooth = position->wheel_tooth;
-    if (side == GM_DRIVE) {
-        lines->origin = pair->phase_origin + position->phase;
-        lines->twist = pair->twist;
-        lines->tooth_step = 1;
-    } else {
-        lines->origin = pair->phase_origin - position->phase;
-        lines->twist = -pair->twist;
-        lines->tooth_step = -1;
-        wheel_tooth -= 1; /* the coast flank of pinion tooth i meets wheel tooth i - 1 */
-    }
+static inline void find_lines(const gm_pair *pair, int side, const gm_position *position,
+                              gmi_lines *lines) {
+    const double direction = side == GM_DRIVE ? 1.0 : -1.0;
+    lines->origin = pair->phase_origin + direction * position->phase;
+    lines->twist = direction * pair->twist;
     lines->delta = gmi_ideal_penetration(pair, side, position->offset);
     const limits range = find_limits(pair, lines->delta);
     find_ends(pair, &range, lines);
-    lines->pinion_tooth =
-        wrap_tooth(position->pinion_tooth + lines->tooth_step * lines->first, pair->pinion.teeth);
-    lines->wheel_tooth =
-        wrap_tooth(wheel_tooth + lines->tooth_step * lines->first, pair->wheel.teeth);
+}
+
+void gmi_lines_find(const gm_pair *pair, int side, const gm_position *position, gmi_lines *lines) {
+    find_lines(pair, side, position, lines);
+}
+
+gmi_teeth gmi_lines_teeth(const gm_pair *pair, int side, const gm_position *position,
+                          const gmi_lines *lines) {
+    gmi_teeth teeth = {position->pinion_tooth, position->wheel_tooth, 1};
+    if (side == GM_COAST) {
+        teeth.wheel -= 1; /* the coast flank of pinion tooth i meets wheel tooth i - 1 */
+        teeth.step = -1;
+    }
+    teeth.pinion = wrap_tooth(teeth.pinion + teeth.step * lines->first, pair->pinion.teeth);
+    teeth.wheel = wrap_tooth(teeth.wheel + teeth.step * lines->first, pair->wheel.teeth);
+    return teeth;
+}
+
+/*
+ * Between ideal flanks the integrand is delta on all lines, so only their lengths count. An end that a limit of the flanks
+ * sets moves with the line's origin and with delta, see add_end_derivatives() of penetration.c.
+ */
+void gmi_side_sum_ideal(const gm_pair *pair, int side, const gm_position *position, int wanted,
+                        gmi_side_sum *total) {
+    gmi_lines lines;
+    int moving_from = 0, moving_to = 0; /* lines that begin or end within the face */
+    double contact = 0.0, contact_t1 = 0.0, contact_rho = 0.0;
+    int pairs = 0;
+
+    find_lines(pair, side, position, &lines);
+    for (int k = lines.first; k <= lines.last; ++k) {
+        const gmi_interval part = gmi_line_clip(&lines, k);
+        const double length = part.to - part.from;
+        if (!(length > 0.0))
+            continue;
+        contact += length;
+        pairs += 1;
+        moving_from += part.from > 0.0;
+        moving_to += part.to < 1.0;
+        if (wanted & GMI_MOMENTS) {
+            const double middle = 0.5 * (part.from + part.to);
+            contact_t1 += length * middle;
+            contact_rho += length * (lines.origin + (double)k * pair->transverse_base_pitch +
+                                     lines.twist * middle);
+        }
+    }
+    total->contact = contact;
+    total->contact_t1 = contact_t1;
+    total->contact_rho = contact_rho;
+    total->sum = lines.delta * contact;
+    total->sum_t1 = lines.delta * contact_t1;
+    total->sum_rho = lines.delta * contact_rho;
+    total->pairs = pairs;
+
+    const double flow = lines.delta * lines.per_twist; /* through one end */
+    total->by_origin = flow * (double)(moving_from - moving_to);
+    total->by_delta = contact + flow * ((double)moving_to * lines.leave_by_delta -
+                                        (double)moving_from * lines.enter_by_delta);
 }

@@ -212,21 +212,3 @@ int gm_flanks_set_pitch(gm_flanks *flanks, int side, int tooth, double deviation
     update_peak(flanks, tables, tooth, before);
     return GM_OK;
 }
-
-const gm_flank_tables *gmi_flanks_side(const gm_flanks *flanks, int side) {
-    return flanks == NULL ? NULL : side == GM_DRIVE ? &flanks->drive : &flanks->coast;
-}
-
-gmi_flank gmi_flank_of(const gm_flank_tables *tables, int tooth) {
-    gmi_flank flank = {NULL, 0.0, 0.0};
-    if (tables == NULL)
-        return flank;
-    const int table = tables->table[tooth];
-    flank.pitch = tables->pitch[tooth];
-    flank.peak = flank.pitch;
-    if (table >= 0) {
-        flank.values = tables->values + (size_t)table * table_doubles(tables);
-        flank.peak += tables->table_peak[table];
-    }
-    return flank;
-}

@@ -35,6 +35,24 @@ void gmi_gear_set_start_roll_length(gm_gear *gear, double start_roll_length);
 void gmi_gear_set_thickness(gm_gear *gear, double normal_thickness, double helix_angle,
                             double transverse_pressure_angle);
 
+/* What to compute beside sum, contact and pairs. */
+enum gmi_wanted { GMI_SUM = 0, GMI_DERIVATIVES = 1, GMI_MOMENTS = 2 };
+
+/* The sums over all lines of one side. */
+typedef struct gmi_side_sum {
+    double sum;     /* sum of the integrals of max(0, delta) dt1 (m) */
+    double contact; /* touching part of the face width, summed (1) */
+    int pairs;      /* lines that touch */
+
+    double by_origin; /* partial derivatives of sum by the origin of the lines ... */
+    double by_delta;  /* ... and by delta (GMI_DERIVATIVES) (1) */
+
+    double sum_t1;      /* first moments (GMI_MOMENTS): integrals of max(0, delta) t1 (m), */
+    double sum_rho;     /* of max(0, delta) rho_p (m2), */
+    double contact_t1;  /* of t1 (1) */
+    double contact_rho; /* and of rho_p over the touching part (m) */
+} gmi_side_sum;
+
 /* contact.c: which lines of contact exist on one side, and where. */
 
 /*
@@ -55,16 +73,25 @@ typedef struct gmi_lines {
         enter_by_delta; /* 1 where a limit of the wheel sets the end, so that it moves with delta; else 0 */
     double leave_by_delta;
 
-    int first, last;  /* lines that can exist, none if first > last */
-    int pinion_tooth; /* teeth of line `first` */
-    int wheel_tooth;
-    int tooth_step; /* +1 or -1: teeth from line k to line k + 1 */
+    int first, last; /* lines that can exist, none if first > last */
 } gmi_lines;
 
+/* The teeth of line `first`, and how they go on: step = +1 or -1 from line k to line k + 1. */
+typedef struct gmi_teeth {
+    int pinion, wheel;
+    int step;
+} gmi_teeth;
+
 /* Ideal penetration of one side at x: x - backlash / 2, or -x - backlash / 2 [Paper, Eqs. 10, 20]. */
-double gmi_ideal_penetration(const gm_pair *pair, int side, double offset);
+static inline double gmi_ideal_penetration(const gm_pair *pair, int side, double offset) {
+    return (side == GM_DRIVE ? offset : -offset) - 0.5 * pair->backlash;
+}
 
 void gmi_lines_find(const gm_pair *pair, int side, const gm_position *position, gmi_lines *lines);
+gmi_teeth gmi_lines_teeth(const gm_pair *pair, int side, const gm_position *position,
+                          const gmi_lines *lines);
+void gmi_side_sum_ideal(const gm_pair *pair, int side, const gm_position *position, int wanted,
+                        gmi_side_sum *total);
 
 /* Part of t1 in which line k exists; empty if from >= to. */
 typedef struct gmi_interval {
@@ -90,11 +117,25 @@ typedef struct gmi_flank {
     double peak;          /* most material, pitch included (m) */
 } gmi_flank;
 
-gmi_flank gmi_flank_of(const gm_flank_tables *tables, int tooth);
-const gm_flank_tables *gmi_flanks_side(const gm_flanks *flanks, int side);
+/* NULL = ideal. */
+static inline const gm_flank_tables *gmi_flanks_side(const gm_flanks *flanks, int side) {
+    return flanks == NULL ? NULL : side == GM_DRIVE ? &flanks->drive : &flanks->coast;
+}
 
-/* What to compute beside sum, contact and pairs. */
-enum gmi_wanted { GMI_SUM = 0, GMI_DERIVATIVES = 1, GMI_MOMENTS = 2 };
+static inline gmi_flank gmi_flank_of(const gm_flank_tables *tables, int tooth) {
+    gmi_flank flank = {NULL, 0.0, 0.0};
+    if (tables == NULL)
+        return flank;
+    const int table = tables->table[tooth];
+    flank.pitch = tables->pitch[tooth];
+    flank.peak = flank.pitch;
+    if (table >= 0) {
+        const size_t nodes = (size_t)tables->face_nodes * (size_t)tables->profile_nodes;
+        flank.values = tables->values + (size_t)table * nodes * GMI_NODE_DOUBLES;
+        flank.peak += tables->table_peak[table];
+    }
+    return flank;
+}
 
 /* line.c: the integral along one line of contact. */
 
@@ -149,20 +190,6 @@ void gmi_line_integrate(const gmi_line *line, const gmi_grid *pinion, const gmi_
                         int wanted, gmi_line_sum *result);
 
 /* penetration.c: the sums over all lines of one side. */
-typedef struct gmi_side_sum {
-    double sum;     /* sum of the integrals of max(0, delta) dt1 (m) */
-    double contact; /* touching part of the face width, summed (1) */
-    int pairs;      /* lines that touch */
-
-    double by_origin; /* partial derivatives of sum by the origin of the lines ... */
-    double by_delta;  /* ... and by delta (GMI_DERIVATIVES) (1) */
-
-    double sum_t1;      /* first moments (GMI_MOMENTS): integrals of max(0, delta) t1 (m), */
-    double sum_rho;     /* of max(0, delta) rho_p (m2), */
-    double contact_t1;  /* of t1 (1) */
-    double contact_rho; /* and of rho_p over the touching part (m) */
-} gmi_side_sum;
-
 void gmi_side_sum_3d(const gm_pair *pair, const gm_flanks *pinion_flanks,
                      const gm_flanks *wheel_flanks, int side, const gm_position *position,
                      int wanted, gmi_side_sum *total);

@@ -12,6 +12,13 @@
 #include <float.h>
 #include <math.h>
 
+/* Not inlined: a side that is clear then costs no stack frame. */
+#if defined(__GNUC__)
+#define SEPARATE static __attribute__((noinline))
+#else
+#define SEPARATE static
+#endif
+
 static const gmi_side_sum no_contact = {0.0, 0.0, 0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0};
 
 /* One side at one position: everything its lines have in common. */
@@ -66,39 +73,6 @@ static double line_origin(const gm_pair *pair, const gmi_lines *lines, int k) {
     return lines->origin + (double)k * pair->transverse_base_pitch;
 }
 
-/* First moments of a line between ideal flanks, where f is the same all along. */
-static void add_ideal_moments(const gm_pair *pair, const gmi_lines *lines, int k, gmi_interval part,
-                              gmi_side_sum *side) {
-    const double length = part.to - part.from;
-    const double length_t1 = 0.5 * length * (part.from + part.to);
-    const gmi_line_sum line = {.sum = lines->delta * length,
-                               .contact = length,
-                               .sum_t1 = lines->delta * length_t1,
-                               .contact_t1 = length_t1};
-    add_moments(lines, line_origin(pair, lines, k), &line, side);
-}
-
-/* Between ideal flanks the sum is delta times the length of all lines: only ends count. */
-static void sum_ideal(const gm_pair *pair, const gmi_lines *lines, int wanted, gmi_side_sum *side) {
-    int moving_from = 0, moving_to = 0; /* lines that begin or end within the face */
-    for (int k = lines->first; k <= lines->last; ++k) {
-        const gmi_interval part = gmi_line_clip(lines, k);
-        if (!(part.from < part.to))
-            continue;
-        side->contact += part.to - part.from;
-        side->pairs += 1;
-        moving_from += part.from > 0.0;
-        moving_to += part.to < 1.0;
-        if (wanted & GMI_MOMENTS)
-            add_ideal_moments(pair, lines, k, part, side);
-    }
-    const double flow = lines->delta * lines->per_twist; /* through one end, see above */
-    side->sum = lines->delta * side->contact;
-    side->by_origin = flow * (double)(moving_from - moving_to);
-    side->by_delta = side->contact + flow * ((double)moving_to * lines->leave_by_delta -
-                                             (double)moving_from * lines->enter_by_delta);
-}
-
 static void add_line(const gm_pair *pair, const side_view *view, const gmi_flank *pinion,
                      const gmi_flank *wheel, int k, int wanted, gmi_side_sum *side) {
     const gmi_interval part = gmi_line_clip(&view->lines, k);
@@ -137,43 +111,49 @@ static int next_tooth(int tooth, int step, int teeth) {
     return next < 0 ? teeth - 1 : next == teeth ? 0 : next;
 }
 
-static void sum_tables(const gm_pair *pair, side_view *view, int wanted, gmi_side_sum *side) {
+static void sum_tables(const gm_pair *pair, side_view *view, gmi_teeth teeth, int wanted,
+                       gmi_side_sum *side) {
     const gmi_lines *lines = &view->lines;
-    find_grids(pair, view);
-    int pinion_tooth = lines->pinion_tooth;
-    int wheel_tooth = lines->wheel_tooth;
     for (int k = lines->first; k <= lines->last; ++k) {
-        const gmi_flank pinion = gmi_flank_of(view->pinion_tables, pinion_tooth);
-        const gmi_flank wheel = gmi_flank_of(view->wheel_tables, wheel_tooth);
+        const gmi_flank pinion = gmi_flank_of(view->pinion_tables, teeth.pinion);
+        const gmi_flank wheel = gmi_flank_of(view->wheel_tables, teeth.wheel);
         if (lines->delta + pinion.peak + wheel.peak > 0.0)
             add_line(pair, view, &pinion, &wheel, k, wanted, side);
-        pinion_tooth = next_tooth(pinion_tooth, lines->tooth_step, pair->pinion.teeth);
-        wheel_tooth = next_tooth(wheel_tooth, lines->tooth_step, pair->wheel.teeth);
+        teeth.pinion = next_tooth(teeth.pinion, teeth.step, pair->pinion.teeth);
+        teeth.wheel = next_tooth(teeth.wheel, teeth.step, pair->wheel.teeth);
     }
+}
+
+SEPARATE void side_sum_tables(const gm_pair *pair, const gm_flank_tables *pinion,
+                              const gm_flank_tables *wheel, int side, const gm_position *position,
+                              int wanted, gmi_side_sum *total) {
+    side_view view;
+    view.pinion_tables = pinion;
+    view.wheel_tables = wheel;
+    gmi_lines_find(pair, side, position, &view.lines);
+    find_grids(pair, &view);
+    sum_tables(pair, &view, gmi_lines_teeth(pair, side, position, &view.lines), wanted, total);
 }
 
 void gmi_side_sum_3d(const gm_pair *pair, const gm_flanks *pinion_flanks,
                      const gm_flanks *wheel_flanks, int side, const gm_position *position,
                      int wanted, gmi_side_sum *total) {
-    side_view view;
-    view.pinion_tables = gmi_flanks_side(pinion_flanks, side);
-    view.wheel_tables = gmi_flanks_side(wheel_flanks, side);
+    const gm_flank_tables *pinion = gmi_flanks_side(pinion_flanks, side);
+    const gm_flank_tables *wheel = gmi_flanks_side(wheel_flanks, side);
     *total = no_contact;
 
     /* Nothing reaches across the gap: the usual state of one of both sides. */
     double reach = gmi_ideal_penetration(pair, side, position->offset);
-    if (view.pinion_tables != NULL)
-        reach += view.pinion_tables->peak;
-    if (view.wheel_tables != NULL)
-        reach += view.wheel_tables->peak;
+    if (pinion != NULL)
+        reach += pinion->peak;
+    if (wheel != NULL)
+        reach += wheel->peak;
     if (reach <= 0.0)
         return;
-
-    gmi_lines_find(pair, side, position, &view.lines);
-    if (view.pinion_tables == NULL && view.wheel_tables == NULL)
-        sum_ideal(pair, &view.lines, wanted, total);
+    if (pinion == NULL && wheel == NULL)
+        gmi_side_sum_ideal(pair, side, position, wanted, total);
     else
-        sum_tables(pair, &view, wanted, total);
+        side_sum_tables(pair, pinion, wheel, side, position, wanted, total);
 }
 
 static gm_penetration penetration_nan(void) {
@@ -252,10 +232,11 @@ static int evaluate(const gm_pair *pair, const gm_flanks *pinion_flanks,
                     gm_penetration *result) {
     if (result == NULL)
         return GM_ERR_NULL;
-    *result = penetration_nan();
     const int status = gmi_check_evaluation(pair, pinion_flanks, wheel_flanks, position);
-    if (status != GM_OK)
+    if (status != GM_OK) {
+        *result = penetration_nan();
         return status;
+    }
 
     gmi_side_sum drive, coast;
     gmi_side_sum_3d(pair, pinion_flanks, wheel_flanks, GM_DRIVE, position, wanted, &drive);
@@ -269,6 +250,8 @@ static int evaluate(const gm_pair *pair, const gm_flanks *pinion_flanks,
     set_rates(result, position->offset_rate);
     if (wanted & GMI_DERIVATIVES)
         set_derivatives(pair, &drive, &coast, result);
+    else
+        result->d_pinion_angle = result->d_wheel_angle = gmi_nan();
     return GM_OK;
 }
 
@@ -289,10 +272,11 @@ int gm_penetration_3d(const gm_pair *pair, const gm_flanks *pinion_flanks,
                       gm_penetration *result) {
     if (result == NULL)
         return GM_ERR_NULL;
-    *result = penetration_nan();
     gm_position position;
     const int status = gm_position_from_state(pair, state, &position);
-    if (status != GM_OK)
+    if (status != GM_OK) {
+        *result = penetration_nan();
         return status;
+    }
     return gm_penetration_3d_at(pair, pinion_flanks, wheel_flanks, &position, result);
 }
