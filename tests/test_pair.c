@@ -486,6 +486,31 @@ static void tips_that_do_not_reach_each_other_are_refused(void) {
 }
 
 /* The wheel alone at fault: its start is derived from a pinion tip that does not reach. */
+/* A shift that was derived is not at fault: what it was derived from is. */
+static void a_thin_tooth_is_blamed_on_what_was_given(void) {
+    const struct {
+        int teeth;
+        double wheel_shift, center_distance;
+        const char *field;
+    } cases[] = {
+        {45, 4.0, 85e-3, "wheel_profile_shift"}, /* leaves the pinion x = 0.25 - 4 */
+        /* Base radii 186.16 mm: all but no working angle, x = -200 inv(alpha_t) / tan(16 deg) < -4. */
+        {200, NAN, 372.5e-3, "center_distance"},
+    };
+    for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
+        gm_test_context("case %d", (int)i);
+        gm_pair_params params = reference_params(REFERENCE_FACE_WIDTH);
+        params.backlash = NAN;
+        params.pinion_teeth = params.wheel_teeth = cases[i].teeth;
+        params.pinion_profile_shift = NAN;
+        params.wheel_profile_shift = cases[i].wheel_shift;
+        params.center_distance = cases[i].center_distance;
+        const char *field = "";
+        (void)gm_pair_params_check(&params, &field, NULL);
+        GM_ASSERT_STRING(field, cases[i].field);
+    }
+}
+
 static void the_gear_at_fault_is_named(void) {
     gm_pair_params params = reference_params(REFERENCE_FACE_WIDTH);
     params.pinion_start_radius = 42.5e-3;
@@ -659,6 +684,7 @@ int main(int argc, char **argv) {
         GM_TEST(every_wrong_value_is_named),
         GM_TEST(values_just_inside_the_ranges_are_taken),
         GM_TEST(tips_that_do_not_reach_each_other_are_refused),
+        GM_TEST(a_thin_tooth_is_blamed_on_what_was_given),
         GM_TEST(the_gear_at_fault_is_named),
         GM_TEST(null_pointers_are_refused),
         GM_TEST(success_means_finite),

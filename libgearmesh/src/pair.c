@@ -166,6 +166,39 @@ static double derive_pose(gm_pair *pair, double center_distance) {
     return sin(difference) / (cos(alpha_w) * cos(alpha_t)) - difference;
 }
 
+/* What made a tooth too thin: what was given for it, else for its mate, else the centre distance. */
+static const char *thickness_field(double thickness, double shift, double mate_shift,
+                                   const char *const names[3]) {
+    if (!isnan(thickness))
+        return names[0];
+    if (!isnan(shift))
+        return names[1];
+    return isnan(mate_shift) ? "center_distance" : names[2];
+}
+
+static problem check_thickness(const gm_pair *pair, const gm_pair_params *p) {
+    static const char requirement[] = "a value that leaves the teeth thicker than 0";
+    static const char *const pinion_names[] = {"pinion_normal_thickness", "pinion_profile_shift",
+                                               "wheel_profile_shift"};
+    static const char *const wheel_names[] = {"wheel_normal_thickness", "wheel_profile_shift",
+                                              "pinion_profile_shift"};
+    const int pinion_fits = pair->pinion.normal_thickness > 0.0;
+    const int wheel_fits = pair->wheel.normal_thickness > 0.0;
+    if (!(pinion_fits && wheel_fits) && !isnan(p->backlash))
+        return geometry_problem("backlash", requirement);
+    if (!pinion_fits)
+        return geometry_problem(thickness_field(p->pinion_normal_thickness, p->pinion_profile_shift,
+                                                p->wheel_profile_shift, pinion_names),
+                                requirement);
+    if (!wheel_fits)
+        return geometry_problem(thickness_field(p->wheel_normal_thickness, p->wheel_profile_shift,
+                                                p->pinion_profile_shift, wheel_names),
+                                requirement);
+    if (!isnan(p->backlash) && !(p->backlash > -pair->transverse_base_pitch))
+        return geometry_problem("backlash", "a value above minus one base pitch");
+    return no_problem;
+}
+
 /*
  * Profile shifts, tooth thicknesses and backlash along the line of action:
  *     p_bt - 2 r_bp psi_p - 2 r_bw psi_w + 2 (r_bp + r_bw) inv(alpha_wt)
@@ -211,23 +244,7 @@ static problem derive_thickness(gm_pair *pair, const gm_pair_params *p,
     gmi_gear_set_thickness(wheel, half_pitch + excess_w, p->helix_angle, alpha_t);
     pair->phase_origin =
         pinion->base_radius * (pair->working_pressure_angle + pinion->base_half_thickness);
-
-    static const char thickness[] = "a value that leaves the teeth thicker than 0";
-    const int pinion_fits = pinion->normal_thickness > 0.0;
-    const int wheel_fits = wheel->normal_thickness > 0.0;
-    if (!(pinion_fits && wheel_fits) && !isnan(p->backlash))
-        return geometry_problem("backlash", thickness);
-    if (!pinion_fits)
-        return geometry_problem(isnan(p->pinion_normal_thickness) ? "pinion_profile_shift"
-                                                                  : "pinion_normal_thickness",
-                                thickness);
-    if (!wheel_fits)
-        return geometry_problem(isnan(p->wheel_normal_thickness) ? "wheel_profile_shift"
-                                                                 : "wheel_normal_thickness",
-                                thickness);
-    if (!isnan(p->backlash) && !(p->backlash > -pair->transverse_base_pitch))
-        return geometry_problem("backlash", "a value above minus one base pitch");
-    return no_problem;
+    return check_thickness(pair, p);
 }
 
 static double default_tip(const gm_gear *gear, double tip_radius, double normal_module) {
