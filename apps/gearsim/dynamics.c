@@ -54,6 +54,7 @@ typedef struct dynamic_run {
     int factor;            /* samples per row */
     int row_needs_mesh;    /* some column asked for needs the mesh: in the samples of the rows, */
     int sample_needs_mesh; /* or in all samples, as it is filtered */
+    int needs_load;        /* the load torque is asked for */
     double rows;           /* number of rows, a whole number */
     double values[COLUMNS];
     char why[640]; /* the run ended early */
@@ -74,7 +75,9 @@ static void show_motion(dynamic_run *run, double time, const gear_motion *motion
     values[PINION_ANGLE] = motion->pinion_angle;
     values[WHEEL_ANGLE] = (r_bp * motion->pinion_angle - motion->offset) / r_bw;
     values[DTE] = -motion->offset * micro;
-    values[LOAD_TORQUE] = load_torque(&run->model.load, time);
+    if (run->needs_load) {
+        values[LOAD_TORQUE] = load_torque(&run->model.load, time);
+    }
 }
 
 static int show_mesh(dynamic_run *run, double time, const gear_motion *motion) {
@@ -214,6 +217,7 @@ static int start_filter(dynamic_run *run) {
         run->row_needs_mesh |= wanted && needs_mesh[i];
         run->sample_needs_mesh |= filtered[i] && needs_mesh[i];
     }
+    run->needs_load = output_wants(run->output, LOAD_TORQUE);
     run->factor = any ? run->conf->oversampling : 1;
     run->filter = decimator_create(run->factor, COLUMNS, filtered);
     return run->filter != NULL ? 0 : out_of_memory();

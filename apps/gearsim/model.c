@@ -174,37 +174,48 @@ static response_value noise_response(const gear_model *model, double time) {
 }
 
 /* x'' or u'' without the force: what drive and load would do, and what p assumes of the mesh. */
-static double applied_acceleration(const gear_model *model, double time) {
+static double applied_acceleration(const gear_model *model, double time,
+                                   const response_value *noise) {
     if (model->noise == NULL) {
         return model->drive_to_offset + model->torque_to_offset * load_torque(&model->load, time);
     }
-
-    const response_value noise = response_at(model->noise, time);
     return model->drive_to_offset + model->torque_to_offset * model->load.mean +
-           2.0 * model->response_decay * noise.rate +
-           square(model->natural_frequency) * noise.offset;
+           2.0 * model->response_decay * noise->rate +
+           square(model->natural_frequency) * noise->offset;
+}
+
+static double pinion_speed(const gear_model *model, double time, const double state[]) {
+    if (model->states == STATES_MAX) {
+        return state[STATE_PINION_SPEED] * model->natural_frequency * micrometre /
+               model->gears->pair.pinion.base_radius;
+    }
+    return drive_at(&model->drive, time).speed;
+}
+
+static double pinion_angle(const gear_model *model, double time, const double state[]) {
+    if (model->states == STATES_MAX) {
+        return state[STATE_PINION_ARC] * micrometre / model->gears->pair.pinion.base_radius;
+    }
+    return drive_at(&model->drive, time).angle;
+}
+
+static gear_motion motion_with(const gear_model *model, double time, const double state[],
+                               const response_value *noise) {
+    const double speed_unit = model->natural_frequency * micrometre;
+    const gear_motion motion = {
+        .pinion_angle = pinion_angle(model, time, state),
+        .pinion_speed = pinion_speed(model, time, state),
+        .offset = state[STATE_OFFSET] * micrometre + noise->offset,
+        .offset_rate = state[STATE_OFFSET_RATE] * speed_unit + noise->rate,
+    };
+
+    return motion;
 }
 
 gear_motion model_motion(const gear_model *model, double time, const double state[]) {
-    const double speed_unit = model->natural_frequency * micrometre;
     const response_value noise = noise_response(model, time);
-    gear_motion motion = {
-        .offset = state[STATE_OFFSET] * micrometre + noise.offset,
-        .offset_rate = state[STATE_OFFSET_RATE] * speed_unit + noise.rate,
-    };
 
-    if (model->states == STATES_MAX) {
-        const double r_bp = model->gears->pair.pinion.base_radius;
-
-        motion.pinion_angle = state[STATE_PINION_ARC] * micrometre / r_bp;
-        motion.pinion_speed = state[STATE_PINION_SPEED] * speed_unit / r_bp;
-    } else {
-        const drive_motion prescribed = drive_at(&model->drive, time);
-
-        motion.pinion_angle = prescribed.angle;
-        motion.pinion_speed = prescribed.speed;
-    }
-    return motion;
+    return motion_with(model, time, state, &noise);
 }
 
 /* The one of the library's functions that does no more than is asked for. */
@@ -238,7 +249,9 @@ double model_force(const gear_model *model, const gm_penetration *penetration) {
 
 int model_derivative(const gear_model *model, double time, const double state[],
                      double derivative[]) {
-    const gear_motion motion = model_motion(model, time, state);
+    /* Once: next to the mesh it is the dearest part. */
+    const response_value noise = noise_response(model, time);
+    const gear_motion motion = motion_with(model, time, state, &noise);
     gm_penetration penetration;
     const int status = model_penetration(model, &motion, &penetration);
     if (status != GM_OK) {
@@ -248,7 +261,7 @@ int model_derivative(const gear_model *model, double time, const double state[],
     const double w0 = model->natural_frequency;
     const double to_state = 1.0 / (w0 * micrometre);
     const double force = model_force(model, &penetration);
-    const double applied = applied_acceleration(model, time);
+    const double applied = applied_acceleration(model, time, &noise);
 
     derivative[STATE_OFFSET] = w0 * state[STATE_OFFSET_RATE];
     derivative[STATE_OFFSET_RATE] = (applied - mobility(model) * force) * to_state;
@@ -342,7 +355,7 @@ int model_jacobian(const gear_model *model, double time, const double state[],
 static double tooth_step(const gear_model *model, double time, const double state[]) {
     const gm_gear *const pinion = &model->gears->pair.pinion;
     const double angle = pinion->pitch_angle / steps_per_tooth;
-    const double speed = fabs(model_motion(model, time, state).pinion_speed);
+    const double speed = fabs(pinion_speed(model, time, state));
     const double acceleration = fabs(model->drive_to_offset) / pinion->base_radius;
     const double reach = speed + sqrt(speed * speed + 2.0 * acceleration * angle);
 
