@@ -15,27 +15,37 @@ typedef struct slicing {
     double pinion_scale, wheel_scale; /* v2 per rho */
 } slicing;
 
-static double look_up(const gm_flank_tables *tables, int tooth, double t1, double v2) {
-    const double v1 = t1 * (tables->face_nodes - 1);
-    int face = (int)v1, profile = (int)v2;
-    face = face < tables->face_nodes - 2 ? face : tables->face_nodes - 2;
+/* Where a slice lies in tables whose face lines are the same. */
+typedef struct face_place {
+    int face;
+    double p;
+} face_place;
+
+static double look_up(const gm_flank_tables *tables, int tooth, face_place place, double v2) {
+    int profile = (int)v2;
     profile = profile < tables->profile_nodes - 2 ? profile : tables->profile_nodes - 2;
-    const double p = v1 - face, q = v2 - profile;
+    const double q = v2 - profile;
     const int row = tables->profile_nodes * NODE_DOUBLES;
-    const double *node = tables->values +
-                         (size_t)tables->table[tooth] * (size_t)tables->face_nodes * (size_t)row +
-                         face * row + profile * NODE_DOUBLES;
+    const int rows = tables->table[tooth] * tables->face_nodes + place.face;
+    const double *node = tables->values + (ptrdiff_t)rows * row + profile * NODE_DOUBLES;
     const double here = node[0] + q * (node[NODE_DOUBLES] - node[0]);
     const double next = node[row] + q * (node[row + NODE_DOUBLES] - node[row]);
-    return here + p * (next - here) + tables->pitch[tooth];
+    return here + place.p * (next - here) + tables->pitch[tooth];
 }
 
-static double pair_penetration(const slicing *s, int pinion_tooth, int wheel_tooth, double t1,
-                               double rho) {
+static double pair_penetration(const slicing *s, int pinion_tooth, int wheel_tooth,
+                               face_place place, double rho) {
     const double f =
-        s->delta + look_up(s->pinion, pinion_tooth, t1, (rho - s->pinion_start) * s->pinion_scale) +
-        look_up(s->wheel, wheel_tooth, t1, (s->wheel_reach - rho) * s->wheel_scale);
+        s->delta +
+        look_up(s->pinion, pinion_tooth, place, (rho - s->pinion_start) * s->pinion_scale) +
+        look_up(s->wheel, wheel_tooth, place, (s->wheel_reach - rho) * s->wheel_scale);
     return f > 0.0 ? f : 0.0;
+}
+
+/* Largest whole number <= value. */
+static int floor_of(double value) {
+    const int truncated = (int)value;
+    return truncated - (value < truncated);
 }
 
 static int wrap(int tooth, int teeth) {
@@ -65,23 +75,26 @@ double slices_sum(const gm_pair *pair, const gm_flanks *pinion, const gm_flanks 
 
     const double pitch = pair->transverse_base_pitch;
     const double per_pitch = 1.0 / pitch;
+    const double per_slices = 1.0 / slices;
     double sum = 0.0;
     for (int slice = 0; slice < slices; ++slice) {
-        const double t1 = (slice + 0.5) / slices;
+        const double t1 = (slice + 0.5) * per_slices;
+        const double v1 = t1 * (s.pinion->face_nodes - 1);
+        const face_place place = {(int)v1, v1 - (int)v1};
         const double origin = pair->phase_origin + position->phase + pair->twist * t1;
         int first = -pair->pinion.teeth / 2;
         int last = first + pair->pinion.teeth - 1;
         if (pairs == SLICES_TOUCHING) {
-            first = (int)floor((s.lower - origin) * per_pitch) + 1;
-            last = (int)floor((s.upper - origin) * per_pitch);
+            first = floor_of((s.lower - origin) * per_pitch) + 1;
+            last = floor_of((s.upper - origin) * per_pitch);
         }
         for (int k = first; k <= last; ++k) {
             const double rho = origin + k * pitch;
             if (rho < s.lower || rho > s.upper)
                 continue;
             sum += pair_penetration(&s, wrap(position->pinion_tooth + k, pair->pinion.teeth),
-                                    wrap(position->wheel_tooth + k, pair->wheel.teeth), t1, rho);
+                                    wrap(position->wheel_tooth + k, pair->wheel.teeth), place, rho);
         }
     }
-    return sum / slices;
+    return sum * per_slices;
 }
