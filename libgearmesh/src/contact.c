@@ -77,18 +77,13 @@ static void find_ends(const gm_pair *pair, const limits *range, gmi_lines *lines
     lines->last = floor_to_int((above - fall) * per_pitch);
 }
 
-static inline void find_lines(const gm_pair *pair, int side, const gm_position *position,
-                              gmi_lines *lines) {
+void gmi_lines_find(const gm_pair *pair, int side, const gm_position *position, gmi_lines *lines) {
     const double direction = side == GM_DRIVE ? 1.0 : -1.0;
     lines->origin = pair->phase_origin + direction * position->phase;
     lines->twist = direction * pair->twist;
     lines->delta = gmi_ideal_penetration(pair, side, position->offset);
     const limits range = find_limits(pair, lines->delta);
     find_ends(pair, &range, lines);
-}
-
-void gmi_lines_find(const gm_pair *pair, int side, const gm_position *position, gmi_lines *lines) {
-    find_lines(pair, side, position, lines);
 }
 
 gmi_teeth gmi_lines_teeth(const gm_pair *pair, int side, const gm_position *position,
@@ -103,44 +98,69 @@ gmi_teeth gmi_lines_teeth(const gm_pair *pair, int side, const gm_position *posi
     return teeth;
 }
 
-/*
- * Between ideal flanks the integrand is delta on all lines, so only their lengths count. An end that a limit of the flanks
- * sets moves with the line's origin and with delta, see add_end_derivatives() of penetration.c.
- */
-void gmi_side_sum_ideal(const gm_pair *pair, int side, const gm_position *position, int wanted,
-                        gmi_side_sum *total) {
+/* First moments between ideal flanks: of 1 over t1 and rho_p; delta times them for the sum. */
+static void add_ideal_moments(const gm_pair *pair, int side, const gm_position *position,
+                              gmi_side_sum *total) {
     gmi_lines lines;
-    int moving_from = 0, moving_to = 0; /* lines that begin or end within the face */
-    double contact = 0.0, contact_t1 = 0.0, contact_rho = 0.0;
-    int pairs = 0;
-
-    find_lines(pair, side, position, &lines);
+    gmi_lines_find(pair, side, position, &lines);
     for (int k = lines.first; k <= lines.last; ++k) {
         const gmi_interval part = gmi_line_clip(&lines, k);
         const double length = part.to - part.from;
         if (!(length > 0.0))
             continue;
-        contact += length;
-        pairs += 1;
-        moving_from += part.from > 0.0;
-        moving_to += part.to < 1.0;
-        if (wanted & GMI_MOMENTS) {
-            const double middle = 0.5 * (part.from + part.to);
-            contact_t1 += length * middle;
-            contact_rho += length * (lines.origin + (double)k * pair->transverse_base_pitch +
-                                     lines.twist * middle);
-        }
+        const double middle = 0.5 * (part.from + part.to);
+        const double origin = lines.origin + (double)k * pair->transverse_base_pitch;
+        total->contact_t1 += length * middle;
+        total->contact_rho += length * (origin + lines.twist * middle);
     }
-    total->contact = contact;
-    total->contact_t1 = contact_t1;
-    total->contact_rho = contact_rho;
-    total->sum = lines.delta * contact;
-    total->sum_t1 = lines.delta * contact_t1;
-    total->sum_rho = lines.delta * contact_rho;
-    total->pairs = pairs;
+    total->sum_t1 = lines.delta * total->contact_t1;
+    total->sum_rho = lines.delta * total->contact_rho;
+}
 
-    const double flow = lines.delta * lines.per_twist; /* through one end */
-    total->by_origin = flow * (double)(moving_from - moving_to);
-    total->by_delta = contact + flow * ((double)moving_to * lines.leave_by_delta -
-                                        (double)moving_from * lines.enter_by_delta);
+/*
+ * Between ideal flanks the integrand is delta on all lines, so only their length counts. Line k covers the line of action
+ * from start + k p_bt on over the twist, and what of that lies beyond the limits is cut off: sums of arithmetic series.
+ * An end within the face moves with the line's origin, and with delta if it is the wheel's.
+ */
+void gmi_side_sum_ideal(const gm_pair *pair, int side, const gm_position *position, int wanted,
+                        gmi_side_sum *total) {
+    const double direction = side == GM_DRIVE ? 1.0 : -1.0;
+    const double delta = gmi_ideal_penetration(pair, side, position->offset);
+    const limits range = find_limits(pair, delta);
+    const double twist = direction * pair->twist;
+    const double start =
+        pair->phase_origin + direction * position->phase + (twist < 0.0 ? twist : 0.0);
+    const double cover = fabs(twist);
+    const double below = range.lower - start;
+    const double above = range.upper - start;
+    const double pitch = pair->transverse_base_pitch;
+    const double per_pitch = 1.0 / pitch;
+
+    const int first = -floor_to_int((cover - below) * per_pitch);
+    const int last = floor_to_int(above * per_pitch);
+    const int lines = last - first + 1;
+    if (lines <= 0 || !(below < above))
+        return;
+    total->pairs = lines;
+    total->contact = (double)lines;
+    if (cover > 0.0) {
+        const double per_cover = 1.0 / cover;
+        const int cut_below = -floor_to_int(-below * per_pitch) - first; /* lines cut there */
+        const int cut_above = last - floor_to_int((above - cover) * per_pitch);
+        const double lower_ends = (double)cut_below, upper_ends = (double)cut_above;
+        const double mean_below = below - pitch * ((double)first + 0.5 * (lower_ends - 1.0));
+        const double mean_above = cover - above + pitch * ((double)last - 0.5 * (upper_ends - 1.0));
+        const double cut = (lower_ends * mean_below + upper_ends * mean_above) * per_cover;
+        const double contact = (double)lines - (cut > 0.0 ? cut : 0.0);
+        total->contact = contact > 0.0 ? contact : 0.0; /* rounding: next to no helix */
+
+        const double flow = delta * per_cover; /* through one end */
+        total->by_origin = flow * (lower_ends - upper_ends);
+        total->by_delta =
+            flow * (upper_ends * range.upper_by_delta - lower_ends * range.lower_by_delta);
+    }
+    total->by_delta += total->contact;
+    total->sum = delta * total->contact;
+    if (wanted & GMI_MOMENTS)
+        add_ideal_moments(pair, side, position, total);
 }

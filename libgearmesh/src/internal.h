@@ -10,6 +10,8 @@
 
 #include "gearmesh/gearmesh.h"
 
+#include <math.h>
+
 #define GMI_PI 3.14159265358979323846
 /* 2 pi = GMI_TWO_PI + GMI_TWO_PI_REMAINDER to 32 digits. */
 #define GMI_TWO_PI           6.28318530717958647693
@@ -18,8 +20,13 @@
 /* Angles beyond this are refused: at 1e9 rad one rounding already moves the flank by nanometres. */
 #define GMI_LARGEST_ANGLE 1e9
 
-double gmi_nan(void);
-int gmi_is_finite(double value);
+static inline double gmi_nan(void) {
+    return (double)NAN;
+}
+
+static inline int gmi_is_finite(double value) {
+    return isfinite(value);
+}
 
 /* a * b = *product + return value, exactly (Dekker; no fused multiply-add needed). */
 double gmi_product_remainder(double a, double b, double product);

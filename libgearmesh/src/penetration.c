@@ -194,6 +194,11 @@ int gm_penetration_simple_at(const gm_pair *pair, double offset, double offset_r
     return GM_OK;
 }
 
+/* One comparison: below 0 is far above as unsigned. */
+static inline int is_tooth(int tooth, int teeth) {
+    return (unsigned)tooth < (unsigned)teeth;
+}
+
 int gmi_check_evaluation(const gm_pair *pair, const gm_flanks *pinion_flanks,
                          const gm_flanks *wheel_flanks, const gm_position *position) {
     if (pair == NULL || position == NULL)
@@ -209,8 +214,8 @@ int gmi_check_evaluation(const gm_pair *pair, const gm_flanks *pinion_flanks,
                        gmi_is_finite(position->offset_rate)
                    ? GM_STATE_OUT_OF_RANGE
                    : GM_STATE_NOT_FINITE;
-    if (position->pinion_tooth < 0 || position->pinion_tooth >= pair->pinion.teeth ||
-        position->wheel_tooth < 0 || position->wheel_tooth >= pair->wheel.teeth)
+    if (!is_tooth(position->pinion_tooth, pair->pinion.teeth) ||
+        !is_tooth(position->wheel_tooth, pair->wheel.teeth))
         return GM_ERR_TOOTH;
     return GM_OK;
 }

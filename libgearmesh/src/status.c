@@ -4,8 +4,6 @@
 /* Texts and numbers that every other source may use. */
 #include "internal.h"
 
-#include <math.h>
-
 const char *gm_status_text(int status) {
     switch (status) {
     case GM_OK:
@@ -38,14 +36,6 @@ const char *gm_status_text(int status) {
 
 const char *gm_version(void) {
     return GM_VERSION_STRING;
-}
-
-double gmi_nan(void) {
-    return (double)NAN;
-}
-
-int gmi_is_finite(double value) {
-    return isfinite(value);
 }
 
 double gmi_product_remainder(double a, double b, double product) {
