@@ -505,6 +505,133 @@ GM_API int gm_static_equilibrium(const gm_pair *pair, const gm_flanks *pinion_fl
                                  double stiffness, double wheel_torque, double *offset,
                                  gm_penetration *result);
 
+/* ---------------------------------------------------------------------------------------------
+ * Look-up cache of the 3D model, for long sweeps
+ * ------------------------------------------------------------------------------------------- */
+
+/**
+ * Resolution and range of a cache; gm_cache_params_default() is for deviations and deflections of some
+ * micrometres. Memory grows with phase_cells * depth_cells * tooth passes.
+ */
+typedef struct gm_cache_params {
+    int side; /**< flanks that are looked up, GM_DRIVE or GM_COAST; the others are exact [GM_DRIVE] */
+    int phase_cells; /**< steps of the phase per base pitch, 4 .. 10000; some more at kinks [16] */
+    int depth_cells; /**< steps of delta, 4 .. 10000 [40] */
+    double depth;    /**< range of delta from the first touch at each phase on (m), > 0,
+                          <= p_bt / 4 [20e-6] */
+} gm_cache_params;
+
+/**
+ * A cache: views over the caller's memory. It refers to pair and flanks, which must not change or move
+ * as long as it is used. Fill it with gm_cache_init(); the fields are read-only.
+ */
+typedef struct gm_cache {
+    const gm_pair *pair;
+    const gm_flanks *pinion_flanks; /**< NULL = ideal */
+    const gm_flanks *wheel_flanks;
+    int side;            /**< GM_DRIVE or GM_COAST */
+    int pinion_period;   /**< 1 if all teeth of the pinion have the same flank, else z_p */
+    int wheel_period;    /**< likewise */
+    int common;          /**< greatest common divisor of both */
+    int passes;          /**< tooth passes: least common multiple of both periods */
+    int columns;         /**< phases per tooth pass */
+    int nodes;           /**< places in delta per phase */
+    double depth;        /**< as in the parameters (m) */
+    double step;         /**< of delta (m) */
+    double per_step;     /**< its inverse (1/m) */
+    double lowest;       /**< nothing touches at or below this delta (m) */
+    double other_lowest; /**< the same of the other side (m) */
+    double *phases;      /**< [columns] 0 .. p_bt (m) */
+    double *starts;      /**< [passes][columns] delta of the first node (m), NaN = not filled yet */
+    float *values;       /**< [passes][columns][nodes][4] */
+} gm_cache;
+
+/** How far a cache is off; of the side that it looks up. */
+typedef struct gm_cache_errors {
+    double sum_largest;     /**< of the sum, largest (m) */
+    double sum_rms;         /**< root mean square (m) */
+    double contact_largest; /**< of the touching fraction, largest (1) */
+    double contact_rms;     /**< root mean square (1) */
+} gm_cache_errors;
+
+GM_API void gm_cache_params_default(gm_cache_params *params);
+
+/**
+ * Bytes of memory that gm_cache_init() needs: 16 bytes for each of passes * columns * (depth_cells + 1)
+ * nodes, and some. There is one tooth pass if all teeth of a gear have the same flank, on both gears,
+ * else up to z_p z_w / gcd(z_p, z_w): 28.2 MB for the 1845 of 45/41 teeth with the defaults.
+ *
+ * @return 0 where gm_cache_init() would refuse
+ */
+GM_API size_t gm_cache_size(const gm_cache_params *params, const gm_pair *pair,
+                            const gm_flanks *pinion_flanks, const gm_flanks *wheel_flanks);
+
+/**
+ * Prepares an empty cache in memory of the caller. Apart from 8 bytes per column the memory is not touched
+ * before it is needed.
+ *
+ * @param[out] cache          the cache; all zero on an error
+ * @param[in]  params         resolution and range
+ * @param[in]  pair           helical: the sum of spur gears jumps, and no polynomial follows that
+ * @param[in]  pinion_flanks  NULL = ideal (then the exact evaluation is as fast)
+ * @param[in]  wheel_flanks   NULL = ideal
+ * @param[in]  memory         at least gm_cache_size() bytes, aligned for double
+ * @param[in]  memory_size    bytes in memory
+ * @return GM_OK, GM_ERR_NULL, GM_ERR_PARAMETER, GM_ERR_GEOMETRY (spur gears), GM_ERR_TOOTH (flanks of
+ *         another number of teeth), GM_ERR_MEMORY (too little, or more than a computer has)
+ */
+GM_API int gm_cache_init(gm_cache *cache, const gm_cache_params *params, const gm_pair *pair,
+                         const gm_flanks *pinion_flanks, const gm_flanks *wheel_flanks,
+                         void *memory, size_t memory_size);
+
+/**
+ * Fills a range of tooth passes (0 .. cache.passes - 1) up front. Several threads may fill disjoint
+ * ranges at once. After all are filled nothing writes to the cache any more, and any number of threads
+ * may look up in it.
+ *
+ * @return GM_OK, GM_ERR_NULL, GM_ERR_PARAMETER (no such passes)
+ */
+GM_API int gm_cache_fill(gm_cache *cache, int first_pass, int count);
+
+/**
+ * As gm_penetration_3d_at(), approximately and much faster. What the position needs is filled on first use:
+ * **until gm_cache_fill() has filled all passes, a cache belongs to one thread.**
+ *
+ * Sum and derivatives come from one bicubic polynomial per cell, through exact values and slopes at the
+ * corners, so that they agree with each other: continuous together with the derivatives, but where the
+ * sum reaches zero. The touching fraction is taken as the derivative by x, from which it differs by the
+ * slope of the flanks (some um per mm); rates follow from it.
+ *
+ * Never extrapolates: beyond its depth, for teeth that the pair as assembled never brings together, and for
+ * a phase outside [0, p_bt] it evaluates exactly; where nothing touches, the sum is exactly 0.
+ *
+ * Accuracy for the reference pair and flanks of data/paper/ with the defaults, under 1 to 40 N m: sum
+ * 2.5e-4 root mean square and 3e-3 at most of its mean under 20 N m (4.9 um); touching fraction (1.3 of
+ * it on average) 0.01 and 0.15. libgearmesh/docs/lookup-cache.md has other resolutions, gm_cache_error()
+ * measures any pair. Cost: about 670 instructions, and about 50 exact evaluations for a column (one
+ * phase of one tooth pass) that is met for the first time.
+ *
+ * @param[in,out] cache     the cache
+ * @param[in]     position  teeth, phase, x and dx/dt
+ * @param[out]    result    as gm_penetration_3d_at(), but drive_pairs or coast_pairs is -1 (not
+ *                          counted) where it was looked up
+ * @return as gm_penetration_3d_at()
+ */
+GM_API int gm_cache_penetration_at(gm_cache *cache, const gm_position *position,
+                                   gm_penetration *result);
+
+/**
+ * Measures the error against the exact evaluation in random states, uniform over tooth passes, phase and
+ * depth. Fills what it meets.
+ *
+ * @param[in,out] cache   the cache
+ * @param[in]     states  how many, > 0
+ * @param[in]     seed    same seed, same states
+ * @param[out]    errors  NaN on an error
+ * @return GM_OK, GM_ERR_NULL, GM_ERR_PARAMETER
+ */
+GM_API int gm_cache_error(gm_cache *cache, int states, unsigned seed, gm_cache_errors *errors);
+
 #ifdef __cplusplus
 }
 #endif

@@ -1,0 +1,561 @@
+/* SPDX-FileCopyrightText: The gearmesh authors */
+/* SPDX-License-Identifier: BSD-3-Clause */
+
+/*
+ * Look-up in place of the 3D model for one flank side: per tooth pass a table over phase and delta.
+ *
+ * A column is one phase of one tooth pass. Its nodes stand at equal steps of delta from where that phase begins to
+ * touch; each keeps the exact sum, the exact derivatives by delta and phase, and the mixed derivative from its
+ * neighbours. Between nodes a bicubic Hermite polynomial gives the sum and its derivatives. Columns start where
+ * they begin to touch because that varies by tens of micrometres from tooth to tooth, and what lies below is zero.
+ *
+ * In phase the sum has kinks: where a line of contact enters or leaves the field of action through a corner, four
+ * times per base pitch. Columns stand just before and just behind each kink, so that all other cells are smooth. A
+ * kink moves with delta where the wheel sets the limit; the cell around it is as wide as it moves, and narrow still.
+ */
+#include "internal.h"
+
+#include <math.h>
+#include <stdint.h>
+#include <string.h>
+
+/* Corners of the field of action; phases that must have a column: 0, p_bt, and both sides of each corner. */
+enum { CORNERS = 4, KNOTS = 2 + 2 * CORNERS };
+
+/* Columns stand off the kinks by this part of p_bt; below half of it two of them are one. */
+static const double kink_margin = 1e-4;
+
+/* A column begins at most depth / 2^START_BISECTIONS below the delta at which contact begins. */
+enum { START_BISECTIONS = 12 };
+
+enum { LARGEST_CELLS = 10000 };
+
+static const gmi_side_sum no_contact = {.sum = 0.0};
+
+/* Values of a node; by_delta and mixed are per step of delta, not per metre. */
+enum node { NODE_SUM, NODE_BY_DELTA, NODE_BY_PHASE, NODE_MIXED, NODE_VALUES };
+
+/* ---------------------------------------------------------------------------------------------
+ * Tooth passes
+ * ------------------------------------------------------------------------------------------- */
+
+/* Teeth after which the flanks of a gear repeat: 1 or all. */
+static int period_of(const gm_flanks *flanks, int side, int teeth) {
+    const gm_flank_tables *tables = gmi_flanks_side(flanks, side);
+    for (int tooth = 1; tables != NULL && tooth < teeth; ++tooth) {
+        if (tables->table[tooth] != tables->table[0] || tables->pitch[tooth] != tables->pitch[0])
+            return teeth;
+    }
+    return 1;
+}
+
+static int greatest_common_divisor(int a, int b) {
+    while (b != 0) {
+        const int rest = a % b;
+        a = b;
+        b = rest;
+    }
+    return a;
+}
+
+/* Number of the tooth pass, -1 if these two teeth never meet in the pair as assembled. */
+static int pass_of(const gm_cache *cache, const gm_position *position) {
+    const int pinion = cache->pinion_period == 1 ? 0 : position->pinion_tooth;
+    const int wheel = cache->wheel_period == 1 ? 0 : position->wheel_tooth;
+    if (cache->common == 1)
+        return pinion * cache->wheel_period + wheel;
+    if ((pinion - wheel) % cache->common != 0)
+        return -1;
+    return pinion * (cache->wheel_period / cache->common) + wheel / cache->common;
+}
+
+/* Teeth of a tooth pass: the inverse. */
+static void set_teeth(const gm_cache *cache, int pass, gm_position *position) {
+    const int per_tooth = cache->wheel_period / cache->common;
+    position->pinion_tooth = pass / per_tooth;
+    position->wheel_tooth =
+        (pass % per_tooth) * cache->common + position->pinion_tooth % cache->common;
+}
+
+/* ---------------------------------------------------------------------------------------------
+ * Phases of the columns
+ * ------------------------------------------------------------------------------------------- */
+
+/* Ends of the field of action in rho_p, as in contact.c. */
+typedef struct field_ends {
+    double lower, upper;
+} field_ends;
+
+static field_ends find_field(const gm_pair *pair, double delta) {
+    const double reach = pair->line_of_action + delta;
+    const field_ends ends = {
+        fmax(pair->pinion.start_roll_length, reach - pair->wheel.tip_roll_length),
+        fmin(pair->pinion.tip_roll_length, reach - pair->wheel.start_roll_length)};
+    return ends;
+}
+
+static double peak_of(const gm_flanks *flanks, int side) {
+    const gm_flank_tables *tables = gmi_flanks_side(flanks, side);
+    return tables == NULL ? 0.0 : tables->peak;
+}
+
+/* At or below this delta no two flanks of a side reach each other. */
+static double lowest_touch(const gm_cache *cache, int side) {
+    return -peak_of(cache->pinion_flanks, side) - peak_of(cache->wheel_flanks, side);
+}
+
+static void insert_knot(double knots[KNOTS], int *count, double phase) {
+    int place = (*count)++;
+    for (; place > 0 && knots[place - 1] > phase; --place)
+        knots[place] = knots[place - 1];
+    knots[place] = phase;
+}
+
+/* Line k is in a corner where origin + k p_bt + t1 twist = end, with t1 = 0 or 1; see contact.c. */
+static void find_knots(const gm_cache *cache, double knots[KNOTS]) {
+    const gm_pair *pair = cache->pair;
+    const double p_bt = pair->transverse_base_pitch;
+    const double sign = cache->side == GM_DRIVE ? 1.0 : -1.0;
+    const field_ends low = find_field(pair, cache->lowest);
+    const field_ends high = find_field(pair, fmax(0.0, cache->lowest) + 2.0 * cache->depth);
+    const double margin = kink_margin * p_bt;
+    int count = 0;
+    insert_knot(knots, &count, 0.0);
+    insert_knot(knots, &count, p_bt);
+    for (int corner = 0; corner < CORNERS; ++corner) {
+        const double origin = pair->phase_origin + (corner % 2 == 0 ? 0.0 : sign * pair->twist);
+        const double ends[2] = {(corner < 2 ? low.lower : low.upper) - margin,
+                                (corner < 2 ? high.lower : high.upper) + margin};
+        for (int end = 0; end < 2; ++end) {
+            const double phase = sign * (ends[end] - origin);
+            insert_knot(knots, &count, phase - p_bt * floor(phase / p_bt));
+        }
+    }
+}
+
+/* Knots, and equal steps between them of at most p_bt / cells. Returns the number of columns; phases may be NULL. */
+static int place_columns(const gm_cache *cache, int cells, double *phases) {
+    const double p_bt = cache->pair->transverse_base_pitch;
+    double knots[KNOTS];
+    find_knots(cache, knots);
+    int columns = 0;
+    double from = 0.0;
+    for (int i = 1; i < KNOTS; ++i) {
+        /* The last knot is p_bt, or another one within a rounding of it. */
+        const double width = (i == KNOTS - 1 ? p_bt : knots[i]) - from;
+        if (width < 0.5 * kink_margin * p_bt && i < KNOTS - 1)
+            continue;
+        const int steps = (int)ceil(width / p_bt * (double)cells);
+        for (int k = 0; k < steps; ++k, ++columns) {
+            if (phases != NULL)
+                phases[columns] = from + width * (double)k / (double)steps;
+        }
+        from += width;
+    }
+    if (phases != NULL)
+        phases[columns] = p_bt;
+    return columns + 1;
+}
+
+/* ---------------------------------------------------------------------------------------------
+ * Set-up
+ * ------------------------------------------------------------------------------------------- */
+
+void gm_cache_params_default(gm_cache_params *params) {
+    if (params == NULL)
+        return;
+    params->side = GM_DRIVE;
+    params->phase_cells = 16;
+    params->depth_cells = 40;
+    params->depth = 20e-6;
+}
+
+static int check_cells(int cells) {
+    return cells >= 4 && cells <= LARGEST_CELLS;
+}
+
+static int check_params(const gm_cache_params *params, const gm_pair *pair) {
+    return (params->side == GM_DRIVE || params->side == GM_COAST) &&
+           check_cells(params->phase_cells) && check_cells(params->depth_cells) &&
+           params->depth > 0.0 && params->depth <= 0.25 * pair->transverse_base_pitch;
+}
+
+/* All of the cache but its memory. */
+static int describe(gm_cache *cache, const gm_cache_params *params, const gm_pair *pair,
+                    const gm_flanks *pinion_flanks, const gm_flanks *wheel_flanks) {
+    memset(cache, 0, sizeof *cache);
+    if (params == NULL || pair == NULL)
+        return GM_ERR_NULL;
+    if ((pinion_flanks != NULL && pinion_flanks->teeth != pair->pinion.teeth) ||
+        (wheel_flanks != NULL && wheel_flanks->teeth != pair->wheel.teeth))
+        return GM_ERR_TOOTH;
+    if (!check_params(params, pair))
+        return GM_ERR_PARAMETER;
+    if (pair->twist == 0.0)
+        return GM_ERR_GEOMETRY;
+
+    const int side = params->side;
+    cache->pair = pair;
+    cache->pinion_flanks = pinion_flanks;
+    cache->wheel_flanks = wheel_flanks;
+    cache->side = side;
+    cache->pinion_period = period_of(pinion_flanks, side, pair->pinion.teeth);
+    cache->wheel_period = period_of(wheel_flanks, side, pair->wheel.teeth);
+    cache->common = greatest_common_divisor(cache->pinion_period, cache->wheel_period);
+    cache->depth = params->depth;
+    cache->lowest = lowest_touch(cache, side);
+    cache->other_lowest = lowest_touch(cache, side == GM_DRIVE ? GM_COAST : GM_DRIVE);
+    cache->nodes = params->depth_cells + 1;
+    cache->step = params->depth / (double)params->depth_cells;
+    cache->per_step = 1.0 / cache->step;
+    cache->columns = place_columns(cache, params->phase_cells, NULL);
+    /* 1e5 teeth each give 1e10 passes at most: more than fits any memory, but not into an int. */
+    const int64_t passes = (int64_t)cache->pinion_period * (cache->wheel_period / cache->common);
+    if (passes * cache->columns > INT32_MAX)
+        return GM_ERR_MEMORY;
+    cache->passes = (int)passes;
+    return GM_OK;
+}
+
+static size_t all_columns(const gm_cache *cache) {
+    return (size_t)cache->passes * (size_t)cache->columns;
+}
+
+/* Bytes: a phase per column, a start per column of every pass, then the nodes. 0 if too many. */
+static size_t bytes_of(const gm_cache *cache) {
+    const uint64_t column = sizeof(double) + (uint64_t)cache->nodes * NODE_VALUES * sizeof(float);
+    const uint64_t bytes =
+        (uint64_t)cache->columns * sizeof(double) + (uint64_t)all_columns(cache) * column;
+    return bytes <= SIZE_MAX / 2 ? (size_t)bytes : 0;
+}
+
+size_t gm_cache_size(const gm_cache_params *params, const gm_pair *pair,
+                     const gm_flanks *pinion_flanks, const gm_flanks *wheel_flanks) {
+    gm_cache cache;
+    if (describe(&cache, params, pair, pinion_flanks, wheel_flanks) != GM_OK)
+        return 0;
+    return bytes_of(&cache);
+}
+
+static int check_memory(const gm_cache *cache, const void *memory, size_t memory_size) {
+    const size_t needed = bytes_of(cache);
+    if (memory == NULL)
+        return GM_ERR_NULL;
+    return needed == 0 || memory_size < needed ? GM_ERR_MEMORY : GM_OK;
+}
+
+int gm_cache_init(gm_cache *cache, const gm_cache_params *params, const gm_pair *pair,
+                  const gm_flanks *pinion_flanks, const gm_flanks *wheel_flanks, void *memory,
+                  size_t memory_size) {
+    if (cache == NULL)
+        return GM_ERR_NULL;
+    int status = describe(cache, params, pair, pinion_flanks, wheel_flanks);
+    if (status == GM_OK)
+        status = check_memory(cache, memory, memory_size);
+    if (status != GM_OK) {
+        memset(cache, 0, sizeof *cache);
+        return status;
+    }
+    cache->phases = (double *)memory;
+    cache->starts = cache->phases + cache->columns;
+    cache->values = (float *)(cache->starts + all_columns(cache));
+    (void)place_columns(cache, params->phase_cells, cache->phases);
+    for (size_t column = 0; column < all_columns(cache); ++column)
+        cache->starts[column] = gmi_nan(); /* not filled */
+    return GM_OK;
+}
+
+/* ---------------------------------------------------------------------------------------------
+ * Filling
+ * ------------------------------------------------------------------------------------------- */
+
+static gmi_side_sum exact_at(const gm_cache *cache, gm_position *position, double delta) {
+    const double offset = delta + 0.5 * cache->pair->backlash;
+    gmi_side_sum sum;
+    position->offset = cache->side == GM_DRIVE ? offset : -offset;
+    gmi_side_sum_3d(cache->pair, cache->pinion_flanks, cache->wheel_flanks, cache->side, position,
+                    GMI_DERIVATIVES, &sum);
+    return sum;
+}
+
+/* Where contact begins, or a little below; infinite if no line exists at this phase. */
+static double find_start(const gm_cache *cache, gm_position *position) {
+    double without = cache->lowest;
+    double step = cache->depth;
+    while (exact_at(cache, position, without + step).sum == 0.0) {
+        without += step;
+        if (without > 0.5 * cache->pair->transverse_base_pitch)
+            return HUGE_VAL;
+    }
+    for (int i = 0; i < START_BISECTIONS; ++i) {
+        step *= 0.5;
+        if (exact_at(cache, position, without + step).sum == 0.0)
+            without += step;
+    }
+    return without;
+}
+
+static float *values_of(const gm_cache *cache, size_t column) {
+    return cache->values + column * (size_t)cache->nodes * NODE_VALUES;
+}
+
+/* d2 sum / d phase d delta from the neighbours: it has to be the same for both cells, and not more. */
+static void set_mixed(float *values, int nodes) {
+    for (int n = 0; n < nodes; ++n) {
+        const int before = n > 0 ? n - 1 : 0;
+        const int behind = n < nodes - 1 ? n + 1 : n;
+        const float change = values[behind * NODE_VALUES + NODE_BY_PHASE] -
+                             values[before * NODE_VALUES + NODE_BY_PHASE];
+        values[n * NODE_VALUES + NODE_MIXED] = change / (float)(behind - before);
+    }
+}
+
+static void set_node(const gm_cache *cache, float *node, double value, const gmi_side_sum *sum) {
+    node[NODE_SUM] = (float)value;
+    node[NODE_BY_DELTA] = (float)(sum->by_delta * cache->step);
+    node[NODE_BY_PHASE] = (float)(cache->side == GM_DRIVE ? sum->by_origin : -sum->by_origin);
+}
+
+static void fill_column(gm_cache *cache, int pass, int index) {
+    const size_t column = (size_t)pass * (size_t)cache->columns + (size_t)index;
+    gm_position position = {0, 0, cache->phases[index], 0.0, 0.0};
+    set_teeth(cache, pass, &position);
+    const double start = find_start(cache, &position);
+    if (start < HUGE_VAL) {
+        float *values = values_of(cache, column);
+        /* Even flanks touch all at once: the slope at the start is the one behind it. */
+        gmi_side_sum sum =
+            exact_at(cache, &position, start + ldexp(cache->depth, -START_BISECTIONS));
+        set_node(cache, values, 0.0, &sum);
+        for (int n = 1; n < cache->nodes; ++n) {
+            sum = exact_at(cache, &position, start + (double)n * cache->step);
+            set_node(cache, values + n * NODE_VALUES, sum.sum, &sum);
+        }
+        set_mixed(values, cache->nodes);
+    }
+    cache->starts[column] = start;
+}
+
+/* Filled already, or fills it. */
+static void need_column(gm_cache *cache, int pass, int index) {
+    const double start = cache->starts[(size_t)pass * (size_t)cache->columns + (size_t)index];
+    if (start != start)
+        fill_column(cache, pass, index);
+}
+
+int gm_cache_fill(gm_cache *cache, int first_pass, int count) {
+    if (cache == NULL || cache->pair == NULL)
+        return GM_ERR_NULL;
+    if (first_pass < 0 || count < 0 || count > cache->passes - first_pass)
+        return GM_ERR_PARAMETER;
+    for (int pass = first_pass; pass < first_pass + count; ++pass) {
+        for (int index = 0; index < cache->columns; ++index)
+            need_column(cache, pass, index);
+    }
+    return GM_OK;
+}
+
+/* ---------------------------------------------------------------------------------------------
+ * Looking up
+ * ------------------------------------------------------------------------------------------- */
+
+/* Weights of value and slope at both ends of a cubic on [0, 1]. */
+typedef struct hermite {
+    double begin, begin_slope, end, end_slope;
+} hermite;
+
+static inline hermite hermite_value(double t) {
+    const double rest = 1.0 - t;
+    const double end = t * t * (3.0 - 2.0 * t);
+    const hermite weights = {1.0 - end, t * rest * rest, end, -t * t * rest};
+    return weights;
+}
+
+/* Of its derivative. */
+static inline hermite hermite_slope(double t) {
+    const double rest = 1.0 - t;
+    const double end = 6.0 * t * rest;
+    const hermite weights = {-end, rest * (1.0 - 3.0 * t), end, t * (3.0 * t - 2.0)};
+    return weights;
+}
+
+static inline double combine(const hermite *weights, double begin, double begin_slope, double end,
+                             double end_slope) {
+    return weights->begin * begin + weights->begin_slope * begin_slope + weights->end * end +
+           weights->end_slope * end_slope;
+}
+
+/* What a column says at a delta; by_delta and mixed per step. */
+typedef struct column_value {
+    double sum, by_delta, by_phase, mixed;
+} column_value;
+
+/* Returns 0 beyond the last node. */
+static int read_column(const gm_cache *cache, size_t column, double delta, column_value *value) {
+    const double place = (delta - cache->starts[column]) * cache->per_step;
+    const column_value none = {0.0, 0.0, 0.0, 0.0};
+    *value = none;
+    if (!(place > 0.0))
+        return 1;
+    if (place >= (double)(cache->nodes - 1))
+        return 0;
+    const int n = (int)place;
+    const float *a = values_of(cache, column) + (size_t)n * NODE_VALUES;
+    const float *b = a + NODE_VALUES;
+    const double a_sum = (double)a[NODE_SUM], a_by_delta = (double)a[NODE_BY_DELTA];
+    const double b_sum = (double)b[NODE_SUM], b_by_delta = (double)b[NODE_BY_DELTA];
+    const double a_by_phase = (double)a[NODE_BY_PHASE], a_mixed = (double)a[NODE_MIXED];
+    const double b_by_phase = (double)b[NODE_BY_PHASE], b_mixed = (double)b[NODE_MIXED];
+    const hermite at = hermite_value(place - (double)n);
+    const hermite slope = hermite_slope(place - (double)n);
+    value->sum = combine(&at, a_sum, a_by_delta, b_sum, b_by_delta);
+    value->by_delta = combine(&slope, a_sum, a_by_delta, b_sum, b_by_delta);
+    value->by_phase = combine(&at, a_by_phase, a_mixed, b_by_phase, b_mixed);
+    value->mixed = combine(&slope, a_by_phase, a_mixed, b_by_phase, b_mixed);
+    return 1;
+}
+
+/* The column before or at a phase in [0, p_bt], not the last one. */
+static int column_before(const gm_cache *cache, double phase) {
+    int before = 0, behind = cache->columns - 1;
+    while (behind - before > 1) {
+        const int middle = (before + behind) / 2;
+        if (cache->phases[middle] <= phase)
+            before = middle;
+        else
+            behind = middle;
+    }
+    return before;
+}
+
+/* Between two columns. The cubic may dip below zero just where contact begins; the sum never does. */
+static void join_columns(const gm_cache *cache, int index, double phase, const column_value *a,
+                         const column_value *b, gmi_side_sum *sum) {
+    const double width = cache->phases[index + 1] - cache->phases[index];
+    const double place = (phase - cache->phases[index]) / width;
+    const hermite at = hermite_value(place);
+    const double value = combine(&at, a->sum, a->by_phase * width, b->sum, b->by_phase * width);
+    const double by_delta =
+        combine(&at, a->by_delta, a->mixed * width, b->by_delta, b->mixed * width);
+    if (!(value > 0.0))
+        return;
+    const hermite slope = hermite_slope(place);
+    const double by_phase =
+        combine(&slope, a->sum, a->by_phase * width, b->sum, b->by_phase * width) / width;
+    sum->sum = value;
+    sum->by_delta = by_delta * cache->per_step;
+    sum->by_origin = cache->side == GM_DRIVE ? by_phase : -by_phase;
+    sum->contact = sum->by_delta > 0.0 ? sum->by_delta : 0.0;
+    sum->pairs = -1;
+}
+
+/* Returns 0 where the table does not reach: the exact evaluation has to answer. */
+static int look_up(gm_cache *cache, const gm_position *position, gmi_side_sum *sum) {
+    const double delta = gmi_ideal_penetration(cache->pair, cache->side, position->offset);
+    *sum = no_contact;
+    if (delta <= cache->lowest)
+        return 1;
+    const int pass = pass_of(cache, position);
+    if (pass < 0 || position->phase < 0.0 || position->phase > cache->phases[cache->columns - 1])
+        return 0;
+    const int index = column_before(cache, position->phase);
+    const size_t column = (size_t)pass * (size_t)cache->columns + (size_t)index;
+    need_column(cache, pass, index);
+    need_column(cache, pass, index + 1);
+    column_value a, b;
+    if (!read_column(cache, column, delta, &a) || !read_column(cache, column + 1, delta, &b))
+        return 0;
+    join_columns(cache, index, position->phase, &a, &b, sum);
+    return 1;
+}
+
+static void set_result(const gm_pair *pair, const gmi_side_sum *drive, const gmi_side_sum *coast,
+                       double offset_rate, gm_penetration *result) {
+    const double by_offset = drive->by_delta + coast->by_delta;
+    const double by_origin = drive->by_origin + coast->by_origin;
+    result->drive = drive->sum;
+    result->coast = coast->sum;
+    result->penetration = drive->sum - coast->sum;
+    result->drive_contact = drive->contact;
+    result->coast_contact = coast->contact;
+    result->drive_rate = offset_rate * drive->contact;
+    result->coast_rate = -offset_rate * coast->contact;
+    result->rate = result->drive_rate - result->coast_rate;
+    result->d_pinion_angle = pair->pinion.base_radius * (by_offset + by_origin);
+    result->d_wheel_angle = -pair->wheel.base_radius * by_offset;
+    result->drive_pairs = drive->pairs;
+    result->coast_pairs = coast->pairs;
+}
+
+int gm_cache_penetration_at(gm_cache *cache, const gm_position *position, gm_penetration *result) {
+    if (cache == NULL)
+        return gm_penetration_3d_at(NULL, NULL, NULL, position, result);
+    const gm_pair *pair = cache->pair;
+    gmi_side_sum sums[2];
+    if (result == NULL ||
+        gmi_check_evaluation(pair, cache->pinion_flanks, cache->wheel_flanks, position) != GM_OK ||
+        !look_up(cache, position, &sums[cache->side]))
+        return gm_penetration_3d_at(pair, cache->pinion_flanks, cache->wheel_flanks, position,
+                                    result);
+    const int other = cache->side == GM_DRIVE ? GM_COAST : GM_DRIVE;
+    sums[other] = no_contact;
+    if (gmi_ideal_penetration(pair, other, position->offset) > cache->other_lowest)
+        gmi_side_sum_3d(pair, cache->pinion_flanks, cache->wheel_flanks, other, position,
+                        GMI_DERIVATIVES, &sums[other]);
+    set_result(pair, &sums[GM_DRIVE], &sums[GM_COAST], position->offset_rate, result);
+    return GM_OK;
+}
+
+/* ---------------------------------------------------------------------------------------------
+ * Measuring the error
+ * ------------------------------------------------------------------------------------------- */
+
+/* Uniform in [0, 1): splitmix64. */
+static double uniform(uint64_t *seed) {
+    *seed += UINT64_C(0x9E3779B97F4A7C15);
+    uint64_t bits = *seed;
+    bits = (bits ^ (bits >> 30)) * UINT64_C(0xBF58476D1CE4E5B9);
+    bits = (bits ^ (bits >> 27)) * UINT64_C(0x94D049BB133111EB);
+    bits ^= bits >> 31;
+    return (double)(bits >> 11) * 0x1p-53;
+}
+
+static void add_error(double error, double *largest, double *squares) {
+    *largest = fmax(*largest, fabs(error));
+    *squares += error * error;
+}
+
+int gm_cache_error(gm_cache *cache, int states, unsigned seed, gm_cache_errors *errors) {
+    if (errors == NULL)
+        return GM_ERR_NULL;
+    errors->sum_largest = errors->sum_rms = gmi_nan();
+    errors->contact_largest = errors->contact_rms = gmi_nan();
+    if (cache == NULL || cache->pair == NULL)
+        return GM_ERR_NULL;
+    if (states < 1)
+        return GM_ERR_PARAMETER;
+
+    const double last_phase = cache->phases[cache->columns - 1];
+    double sum_largest = 0.0, sum_squares = 0.0, contact_largest = 0.0, contact_squares = 0.0;
+    uint64_t random = seed;
+    for (int i = 0; i < states; ++i) {
+        const int pass = (int)(uniform(&random) * (double)cache->passes);
+        gm_position position = {0, 0, uniform(&random) * last_phase, 0.0, 0.0};
+        const int index = column_before(cache, position.phase);
+        set_teeth(cache, pass, &position);
+        need_column(cache, pass, index);
+        const double start = cache->starts[(size_t)pass * (size_t)cache->columns + (size_t)index];
+        const double delta = start + uniform(&random) * cache->depth;
+        gmi_side_sum looked_up;
+        const gmi_side_sum exact = exact_at(cache, &position, delta);
+        if (!(start < HUGE_VAL) || !look_up(cache, &position, &looked_up))
+            continue; /* exact anyway */
+        add_error(looked_up.sum - exact.sum, &sum_largest, &sum_squares);
+        add_error(looked_up.contact - exact.contact, &contact_largest, &contact_squares);
+    }
+    errors->sum_largest = sum_largest;
+    errors->sum_rms = sqrt(sum_squares / (double)states);
+    errors->contact_largest = contact_largest;
+    errors->contact_rms = sqrt(contact_squares / (double)states);
+    return GM_OK;
+}

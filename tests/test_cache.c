@@ -1,0 +1,820 @@
+/* SPDX-FileCopyrightText: The gearmesh authors */
+/* SPDX-License-Identifier: BSD-3-Clause */
+
+/* The look-up cache against the exact evaluation: the same at nodes, as near as stated between them, exact or
+ * exactly zero outside, and no more memory or work than asked for. */
+#include "gearmesh/gearmesh_io.h"
+#include "gm_test.h"
+#include "reference_gear.h"
+
+#include <pthread.h>
+
+#define PAPER "../data/paper/"
+
+/* Sum of the reference pair at 20 N m: F / K = 20 N m / 39.1 mm / 1.05e8 N/m (wheel's base radius). */
+static const double sum_at_20_Nm = 4.9e-6;
+
+/* A pair with flanks of its own on every tooth, and a cache of it. */
+typedef struct fixture {
+    gm_pair pair;
+    gm_flanks flanks[2];
+    void *flank_memory[2];
+    const gm_flanks *use[2];
+    gm_cache cache;
+    void *memory;
+    size_t size;
+} fixture;
+
+static void read_flanks(fixture *f, int gear, const char *deviation_file, const char *pitch_file) {
+    const int teeth = gear == 0 ? f->pair.pinion.teeth : f->pair.wheel.teeth;
+    gm_deviations deviations;
+    gm_pitch pitch;
+    gm_flanks_options options;
+    gm_flanks_options_default(&options);
+    options.normal_factor = f->pair.normal_to_transverse;
+    GM_ASSERT_INT(gm_deviations_read(&deviations, deviation_file, teeth, NULL), GM_IO_OK);
+    GM_ASSERT_INT(gm_pitch_read(&pitch, pitch_file, teeth, NULL), GM_IO_OK);
+    GM_ASSERT_INT(gm_flanks_build(&f->flanks[gear], &f->flank_memory[gear], teeth, &deviations,
+                                  &pitch, &options, NULL),
+                  GM_IO_OK);
+    gm_deviations_free(&deviations);
+    gm_pitch_free(&pitch);
+    f->use[gear] = &f->flanks[gear];
+}
+
+static void make_cache(fixture *f, const gm_cache_params *params) {
+    f->size = gm_cache_size(params, &f->pair, f->use[0], f->use[1]);
+    GM_ASSERT(f->size > 0);
+    f->memory = malloc(f->size);
+    GM_ASSERT_INT(
+        gm_cache_init(&f->cache, params, &f->pair, f->use[0], f->use[1], f->memory, f->size),
+        GM_OK);
+}
+
+/* The cache points into the fixture, which must not move. */
+static void make_paper(fixture *f, const gm_cache_params *params) {
+    memset(f, 0, sizeof *f);
+    f->pair = reference_pair(REFERENCE_FACE_WIDTH);
+    read_flanks(f, 0, PAPER "pinion_flanks.csv", PAPER "pinion_pitch.csv");
+    read_flanks(f, 1, PAPER "wheel_flanks.csv", PAPER "wheel_pitch.csv");
+    make_cache(f, params);
+}
+
+static void free_fixture(fixture *f) {
+    free(f->memory);
+    for (int gear = 0; gear < 2; gear++) {
+        gm_flanks_memory_free(f->flank_memory[gear]);
+    }
+}
+
+static gm_cache_params params_of(int side, int phase_cells, int depth_cells, double depth) {
+    const gm_cache_params params = {side, phase_cells, depth_cells, depth};
+    return params;
+}
+
+static gm_cache_params default_params(void) {
+    gm_cache_params params;
+    gm_cache_params_default(&params);
+    return params;
+}
+
+static gm_penetration exact_at(const fixture *f, const gm_position *position) {
+    gm_penetration result;
+    GM_ASSERT_INT(gm_penetration_3d_at(&f->pair, f->use[0], f->use[1], position, &result), GM_OK);
+    return result;
+}
+
+static gm_penetration looked_up_at(fixture *f, const gm_position *position) {
+    gm_penetration result;
+    GM_ASSERT_INT(gm_cache_penetration_at(&f->cache, position, &result), GM_OK);
+    return result;
+}
+
+/* x at which a side has this delta. */
+static double offset_of(const fixture *f, double delta) {
+    const double offset = delta + 0.5 * f->pair.backlash;
+    return f->cache.side == GM_DRIVE ? offset : -offset;
+}
+
+static double by_x(const fixture *f, const gm_penetration *r) {
+    return -r->d_wheel_angle / f->pair.wheel.base_radius;
+}
+
+static double by_phase(const fixture *f, const gm_penetration *r) {
+    return r->d_pinion_angle / f->pair.pinion.base_radius +
+           r->d_wheel_angle / f->pair.wheel.base_radius;
+}
+
+static int was_looked_up(const fixture *f, const gm_penetration *r) {
+    return (f->cache.side == GM_DRIVE ? r->drive_pairs : r->coast_pairs) == -1;
+}
+
+static double looked_up_sum(const fixture *f, const gm_penetration *r) {
+    return f->cache.side == GM_DRIVE ? r->drive : r->coast;
+}
+
+/* A tooth pass, its teeth by the definition of a pass: both gears go back by one tooth at a time. */
+static gm_position random_position(const fixture *f, uint64_t *seed) {
+    const int turned = gm_test_integer(seed, 0, f->pair.pinion.teeth * f->pair.wheel.teeth - 1);
+    gm_position position;
+    GM_ASSERT_INT(gm_position_from_pinion_angle(&f->pair, turned * f->pair.pinion.pitch_angle, 0.0,
+                                                0.25, &position),
+                  GM_OK);
+    position.phase = gm_test_uniform(seed, 0.0, f->pair.transverse_base_pitch);
+    return position;
+}
+
+/* Number of the tooth pass where both gears have z flanks of their own and no common divisor. */
+static size_t hunting_pass(const fixture *f, const gm_position *position) {
+    return (size_t)position->pinion_tooth * (size_t)f->pair.wheel.teeth +
+           (size_t)position->wheel_tooth;
+}
+
+/* Starts of the columns before and behind a phase. */
+static const double *starts_around(const fixture *f, const gm_position *position) {
+    int index = 0;
+    while (index + 2 < f->cache.columns && f->cache.phases[index + 1] <= position->phase) {
+        index++;
+    }
+    return f->cache.starts + hunting_pass(f, position) * (size_t)f->cache.columns + index;
+}
+
+/* ---------------------------------------------------------------------------------------------
+ * Error
+ * ------------------------------------------------------------------------------------------- */
+
+typedef struct measured {
+    double sum_largest, sum_squares, contact_largest, contact_squares;
+    int states;
+} measured;
+
+static void measure(fixture *f, int states, uint64_t seed, measured *m) {
+    const double full_turn = 6.283185307179586;
+    const double sign = f->cache.side == GM_DRIVE ? 1.0 : -1.0;
+    memset(m, 0, sizeof *m);
+    for (int i = 0; i < states; i++) {
+        const double angle = gm_test_uniform(&seed, 0.0, full_turn * f->pair.wheel.teeth);
+        const double torque = sign * gm_test_uniform(&seed, 1.0, 40.0);
+        double offset;
+        GM_ASSERT_INT(gm_static_equilibrium(&f->pair, f->use[0], f->use[1], angle,
+                                            REFERENCE_STIFFNESS, torque, &offset, NULL),
+                      GM_OK);
+        gm_position position;
+        GM_ASSERT_INT(gm_position_from_pinion_angle(&f->pair, angle, offset, 0.25, &position),
+                      GM_OK);
+        const gm_penetration exact = exact_at(f, &position);
+        const gm_penetration looked_up = looked_up_at(f, &position);
+        const double sum = looked_up_sum(f, &looked_up) - looked_up_sum(f, &exact);
+        const double contact = (looked_up.drive_contact - exact.drive_contact) +
+                               (looked_up.coast_contact - exact.coast_contact);
+        m->sum_largest = fmax(m->sum_largest, fabs(sum));
+        m->contact_largest = fmax(m->contact_largest, fabs(contact));
+        m->sum_squares += sum * sum;
+        m->contact_squares += contact * contact;
+        m->states += was_looked_up(f, &looked_up);
+        GM_ASSERT_REL(looked_up.rate, 0.25 * (looked_up.drive_contact + looked_up.coast_contact),
+                      1e-15);
+        GM_ASSERT(looked_up.penetration == looked_up.drive - looked_up.coast);
+    }
+}
+
+/* The numbers that gearmesh.h states, for both sides. */
+static void error_is_as_stated(void) {
+    for (int side = GM_DRIVE; side <= GM_COAST; side++) {
+        gm_test_context("side %d", side);
+        gm_cache_params params = default_params();
+        params.side = side;
+        fixture f;
+        make_paper(&f, &params);
+        measured m;
+        measure(&f, 1000, UINT64_C(81) + (unsigned)side, &m);
+        GM_ASSERT(m.states >= 990);
+        GM_ASSERT_ABS(m.sum_largest, 0.0, 3e-3 * sum_at_20_Nm);
+        GM_ASSERT_ABS(sqrt(m.sum_squares / m.states), 0.0, 2.5e-4 * sum_at_20_Nm);
+        GM_ASSERT_ABS(m.contact_largest, 0.0, 0.15);
+        GM_ASSERT_ABS(sqrt(m.contact_squares / m.states), 0.0, 0.01);
+        free_fixture(&f);
+    }
+}
+
+static void error_can_be_measured(void) {
+    const gm_cache_params params = default_params();
+    fixture f;
+    make_paper(&f, &params);
+    gm_cache_errors fine, again, spoilt;
+    GM_ASSERT_INT(gm_cache_error(&f.cache, 2000, 7, &fine), GM_OK);
+    GM_ASSERT(fine.sum_rms > 0.0 && fine.sum_rms <= 2.5e-4 * sum_at_20_Nm);
+    GM_ASSERT(fine.sum_largest >= fine.sum_rms && fine.sum_largest <= 3e-3 * sum_at_20_Nm);
+    GM_ASSERT(fine.contact_rms > 0.0 && fine.contact_rms <= 0.01);
+    GM_ASSERT(fine.contact_largest >= fine.contact_rms && fine.contact_largest <= 0.15);
+    GM_ASSERT_INT(gm_cache_error(&f.cache, 2000, 7, &again), GM_OK);
+    GM_ASSERT(memcmp(&fine, &again, sizeof fine) == 0);
+    GM_ASSERT_INT(gm_cache_error(&f.cache, 2000, 8, &again), GM_OK);
+    GM_ASSERT(fine.sum_largest != again.sum_largest);
+
+    /* One per cent more in every node is seen as one: sums are 19 um on average at half the depth. */
+    const size_t values =
+        (size_t)f.cache.passes * (size_t)f.cache.columns * (size_t)f.cache.nodes * 4;
+    for (size_t i = 0; i < values; i++) {
+        f.cache.values[i] *= 1.01F;
+    }
+    GM_ASSERT_INT(gm_cache_error(&f.cache, 2000, 7, &spoilt), GM_OK);
+    GM_ASSERT(spoilt.sum_rms > 5.0 * fine.sum_rms);
+    free_fixture(&f);
+
+    GM_ASSERT_INT(gm_cache_error(NULL, 10, 1, &spoilt), GM_ERR_NULL);
+    GM_ASSERT_NAN(spoilt.sum_rms);
+    GM_ASSERT_INT(gm_cache_error(&f.cache, 10, 1, NULL), GM_ERR_NULL);
+    GM_ASSERT_INT(gm_cache_error(&f.cache, 0, 1, &spoilt), GM_ERR_PARAMETER);
+    GM_ASSERT_NAN(spoilt.contact_largest);
+}
+
+/* How the derivative by x changes with phase behind a node is how that by phase changes with x around it. */
+static void assert_mixed(fixture *f, const gm_position *node, const gm_penetration *there) {
+    const double dphase = 1e-10, dx = f->cache.step;
+    gm_position behind = *node, left = *node, right = *node;
+    behind.phase += dphase;
+    left.offset -= dx;
+    right.offset += dx;
+    const gm_penetration r = looked_up_at(f, &behind);
+    if (was_looked_up(f, &r)) {
+        const gm_penetration a = exact_at(f, &left), b = exact_at(f, &right);
+        const double expected = (by_phase(f, &b) - by_phase(f, &a)) / (2.0 * dx);
+        /* Of some 1000 / m; dphase is 1e-4 of the narrowest cell. */
+        GM_ASSERT_NEAR((by_x(f, &r) - by_x(f, there)) / dphase, expected, 1e-3, 5.0);
+    }
+}
+
+/* Nodes are kept in single precision. */
+static void nodes_are_exact(void) {
+    for (int side = GM_DRIVE; side <= GM_COAST; side++) {
+        gm_test_context("side %d", side);
+        const gm_cache_params params = params_of(side, 16, 20, 20e-6);
+        fixture f;
+        make_paper(&f, &params);
+        uint64_t seed = UINT64_C(82);
+        int above_zero = 0;
+        for (int i = 0; i < 500; i++) {
+            gm_position position = random_position(&f, &seed);
+            const int column = gm_test_integer(&seed, 0, f.cache.columns - 2);
+            const int node = gm_test_integer(&seed, 1, f.cache.nodes - 2);
+            position.phase = f.cache.phases[column];
+            (void)looked_up_at(&f, &position); /* fills it */
+            position.offset = offset_of(&f, 0.0);
+            (void)looked_up_at(&f, &position);
+            const double start =
+                f.cache
+                    .starts[hunting_pass(&f, &position) * (size_t)f.cache.columns + (size_t)column];
+            position.offset = offset_of(&f, start + node * f.cache.step);
+            const gm_penetration exact = exact_at(&f, &position);
+            const gm_penetration r = looked_up_at(&f, &position);
+            if (!was_looked_up(&f, &r)) {
+                continue; /* the other column is at its end */
+            }
+            above_zero += looked_up_sum(&f, &exact) > 0.0;
+            GM_ASSERT_NEAR(r.penetration, exact.penetration, 0x1p-23, 1e-18);
+            GM_ASSERT_NEAR(by_x(&f, &r), by_x(&f, &exact), 0x1p-22, 1e-9);
+            GM_ASSERT_NEAR(by_phase(&f, &r), by_phase(&f, &exact), 0x1p-22, 1e-9);
+            if (node > 1) {
+                assert_mixed(&f, &position, &r);
+            }
+        }
+        GM_ASSERT(above_zero > 300);
+        free_fixture(&f);
+    }
+}
+
+/* What Newton's iteration is told is what the right-hand side does. */
+static void derivatives_are_those_of_the_sum(void) {
+    const double dx = 1e-10, dphase = 1e-8; /* 5000 and 10000 times smaller than a cell */
+    for (int side = GM_DRIVE; side <= GM_COAST; side++) {
+        const gm_cache_params params = params_of(side, 16, 40, 20e-6);
+        fixture f;
+        make_paper(&f, &params);
+        uint64_t seed = UINT64_C(83);
+        for (int i = 0; i < 300; i++) {
+            gm_test_context("side %d, state %d", side, i);
+            gm_position position = random_position(&f, &seed);
+            position.phase = gm_test_uniform(&seed, 0.001, 0.999) * f.pair.transverse_base_pitch;
+            position.offset = offset_of(&f, gm_test_uniform(&seed, -10e-6, 10e-6));
+            const gm_penetration r = looked_up_at(&f, &position);
+            gm_position left = position, right = position;
+            left.offset -= dx;
+            right.offset += dx;
+            const gm_penetration a = looked_up_at(&f, &left), b = looked_up_at(&f, &right);
+            if (!was_looked_up(&f, &r) || !was_looked_up(&f, &a) || !was_looked_up(&f, &b)) {
+                continue; /* nothing touches, or too deep */
+            }
+            /* Curvature at most 4 flanks per um, so 4e-4 over 1e-10 m; the sum's own rounding is less. */
+            GM_ASSERT_ABS(by_x(&f, &r), (b.penetration - a.penetration) / (2.0 * dx), 5e-4);
+            left = right = position;
+            left.phase -= dphase;
+            right.phase += dphase;
+            const gm_penetration c = looked_up_at(&f, &left), d = looked_up_at(&f, &right);
+            /* Slopes are up to 1e-3 and change within a cell of 1 um (at kinks) or 300 um. */
+            GM_ASSERT_ABS(by_phase(&f, &r), (d.penetration - c.penetration) / (2.0 * dphase), 1e-5);
+        }
+        free_fixture(&f);
+    }
+}
+
+/* ---------------------------------------------------------------------------------------------
+ * Outside
+ * ------------------------------------------------------------------------------------------- */
+
+static void beyond_the_depth_it_is_exact(void) {
+    for (int side = GM_DRIVE; side <= GM_COAST; side++) {
+        const gm_cache_params params = params_of(side, 8, 8, 4e-6);
+        fixture f;
+        make_paper(&f, &params);
+        const double p_bt = f.pair.transverse_base_pitch;
+        uint64_t seed = UINT64_C(84);
+        for (int i = 0; i < 300; i++) {
+            gm_test_context("side %d, state %d", side, i);
+            gm_position position = random_position(&f, &seed);
+            position.offset = offset_of(&f, 0.0);
+            (void)looked_up_at(&f, &position);
+            const double *const starts = starts_around(&f, &position);
+            const double end = fmin(starts[0], starts[1]) + 4e-6;
+            position.offset = offset_of(
+                &f, end + 1e-12 + (i % 2 == 0 ? 0.0 : gm_test_uniform(&seed, 0.0, 0.4 * p_bt)));
+            const gm_penetration exact = exact_at(&f, &position);
+            const gm_penetration r = looked_up_at(&f, &position);
+            GM_ASSERT(exact.penetration != 0.0);
+            GM_ASSERT(memcmp(&r, &exact, sizeof r) == 0);
+        }
+        free_fixture(&f);
+    }
+}
+
+static void below_the_first_touch_it_is_zero(void) {
+    const gm_cache_params params = params_of(GM_DRIVE, 8, 8, 8e-6);
+    fixture f;
+    make_paper(&f, &params);
+    uint64_t seed = UINT64_C(85);
+    for (int i = 0; i < 300; i++) {
+        gm_test_context("state %d", i);
+        gm_position position = random_position(&f, &seed);
+        /* Below any touch no column is filled ... */
+        position.offset = offset_of(&f, f.cache.lowest);
+        gm_penetration r = looked_up_at(&f, &position);
+        GM_ASSERT(r.penetration == 0.0 && r.drive_contact == 0.0 && r.rate == 0.0);
+        GM_ASSERT(r.d_pinion_angle == 0.0 && r.d_wheel_angle == 0.0);
+        GM_ASSERT_INT(r.drive_pairs, 0);
+        GM_ASSERT(i > 0 || isnan(starts_around(&f, &position)[0]));
+        /* ... and below that of its columns there is nothing either, nor in truth at the columns. */
+        position.offset = offset_of(&f, 0.0);
+        (void)looked_up_at(&f, &position);
+        const double *const starts = starts_around(&f, &position);
+        GM_ASSERT(starts[0] > f.cache.lowest && starts[1] > f.cache.lowest);
+        const double first = fmin(starts[0], starts[1]);
+        position.offset = offset_of(&f, gm_test_uniform(&seed, f.cache.lowest, first));
+        r = looked_up_at(&f, &position);
+        GM_ASSERT(r.penetration == 0.0 && r.drive_contact == 0.0 && r.rate == 0.0);
+        GM_ASSERT(r.d_pinion_angle == 0.0 && r.d_wheel_angle == 0.0);
+        position.offset = offset_of(&f, first);
+        position.phase = f.cache.phases[starts + (first == starts[1]) - f.cache.starts -
+                                        (ptrdiff_t)hunting_pass(&f, &position) * f.cache.columns];
+        GM_ASSERT(exact_at(&f, &position).drive == 0.0);
+        /* A start is not needlessly far below: one bisection step, depth / 4096. */
+        position.offset = offset_of(&f, first + 8e-6 / 4000.0);
+        GM_ASSERT(exact_at(&f, &position).drive > 0.0);
+    }
+    free_fixture(&f);
+}
+
+/* From far below to far above, no dip below zero, no jump and no step back larger than the error. */
+static void sum_rises_from_zero_without_a_dip(void) {
+    const gm_cache_params params = default_params();
+    fixture f;
+    make_paper(&f, &params);
+    uint64_t seed = UINT64_C(86);
+    for (int i = 0; i < 100; i++) {
+        gm_position position = random_position(&f, &seed);
+        double before = 0.0;
+        for (int k = 0; k <= 1000; k++) {
+            gm_test_context("state %d, step %d", i, k);
+            position.offset = offset_of(&f, -40e-6 + 0.1e-6 * k);
+            const double sum = looked_up_at(&f, &position).drive;
+            GM_ASSERT(sum >= 0.0);
+            /* 0.1 um more delta on at most 5 pairs over the whole face. */
+            GM_ASSERT(sum - before <= 5 * 0.1e-6 && before - sum <= 3e-3 * sum_at_20_Nm);
+            before = sum;
+        }
+    }
+    free_fixture(&f);
+}
+
+/* The flanks that are not looked up are exact; deep on their side those that are looked up are far apart. */
+static void other_flank_is_exact(void) {
+    const gm_cache_params params = params_of(GM_DRIVE, 8, 8, 8e-6);
+    fixture f;
+    make_paper(&f, &params);
+    uint64_t seed = UINT64_C(87);
+    for (int i = 0; i < 200; i++) {
+        gm_position position = random_position(&f, &seed);
+        position.offset = -0.5 * f.pair.backlash + gm_test_uniform(&seed, -30e-6, 30e-6);
+        const gm_penetration exact = exact_at(&f, &position);
+        const gm_penetration r = looked_up_at(&f, &position);
+        GM_ASSERT(memcmp(&r, &exact, sizeof r) == 0);
+    }
+    free_fixture(&f);
+}
+
+static void bad_states_are_refused_as_without_a_cache(void) {
+    const gm_cache_params params = params_of(GM_DRIVE, 8, 8, 8e-6);
+    fixture f;
+    make_paper(&f, &params);
+    const double p_bt = f.pair.transverse_base_pitch;
+    const gm_position good = {44, 40, 1e-3, 55e-6, 0.25};
+    gm_position wrong[16];
+    int count = 0;
+    static const double bad[] = {(double)NAN, HUGE_VAL, -HUGE_VAL};
+    for (int k = 0; k < 3; k++) {
+        for (int field = 0; field < 3; field++) {
+            wrong[count] = good;
+            double *const fields[] = {&wrong[count].phase, &wrong[count].offset,
+                                      &wrong[count].offset_rate};
+            *fields[field] = bad[k];
+            count++;
+        }
+    }
+    wrong[count] = good, wrong[count++].offset = 0.5 * p_bt;
+    wrong[count] = good, wrong[count++].phase = 1.5 * p_bt;
+    wrong[count] = good, wrong[count++].pinion_tooth = 45;
+    wrong[count] = good, wrong[count++].wheel_tooth = -1;
+    for (int i = 0; i < count; i++) {
+        gm_test_context("position %d", i);
+        gm_penetration exact, r;
+        memset(&exact, 1, sizeof exact);
+        memset(&r, 1, sizeof r);
+        const int status = gm_penetration_3d_at(&f.pair, f.use[0], f.use[1], &wrong[i], &exact);
+        GM_ASSERT(status != GM_OK);
+        GM_ASSERT_INT(gm_cache_penetration_at(&f.cache, &wrong[i], &r), status);
+        GM_ASSERT_NAN(r.penetration);
+        GM_ASSERT_NAN(r.d_pinion_angle);
+        GM_ASSERT_INT(r.drive_pairs, 0);
+    }
+    /* A phase that is finite but not in [0, p_bt] is legal, and exact. */
+    gm_position outside = good;
+    for (int i = 0; i < 2; i++) {
+        gm_test_context("phase outside %d", i);
+        outside.phase = i == 0 ? -1e-9 : p_bt * (1.0 + 1e-9);
+        const gm_penetration exact = exact_at(&f, &outside), r = looked_up_at(&f, &outside);
+        GM_ASSERT(memcmp(&r, &exact, sizeof r) == 0);
+    }
+    gm_test_context("none was filled");
+    for (size_t i = 0; i < (size_t)f.cache.passes * (size_t)f.cache.columns; i++) {
+        if (!isnan(f.cache.starts[i])) {
+            GM_ASSERT_NAN(f.cache.starts[i]);
+            break;
+        }
+    }
+    gm_penetration r;
+    GM_ASSERT_INT(gm_cache_penetration_at(NULL, &good, &r), GM_ERR_NULL);
+    GM_ASSERT_NAN(r.penetration);
+    GM_ASSERT_INT(gm_cache_penetration_at(&f.cache, NULL, &r), GM_ERR_NULL);
+    GM_ASSERT_NAN(r.penetration);
+    GM_ASSERT_INT(gm_cache_penetration_at(&f.cache, &good, NULL), GM_ERR_NULL);
+    free_fixture(&f);
+    memset(&f.cache, 0, sizeof f.cache); /* as after a refused gm_cache_init() */
+    GM_ASSERT_INT(gm_cache_penetration_at(&f.cache, &good, &r), GM_ERR_NULL);
+    GM_ASSERT_INT(gm_cache_fill(&f.cache, 0, 0), GM_ERR_NULL);
+    gm_cache_errors errors;
+    GM_ASSERT_INT(gm_cache_error(&f.cache, 1, 1, &errors), GM_ERR_NULL);
+}
+
+/* ---------------------------------------------------------------------------------------------
+ * Tooth passes
+ * ------------------------------------------------------------------------------------------- */
+
+/* delta times the length of the lines: quadratic in delta, piecewise linear in phase. */
+static void ideal_flanks_need_one_pass(void) {
+    for (int side = GM_DRIVE; side <= GM_COAST; side++) {
+        gm_test_context("side %d", side);
+        gm_cache_params params = default_params();
+        params.side = side;
+        fixture f;
+        memset(&f, 0, sizeof f);
+        f.pair = reference_pair(REFERENCE_FACE_WIDTH);
+        make_cache(&f, &params);
+        GM_ASSERT_INT(f.cache.passes, 1);
+        uint64_t seed = UINT64_C(88);
+        int count = 0;
+        for (int i = 0; i < 2000; i++) {
+            gm_position position = random_position(&f, &seed);
+            const double delta = gm_test_uniform(&seed, -10e-6, 30e-6);
+            position.offset = offset_of(&f, delta);
+            const gm_penetration exact = exact_at(&f, &position);
+            const gm_penetration r = looked_up_at(&f, &position);
+            count += was_looked_up(&f, &r);
+            if (delta <= 0.0) {
+                GM_ASSERT(r.penetration == 0.0);
+            }
+            /* A kink is a change of slope by delta / twist; a cubic that starts with the wrong one is off by
+             * 4/27 of the cell: 41 um and 1 um, of 9.5 mm and a length of 1.6: 4e-4 of the sum. */
+            GM_ASSERT_REL(r.penetration, exact.penetration, 5e-4);
+        }
+        GM_ASSERT(count > 900);
+        free_fixture(&f);
+    }
+}
+
+typedef struct small_flanks {
+    gm_flanks flanks;
+    double memory[2000];
+} small_flanks;
+
+/* Different teeth by their pitch alone, or all the same. */
+static void make_pitch(small_flanks *own, int teeth, int different) {
+    const gm_flanks_params params = {.teeth = teeth};
+    GM_ASSERT_INT(gm_flanks_init(&own->flanks, &params, own->memory, sizeof own->memory), GM_OK);
+    for (int tooth = 0; tooth < teeth; tooth++) {
+        const double pitch = different ? 1e-6 * (tooth % 7) : 2e-6;
+        GM_ASSERT_INT(gm_flanks_set_pitch(&own->flanks, GM_DRIVE, tooth, pitch), GM_OK);
+    }
+}
+
+static gm_pair pair_of_teeth(int pinion, int wheel) {
+    gm_pair_params params = reference_params(REFERENCE_FACE_WIDTH);
+    params.pinion_teeth = pinion;
+    params.wheel_teeth = wheel;
+    params.center_distance = 85e-3 * (pinion + wheel) / 86.0;
+    params.pinion_tip_radius = params.wheel_tip_radius = (double)NAN;
+    return make_pair(&params);
+}
+
+static void passes_are_those_that_happen(void) {
+    static const struct {
+        int pinion, wheel, pinion_differs, wheel_differs, passes;
+    } cases[] = {
+        {45, 41, 1, 1, 1845}, {45, 41, 1, 0, 45}, {45, 41, 0, 1, 41}, {45, 41, 0, 0, 1},
+        {40, 30, 1, 1, 120},  {40, 30, 0, 1, 30}, {30, 30, 1, 1, 30}, {20, 60, 1, 1, 60},
+    };
+    for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
+        gm_test_context("case %d", (int)i);
+        static small_flanks own[2];
+        fixture f;
+        memset(&f, 0, sizeof f);
+        f.pair = pair_of_teeth(cases[i].pinion, cases[i].wheel);
+        make_pitch(&own[0], cases[i].pinion, cases[i].pinion_differs);
+        make_pitch(&own[1], cases[i].wheel, cases[i].wheel_differs);
+        f.use[0] = &own[0].flanks;
+        f.use[1] = &own[1].flanks;
+        const gm_cache_params params = params_of(GM_DRIVE, 8, 8, 20e-6);
+        make_cache(&f, &params);
+        GM_ASSERT_INT(f.cache.passes, cases[i].passes);
+
+        /* All that a rotation brings together is looked up, each pass in a place of its own. */
+        for (int turned = -200; turned < 2000; turned += 3) {
+            gm_position position;
+            GM_ASSERT_INT(
+                gm_position_from_pinion_angle(&f.pair, (turned + 0.37) * f.pair.pinion.pitch_angle,
+                                              0.5 * f.pair.backlash + 5e-6, 0.0, &position),
+                GM_OK);
+            const gm_penetration exact = exact_at(&f, &position);
+            const gm_penetration r = looked_up_at(&f, &position);
+            GM_ASSERT(was_looked_up(&f, &r));
+            /* Steps of 2.5 um and kinks of several teeth within them. */
+            GM_ASSERT_NEAR(r.drive, exact.drive, 0.02, 1e-7);
+        }
+        free(f.memory);
+    }
+}
+
+/* Teeth that never meet, as with 40/30 teeth assembled one tooth further. */
+static void strangers_are_evaluated_exactly(void) {
+    static small_flanks own[2];
+    fixture f;
+    memset(&f, 0, sizeof f);
+    f.pair = pair_of_teeth(40, 30);
+    make_pitch(&own[0], 40, 1);
+    make_pitch(&own[1], 30, 1);
+    f.use[0] = &own[0].flanks;
+    f.use[1] = &own[1].flanks;
+    const gm_cache_params params = params_of(GM_DRIVE, 8, 8, 20e-6);
+    make_cache(&f, &params);
+    for (int pinion = 0; pinion < 40; pinion++) {
+        for (int wheel = 0; wheel < 30; wheel++) {
+            const gm_position position = {pinion, wheel, 1e-3, 0.5 * f.pair.backlash + 5e-6, 0.0};
+            const gm_penetration exact = exact_at(&f, &position);
+            const gm_penetration r = looked_up_at(&f, &position);
+            GM_ASSERT_INT(was_looked_up(&f, &r), (pinion - wheel) % 10 == 0);
+            if ((pinion - wheel) % 10 != 0) {
+                GM_ASSERT(memcmp(&r, &exact, sizeof r) == 0);
+            }
+        }
+    }
+    free(f.memory);
+}
+
+/* ---------------------------------------------------------------------------------------------
+ * Filling
+ * ------------------------------------------------------------------------------------------- */
+
+typedef struct filler {
+    gm_cache *cache;
+    int first, count, status;
+} filler;
+
+static void *fill(void *argument) {
+    filler *const work = argument;
+    work->status = gm_cache_fill(work->cache, work->first, work->count);
+    return NULL;
+}
+
+/* Several threads fill, then nothing is written any more; lazily the same comes out. */
+static void threads_may_fill_and_then_share(void) {
+    enum { THREADS = 3 };
+    const gm_cache_params params = params_of(GM_DRIVE, 4, 4, 20e-6);
+    fixture filled, lazy;
+    make_paper(&filled, &params);
+    make_paper(&lazy, &params);
+    const int passes = filled.cache.passes, share = passes / THREADS;
+    pthread_t threads[THREADS];
+    filler work[THREADS];
+    for (int t = 0; t < THREADS; t++) {
+        work[t] = (filler){&filled.cache, t * share, share, -99};
+        GM_ASSERT_INT(pthread_create(&threads[t], NULL, fill, &work[t]), 0);
+    }
+    for (int t = 0; t < THREADS; t++) {
+        pthread_join(threads[t], NULL);
+        GM_ASSERT_INT(work[t].status, GM_OK);
+    }
+    for (size_t i = 0; i < (size_t)passes * (size_t)filled.cache.columns; i++) {
+        if (isnan(filled.cache.starts[i])) {
+            GM_ASSERT_INT(i, -1);
+            break;
+        }
+    }
+    void *before = malloc(filled.size);
+    memcpy(before, filled.memory, filled.size);
+    uint64_t seed = UINT64_C(89);
+    for (int i = 0; i < 500; i++) {
+        gm_position position = random_position(&filled, &seed);
+        position.offset = offset_of(&filled, gm_test_uniform(&seed, -20e-6, 20e-6));
+        const gm_penetration a = looked_up_at(&filled, &position);
+        const gm_penetration b = looked_up_at(&lazy, &position);
+        GM_ASSERT(memcmp(&a, &b, sizeof a) == 0);
+    }
+    GM_ASSERT(memcmp(before, filled.memory, filled.size) == 0);
+    free(before);
+
+    GM_ASSERT_INT(gm_cache_fill(NULL, 0, 1), GM_ERR_NULL);
+    GM_ASSERT_INT(gm_cache_fill(&lazy.cache, -1, 1), GM_ERR_PARAMETER);
+    GM_ASSERT_INT(gm_cache_fill(&lazy.cache, 0, -1), GM_ERR_PARAMETER);
+    GM_ASSERT_INT(gm_cache_fill(&lazy.cache, passes, 1), GM_ERR_PARAMETER);
+    GM_ASSERT_INT(gm_cache_fill(&lazy.cache, 1, passes), GM_ERR_PARAMETER);
+    GM_ASSERT_INT(gm_cache_fill(&lazy.cache, passes, 0), GM_OK);
+    free_fixture(&filled);
+    free_fixture(&lazy);
+}
+
+/* A run pays for what it meets: two columns per state in passes that are all different. */
+static void only_what_is_met_is_filled(void) {
+    const gm_cache_params params = default_params();
+    fixture f;
+    make_paper(&f, &params);
+    for (int pass = 0; pass < 10; pass++) {
+        const gm_position position = {pass, pass, 1e-3, 0.5 * f.pair.backlash, 0.0};
+        (void)looked_up_at(&f, &position);
+        (void)looked_up_at(&f, &position);
+    }
+    int filled = 0;
+    for (size_t i = 0; i < (size_t)f.cache.passes * (size_t)f.cache.columns; i++) {
+        filled += !isnan(f.cache.starts[i]);
+    }
+    GM_ASSERT_INT(filled, 20);
+    free_fixture(&f);
+}
+
+/* ---------------------------------------------------------------------------------------------
+ * Size and refusals
+ * ------------------------------------------------------------------------------------------- */
+
+static void memory_grows_with_the_resolution_alone(void) {
+    const gm_pair pair = reference_pair(REFERENCE_FACE_WIDTH);
+    static small_flanks own[2];
+    make_pitch(&own[0], 45, 1);
+    make_pitch(&own[1], 41, 1);
+    size_t before = 0;
+    for (int cells = 4; cells <= 64; cells++) {
+        gm_test_context("%d cells", cells);
+        const gm_cache_params in_phase = params_of(GM_DRIVE, cells, 16, 20e-6);
+        const size_t size = gm_cache_size(&in_phase, &pair, NULL, NULL);
+        GM_ASSERT(size >= before);
+        before = size;
+        /* 16 bytes per node at least, and 9 columns more than cells at most: at the kinks. */
+        GM_ASSERT(size >= (size_t)cells * 17 * 16);
+        GM_ASSERT(size <= ((size_t)cells + 10) * (17 * 16 + 16));
+        const gm_cache_params in_depth = params_of(GM_DRIVE, 16, cells, 20e-6);
+        const gm_cache_params one_more = params_of(GM_DRIVE, 16, cells + 1, 20e-6);
+        GM_ASSERT(gm_cache_size(&in_depth, &pair, NULL, NULL) <
+                  gm_cache_size(&one_more, &pair, NULL, NULL));
+    }
+    const gm_cache_params params = default_params();
+    const size_t one = gm_cache_size(&params, &pair, NULL, NULL);
+    const size_t all = gm_cache_size(&params, &pair, &own[0].flanks, &own[1].flanks);
+    gm_test_context("all passes");
+    GM_ASSERT(all > 1700 * one && all < 1845 * one);
+    GM_ASSERT(all <= 30000000);
+}
+
+static void assert_refused(const gm_cache_params *params, const gm_pair *pair,
+                           const gm_flanks *pinion, const gm_flanks *wheel, int status) {
+    double memory[4000];
+    gm_cache cache;
+    memset(&cache, 1, sizeof cache);
+    GM_ASSERT_INT(gm_cache_size(params, pair, pinion, wheel), 0);
+    GM_ASSERT_INT(gm_cache_init(&cache, params, pair, pinion, wheel, memory, sizeof memory),
+                  status);
+    GM_ASSERT(cache.pair == NULL && cache.values == NULL && cache.passes == 0);
+}
+
+static void wrong_calls_are_refused(void) {
+    const gm_pair pair = reference_pair(REFERENCE_FACE_WIDTH), spur = spur_pair();
+    const gm_cache_params good = params_of(GM_DRIVE, 4, 4, 20e-6);
+    const double p_bt = pair.transverse_base_pitch;
+    const gm_cache_params wrong[] = {
+        params_of(-1, 4, 4, 20e-6),
+        params_of(2, 4, 4, 20e-6),
+        params_of(GM_DRIVE, 3, 4, 20e-6),
+        params_of(GM_DRIVE, 10001, 4, 20e-6),
+        params_of(GM_DRIVE, 4, 3, 20e-6),
+        params_of(GM_DRIVE, 4, 10001, 20e-6),
+        params_of(GM_DRIVE, 4, 4, 0.0),
+        params_of(GM_DRIVE, 4, 4, -1e-6),
+        params_of(GM_DRIVE, 4, 4, (double)NAN),
+        params_of(GM_DRIVE, 4, 4, HUGE_VAL),
+        params_of(GM_DRIVE, 4, 4, 0.26 * p_bt),
+    };
+    for (size_t i = 0; i < sizeof wrong / sizeof wrong[0]; i++) {
+        gm_test_context("params %d", (int)i);
+        assert_refused(&wrong[i], &pair, NULL, NULL, GM_ERR_PARAMETER);
+    }
+    gm_test_context("spur");
+    assert_refused(&good, &spur, NULL, NULL, GM_ERR_GEOMETRY);
+    gm_test_context("other teeth");
+    static small_flanks own;
+    make_pitch(&own, 44, 1);
+    assert_refused(&good, &pair, &own.flanks, NULL, GM_ERR_TOOTH);
+    assert_refused(&good, &pair, NULL, &own.flanks, GM_ERR_TOOTH);
+    gm_test_context("NULL");
+    assert_refused(NULL, &pair, NULL, NULL, GM_ERR_NULL);
+    assert_refused(&good, NULL, NULL, NULL, GM_ERR_NULL);
+    gm_cache_params_default(NULL);
+
+    gm_test_context("memory");
+    double memory[2000];
+    gm_cache cache;
+    const size_t size = gm_cache_size(&good, &pair, NULL, NULL);
+    GM_ASSERT(size > 0 && size <= sizeof memory);
+    GM_ASSERT_INT(gm_cache_init(&cache, &good, &pair, NULL, NULL, memory, size - 1), GM_ERR_MEMORY);
+    GM_ASSERT_INT(gm_cache_init(&cache, &good, &pair, NULL, NULL, NULL, size), GM_ERR_NULL);
+    GM_ASSERT(cache.pair == NULL);
+    GM_ASSERT_INT(gm_cache_init(NULL, &good, &pair, NULL, NULL, memory, size), GM_ERR_NULL);
+    GM_ASSERT_INT(gm_cache_init(&cache, &good, &pair, NULL, NULL, memory, size), GM_OK);
+    GM_ASSERT_INT(gm_cache_fill(&cache, 0, 1), GM_OK);
+}
+
+/* Two gears of 20000 teeth, all different: 4e8 tooth passes. */
+static void more_passes_than_any_memory_are_refused(void) {
+    const gm_pair pair = pair_of_teeth(20011, 20021);
+    const gm_cache_params params = params_of(GM_DRIVE, 4, 4, 20e-6);
+    const int teeth[2] = {20011, 20021};
+    gm_flanks flanks[2];
+    void *memory[2];
+    for (int gear = 0; gear < 2; gear++) {
+        const gm_flanks_params sizes = {.teeth = teeth[gear]};
+        const size_t size = gm_flanks_size(&sizes);
+        memory[gear] = malloc(size);
+        GM_ASSERT_INT(gm_flanks_init(&flanks[gear], &sizes, memory[gear], size), GM_OK);
+        GM_ASSERT_INT(gm_flanks_set_pitch(&flanks[gear], GM_DRIVE, 1, 1e-6), GM_OK);
+    }
+    assert_refused(&params, &pair, &flanks[0], &flanks[1], GM_ERR_MEMORY);
+    free(memory[0]);
+    free(memory[1]);
+}
+
+int main(int argc, char **argv) {
+    static const gm_test tests[] = {
+        GM_TEST(error_is_as_stated),
+        GM_TEST(error_can_be_measured),
+        GM_TEST(nodes_are_exact),
+        GM_TEST(derivatives_are_those_of_the_sum),
+        GM_TEST(beyond_the_depth_it_is_exact),
+        GM_TEST(below_the_first_touch_it_is_zero),
+        GM_TEST(sum_rises_from_zero_without_a_dip),
+        GM_TEST(other_flank_is_exact),
+        GM_TEST(bad_states_are_refused_as_without_a_cache),
+        GM_TEST(ideal_flanks_need_one_pass),
+        GM_TEST(passes_are_those_that_happen),
+        GM_TEST(strangers_are_evaluated_exactly),
+        GM_TEST(threads_may_fill_and_then_share),
+        GM_TEST(only_what_is_met_is_filled),
+        GM_TEST(memory_grows_with_the_resolution_alone),
+        GM_TEST(wrong_calls_are_refused),
+        GM_TEST(more_passes_than_any_memory_are_refused),
+    };
+    return gm_test_main("unit.cache", tests, GM_TEST_COUNT(tests), argc, argv);
+}
