@@ -168,28 +168,36 @@ typedef struct piece {
     double second_slope, second_rate;
 } piece;
 
-/* Adds the part [begin, end] (from the start of the piece) in which f > 0. */
-static inline void add_touching(const piece *part, double begin, double end, int wanted,
-                                gmi_line_sum *total) {
-    const quadratic f = part->f;
+/* Integral of the quadratic about the middle of [begin, end]: no differences of cubes. */
+static inline double integral_of(const quadratic *f, double length, double middle) {
+    const double at_middle = f->value + middle * (2.0 * f->half_slope + middle * f->curvature);
+    return length * (at_middle + f->curvature * (length * length * (1.0 / 12.0)));
+}
+
+/* First moments of the part [begin, end] (from the start of the piece), in which f > 0. */
+static inline void add_moments(const piece *part, double begin, double end, gmi_line_sum *total) {
     const double length = end - begin;
     const double middle = 0.5 * (begin + end);
-    /* Integral of the quadratic about the middle: no differences of cubes. */
-    const double at_middle = f.value + middle * (2.0 * f.half_slope + middle * f.curvature);
-    const double second = length * length * (1.0 / 12.0);
-    const double integral = length * (at_middle + f.curvature * second);
-    total->sum += integral;
+    const double s = part->s + middle;
+    const double slope_at_middle = 2.0 * (part->f.half_slope + middle * part->f.curvature);
+    total->sum_t1 += s * integral_of(&part->f, length, middle) +
+                     length * (length * length * (1.0 / 12.0)) * slope_at_middle;
+    total->contact_t1 += s * length;
+}
+
+/* Adds the part [begin, end] (from the start of the piece), in which f > 0. */
+static inline void add_touching(const piece *part, double begin, double end, int wanted,
+                                gmi_line_sum *total) {
+    const double length = end - begin;
+    const double middle = 0.5 * (begin + end);
+    total->sum += integral_of(&part->f, length, middle);
     total->contact += length;
     if (wanted & GMI_DERIVATIVES) {
         total->pinion += length * (part->first_slope + middle * part->first_rate);
         total->wheel += length * (part->second_slope + middle * part->second_rate);
     }
-    if (wanted & GMI_MOMENTS) {
-        const double s = part->s + middle;
-        const double slope_at_middle = 2.0 * (f.half_slope + middle * f.curvature);
-        total->sum_t1 += s * integral + length * second * slope_at_middle;
-        total->contact_t1 += s * length;
-    }
+    if (wanted & GMI_MOMENTS)
+        add_moments(part, begin, end, total);
 }
 
 /* A piece in which f may change its sign: split at the roots of the quadratic. */
@@ -226,6 +234,17 @@ typedef struct walk_state {
     double two_first, two_second; /* twice the sums of d deviation / d u of both flanks */
 } walk_state;
 
+SPECIALIZED piece piece_ahead(const walk_state *at, double length, int wanted) {
+    const piece part = {wanted & GMI_MOMENTS ? at->faces + at->s : 0.0,
+                        length,
+                        at->f,
+                        at->first.slope,
+                        at->first.slope_rate,
+                        at->second.slope,
+                        at->second.slope_rate};
+    return part;
+}
+
 /* Integrates the piece up to `end` and goes there. */
 SPECIALIZED void advance(walk_state *at, double end, int wanted, gmi_line_sum *split) {
     /* A quadratic stays within the hull of its three Bezier points, and their mean is its own. */
@@ -236,21 +255,19 @@ SPECIALIZED void advance(walk_state *at, double end, int wanted, gmi_line_sum *s
     const double end_value = control + length * end_half_slope;
     const double first_slope = at->first.slope + length * at->first.slope_rate;
     const double second_slope = at->second.slope + length * at->second.slope_rate;
-    if (!(wanted & GMI_MOMENTS) && smaller(smaller(value, control), end_value) > 0.0) {
+    if (smaller(smaller(value, control), end_value) > 0.0) {
         at->three_sums += length * (value + control + end_value);
         at->contact += length;
         if (wanted & GMI_DERIVATIVES) {
             at->two_first += length * (at->first.slope + first_slope);
             at->two_second += length * (at->second.slope + second_slope);
         }
+        if (wanted & GMI_MOMENTS) {
+            const piece part = piece_ahead(at, length, wanted);
+            add_moments(&part, 0.0, length, split);
+        }
     } else if (larger(larger(value, control), end_value) > 0.0) {
-        const piece part = {wanted & GMI_MOMENTS ? at->faces + at->s : 0.0,
-                            length,
-                            at->f,
-                            at->first.slope,
-                            at->first.slope_rate,
-                            at->second.slope,
-                            at->second.slope_rate};
+        const piece part = piece_ahead(at, length, wanted);
         add_split(&part, wanted, split);
     }
     at->s = end;
