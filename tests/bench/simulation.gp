@@ -17,13 +17,14 @@ do for [format in 'png svg'] {
     set multiplot layout 1,2
     set title 'Error of the contact force (80 N m, deviations times 0.3)'
     set xlabel 'right-hand sides per tooth pass'
-    set ylabel 'error / variation of the force, rms'
+    set ylabel 'error of the force, rms'
     set logscale y
     set format y '10^{%L}'
     set xrange [0:*]
     set arrow 1 from graph 0, first 1e-3 to graph 1, first 1e-3 nohead dt (8,5) lc '#d44473' lw 2
-    plot folder . '/tolerance.csv' skip 1 using 7:8 with linespoints lw 2 pt 7 lc '#181d47' notitle, \
-         '' skip 1 using 7:8:1 with labels left offset 0.6,0.6 font ',10' notitle
+    plot folder . '/tolerance.csv' skip 1 using 7:9 with linespoints lw 2 pt 7 lc '#181d47' title 'per vibration', \
+         '' skip 1 using 7:8 with linespoints lw 2 pt 5 lc '#863180' title 'per force', \
+         '' skip 1 using 7:9:1 with labels left offset 0.6,0.6 font ',10' notitle
     unset arrow 1
     unset logscale y
     set format y '%g'
