@@ -147,6 +147,18 @@ static int build(void) {
     return gm_flanks_build(&flanks, &memory, TEETH, &deviations, &pitch, NULL, &error);
 }
 
+/* The same with a crowning on both sides. */
+static int build_with_design(void) {
+    const gm_modification crowning = {
+        .kind = GM_MOD_CROWNING, .shape = GM_SHAPE_PARABOLIC, .amount = 5e-6};
+    const gm_gear gear = {.teeth = TEETH, .tip_radius = 2e-2, .tip_roll_length = 1e-2};
+    const gm_modifications design = {&crowning, 1, &gear, 1e-2};
+    gm_flanks_options options;
+    gm_flanks_options_default(&options);
+    options.drive_modifications = options.coast_modifications = &design;
+    return gm_flanks_build(&flanks, &memory, TEETH, &deviations, &pitch, &options, &error);
+}
+
 static int write_deviations(void) {
     return gm_deviations_write(&deviations, IO_TEST_PATH("out.csv"), &error);
 }
@@ -219,6 +231,9 @@ static void building_flanks_survives_any_failed_allocation(void) {
     GM_ASSERT_INT(read_pitch(), GM_IO_OK);
     survives_any_failed_allocation(build, 1); /* the flanks */
     GM_ASSERT_INT(flanks.drive.count, 2);
+    gm_flanks_memory_free(memory);
+    survives_any_failed_allocation(build_with_design, 4); /* also two designs and a table */
+    GM_ASSERT_INT(flanks.coast.face_nodes - 1, 23);       /* 5 um / 23^2 is below 0.01 um */
     free_all();
     GM_ASSERT_INT(alive, 0);
 }

@@ -3,7 +3,7 @@
 
 /*
  * From the contents of flank files to the prepared flanks of a gear: which set serves which tooth, what
- * scale and profile window make of its nodes.
+ * scale and profile window make of its nodes, and the designed modifications on top.
  */
 
 #include <math.h>
@@ -11,6 +11,7 @@
 #include <string.h>
 
 #include "deviation_file.h"
+#include "flank_design.h"
 #include "flank_slot.h"
 #include "io_error.h"
 #include "pitch_file.h"
@@ -21,7 +22,9 @@ typedef struct builder {
     const gm_deviations *deviations; /* NULL = none */
     const int *set_of_slot;          /* set of every slot, -1 = none */
     const gm_flanks_options *options;
-    double *nodes; /* [face_nodes][profile_nodes] one table as it is handed to the core */
+    double *nodes;        /* [face_nodes][profile_nodes] one set, scaled; NULL without deviations */
+    gmi_design design[2]; /* of the drive and of the coast side */
+    double *table;        /* room for one table of either design */
     gm_io_error *error;
 } builder;
 
@@ -36,6 +39,9 @@ void gm_flanks_options_default(gm_flanks_options *options) {
         options->profile_from = 0.0;
         options->profile_to = 1.0;
         options->profile_blend = 0.1;
+        options->drive_modifications = NULL;
+        options->coast_modifications = NULL;
+        options->modification_tolerance = 1e-8;
     }
 }
 
@@ -74,16 +80,21 @@ static int shared_set(const builder *build, int side) {
     return set >= 0 ? set : build->set_of_slot[gmi_slot(GMI_ALL, GMI_ALL)];
 }
 
-/* A shared set takes one place, however many teeth it serves. */
+static int has_design(const builder *build, int side) {
+    return build->design[side].values != NULL;
+}
+
+/* A shared set takes one place, however many teeth it serves; so does the design of teeth without a set. */
 static int count_tables(const builder *build, int teeth, int side) {
+    int tables = has_design(build, side);
     if (build->deviations == NULL) {
-        return 0;
+        return tables;
     }
-    int own = 0;
+    tables = tables || shared_set(build, side) >= 0;
     for (int tooth = 0; tooth < teeth; tooth++) {
-        own += own_set(build, tooth, side) >= 0 ? 1 : 0;
+        tables += own_set(build, tooth, side) >= 0 ? 1 : 0;
     }
-    return own + (shared_set(build, side) >= 0 ? 1 : 0);
+    return tables;
 }
 
 /* ---------------------------------------------------------------------------------------------
@@ -114,12 +125,28 @@ static void fill_nodes(const builder *build, const double *values) {
     }
 }
 
+/* The table of a set with the design on top; set -1 = the design alone. */
+static const double *make_table(const builder *build, int side, int set) {
+    if (set >= 0) {
+        fill_nodes(build, build->deviations->sets[set].values);
+    }
+    if (!has_design(build, side)) {
+        return build->nodes;
+    }
+    gmi_design_table(&build->design[side], set >= 0 ? build->nodes : NULL, build->table);
+    return build->table;
+}
+
 static int set_table(const builder *build, int side, int tooth, int set) {
-    fill_nodes(build, build->deviations->sets[set].values);
-    const int status = gm_flanks_set_table(build->flanks, side, tooth, build->nodes,
+    const int status = gm_flanks_set_table(build->flanks, side, tooth, make_table(build, side, set),
                                            build->options->normal_factor);
     if (status == GM_OK) {
         return GM_IO_OK;
+    }
+    if (set < 0) {
+        return gmi_error_set(build->error, GM_IO_ERR_OPTION, 0,
+                             "the modifications cannot be used with these options: %s",
+                             gm_status_text(status));
     }
     return gmi_error_set(build->error, GM_IO_ERR_OPTION, 0,
                          "set %d of the deviations cannot be used with these options: %s", set,
@@ -127,15 +154,13 @@ static int set_table(const builder *build, int side, int tooth, int set) {
 }
 
 static int set_tables(const builder *build, int side) {
-    if (build->deviations == NULL) {
-        return GM_IO_OK;
-    }
+    const int has_sets = build->deviations != NULL;
     int status = GM_IO_OK;
-    const int shared = shared_set(build, side);
-    if (shared >= 0) {
+    const int shared = has_sets ? shared_set(build, side) : -1;
+    if (shared >= 0 || has_design(build, side)) {
         status = set_table(build, side, GM_ALL_TEETH, shared);
     }
-    for (int tooth = 0; status == GM_IO_OK && tooth < build->flanks->teeth; tooth++) {
+    for (int tooth = 0; has_sets && status == GM_IO_OK && tooth < build->flanks->teeth; tooth++) {
         const int own = own_set(build, tooth, side);
         if (own >= 0) {
             status = set_table(build, side, tooth, own);
@@ -165,16 +190,27 @@ static int set_pitch(const builder *build, int side, const double *deviation, co
  * The build
  * ------------------------------------------------------------------------------------------- */
 
+/* Grid lines of one side along t1 (axis 0) or t2 (axis 1). */
+static int grid_nodes(const builder *build, int side, int axis) {
+    if (has_design(build, side)) {
+        return build->design[side].nodes[axis];
+    }
+    if (build->deviations == NULL) {
+        return 0;
+    }
+    return axis == 0 ? build->deviations->face_nodes : build->deviations->profile_nodes;
+}
+
 static gm_flanks_params sizes_of(const builder *build, int teeth) {
     gm_flanks_params params;
     memset(&params, 0, sizeof params);
     params.teeth = teeth;
-    if (build->deviations != NULL) {
-        params.drive_tables = count_tables(build, teeth, GM_DRIVE);
-        params.coast_tables = count_tables(build, teeth, GM_COAST);
-        params.drive_face_nodes = params.coast_face_nodes = build->deviations->face_nodes;
-        params.drive_profile_nodes = params.coast_profile_nodes = build->deviations->profile_nodes;
-    }
+    params.drive_tables = count_tables(build, teeth, GM_DRIVE);
+    params.coast_tables = count_tables(build, teeth, GM_COAST);
+    params.drive_face_nodes = grid_nodes(build, GM_DRIVE, 0);
+    params.drive_profile_nodes = grid_nodes(build, GM_DRIVE, 1);
+    params.coast_face_nodes = grid_nodes(build, GM_COAST, 0);
+    params.coast_profile_nodes = grid_nodes(build, GM_COAST, 1);
     return params;
 }
 
@@ -197,13 +233,33 @@ static int make_ideal(const builder *build, int teeth, void **memory) {
                                "the flanks cannot be prepared: %s", gm_status_text(status));
 }
 
-static int fill_flanks(builder *build, const gm_pitch *pitch) {
-    int status = GM_IO_OK;
-    if (build->deviations != NULL) {
-        build->nodes = malloc((size_t)build->deviations->face_nodes *
-                              (size_t)build->deviations->profile_nodes * sizeof *build->nodes);
-        status = build->nodes != NULL ? GM_IO_OK : fail_memory(build->error);
+static int allocate_table(double **table, size_t nodes, gm_io_error *error) {
+    if (nodes > 0) {
+        *table = malloc(nodes * sizeof **table);
     }
+    return nodes == 0 || *table != NULL ? GM_IO_OK : fail_memory(error);
+}
+
+static size_t design_size(const gmi_design *design) {
+    return (size_t)design->nodes[0] * (size_t)design->nodes[1];
+}
+
+/* Room for one table of a set, and for one with the design on top. */
+static int allocate_tables(builder *build) {
+    const size_t drive = design_size(&build->design[GM_DRIVE]);
+    const size_t coast = design_size(&build->design[GM_COAST]);
+    size_t set = 0;
+    if (build->deviations != NULL) {
+        set = (size_t)build->deviations->face_nodes * (size_t)build->deviations->profile_nodes;
+    }
+    const int status = allocate_table(&build->nodes, set, build->error);
+    return status == GM_IO_OK
+               ? allocate_table(&build->table, drive > coast ? drive : coast, build->error)
+               : status;
+}
+
+static int fill_flanks(builder *build, const gm_pitch *pitch) {
+    int status = allocate_tables(build);
     if (status == GM_IO_OK) {
         status = set_tables(build, GM_DRIVE);
     }
@@ -217,8 +273,23 @@ static int fill_flanks(builder *build, const gm_pitch *pitch) {
         status = set_pitch(build, GM_COAST, pitch->coast, pitch->coast_set);
     }
     free(build->nodes);
-    build->nodes = NULL;
+    free(build->table);
+    build->nodes = build->table = NULL;
     return status;
+}
+
+static int make_design(builder *build, int side, int teeth) {
+    const gm_modifications *modifications = side == GM_DRIVE ? build->options->drive_modifications
+                                                             : build->options->coast_modifications;
+    const int is_for_gear =
+        modifications == NULL || modifications->gear == NULL || modifications->gear->teeth == teeth;
+    if (!is_for_gear) {
+        return gmi_error_set(build->error, GM_IO_ERR_OPTION, 0,
+                             "the modifications are for %d teeth; the gear has %d",
+                             modifications->gear->teeth, teeth);
+    }
+    return gmi_design_make(&build->design[side], modifications, build->deviations,
+                           build->options->modification_tolerance, build->error);
 }
 
 static int check_same_teeth(int teeth, int got, const char *what, gm_io_error *error) {
@@ -251,12 +322,17 @@ static int build_flanks(builder *build, int teeth, const gm_pitch *pitch, void *
         status = gmi_deviations_index(build->deviations, &set_of_slot, build->error);
         build->set_of_slot = set_of_slot;
     }
+    for (int side = GM_DRIVE; status == GM_IO_OK && side <= GM_COAST; side++) {
+        status = make_design(build, side, teeth);
+    }
     if (status == GM_IO_OK) {
         status = make_ideal(build, teeth, memory);
     }
     if (status == GM_IO_OK) {
         status = fill_flanks(build, pitch);
     }
+    gmi_design_free(&build->design[GM_DRIVE]);
+    gmi_design_free(&build->design[GM_COAST]);
     free(set_of_slot);
     return status;
 }
@@ -275,7 +351,10 @@ int gm_flanks_build(gm_flanks *flanks, void **memory, int teeth, const gm_deviat
     }
     gm_flanks_options defaults;
     gm_flanks_options_default(&defaults);
-    builder build = {flanks, deviations, NULL, options != NULL ? options : &defaults, NULL, error};
+    builder build = {.flanks = flanks,
+                     .deviations = deviations,
+                     .options = options != NULL ? options : &defaults,
+                     .error = error};
 
     const int status = build_flanks(&build, teeth, pitch, memory);
     if (status != GM_IO_OK) {

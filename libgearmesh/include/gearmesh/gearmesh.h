@@ -341,6 +341,125 @@ GM_API int gm_flanks_set_table(gm_flanks *flanks, int side, int tooth, const dou
 GM_API int gm_flanks_set_pitch(gm_flanks *flanks, int side, int tooth, double deviation);
 
 /* ---------------------------------------------------------------------------------------------
+ * Designed modifications: what the drawing wants beside the involute helicoid
+ *
+ * Terms, signs, formulae and the error bound with a sketch: libgearmesh/docs/modifications.md
+ * ------------------------------------------------------------------------------------------- */
+
+/**
+ * Kinds of modification [ISO21771]. Face I is t1 = 0, face II is t1 = 1. Deviations are along the surface
+ * normal, > 0 material added. Slopes and twist turn about the middle of the flank, which they leave as it is.
+ */
+enum gm_modification_kind {
+    GM_MOD_HELIX_SLOPE = 0,      /**< C_H_beta: amount > 0 adds material towards face II */
+    GM_MOD_CROWNING = 1,         /**< C_beta: amount removed at both faces, none at mid-face */
+    GM_MOD_END_RELIEF_I = 2,     /**< C_beta_I: amount removed at face I */
+    GM_MOD_END_RELIEF_II = 3,    /**< C_beta_II: amount removed at face II */
+    GM_MOD_PROFILE_SLOPE = 4,    /**< C_H_alpha: amount > 0 adds material towards the tip */
+    GM_MOD_PROFILE_CROWNING = 5, /**< C_alpha: amount removed at tip and start of the profile */
+    GM_MOD_TIP_RELIEF = 6,       /**< C_alpha_a: amount removed at the tip */
+    GM_MOD_ROOT_RELIEF = 7,      /**< C_alpha_f: amount removed at the start of the profile */
+    GM_MOD_TWIST =
+        8, /**< S_alpha: profile slope at face II less that at face I (= helix slope at the
+                             tip less that at the start of the profile, S_beta) */
+    GM_MOD_TIP_CORNER_I = 9,    /**< triangular relief: amount removed at the corner tip, face I */
+    GM_MOD_TIP_CORNER_II = 10,  /**< the same at tip, face II */
+    GM_MOD_ROOT_CORNER_I = 11,  /**< start of the profile, face I */
+    GM_MOD_ROOT_CORNER_II = 12, /**< start of the profile, face II */
+    GM_MODIFICATION_KINDS = 13  /**< how many kinds there are */
+};
+
+/** How a relief or crowning runs from nothing to its amount over its length. */
+enum gm_modification_shape {
+    GM_SHAPE_LINEAR = 0,    /**< with a kink where the range begins; not for crownings */
+    GM_SHAPE_PARABOLIC = 1, /**< tangent to the ideal flank where the range begins */
+    GM_SHAPE_CIRCULAR = 2   /**< a circle tangent there, over the length in metres */
+};
+
+/** What the profile range of a relief is given by. */
+enum gm_modification_range {
+    GM_RANGE_LENGTH = 0, /**< roll length from the tip, or from the start of the profile (m) */
+    GM_RANGE_SHARE = 1,  /**< the same as a share of the active profile, 0 .. 1 */
+    GM_RANGE_RADIUS = 2 /**< radius up to which the relief reaches, from the tip or the start (m) */
+};
+
+/** Largest number of modifications of a flank. */
+#define GM_MODIFICATIONS_MAX 1000
+
+/** One designed modification of a flank. Fields that its kind does not use are ignored. */
+typedef struct gm_modification {
+    int kind;             /**< enum gm_modification_kind */
+    int shape;            /**< enum gm_modification_shape: reliefs, corners and crownings */
+    int profile_range_by; /**< enum gm_modification_range: tip and root reliefs, corners */
+    double amount; /**< m, |amount| <= 10 mm; reliefs and corners: >= 0. Circular: at most half the
+                          length that it runs over */
+    double face_range;    /**< end reliefs and corners: length from the face, 0 < range <= b (m) */
+    double profile_range; /**< tip and root reliefs, corners: as profile_range_by says */
+} gm_modification;
+
+/** The modifications of one flank of a gear: they add up. The pointers must outlive the calls. */
+typedef struct gm_modifications {
+    const gm_modification *list; /**< [count] */
+    int count;                   /**< 0 .. GM_MODIFICATIONS_MAX */
+    const gm_gear *gear;         /**< of a pair; gives radii and roll lengths */
+    double face_width;           /**< of that pair (m) */
+} gm_modifications;
+
+/** A grid for a table of modifications. */
+typedef struct gm_modifications_grid {
+    int face_nodes;    /**< grid lines along t1 */
+    int profile_nodes; /**< grid lines along t2 */
+    double error;      /**< the bilinear table differs nowhere by more, along the normal (m) */
+} gm_modifications_grid;
+
+/**
+ * Checks the modifications of a flank.
+ *
+ * @param[in]  modifications  the modifications
+ * @param[out] index          which one is at fault, -1 = none in particular. May be NULL
+ * @param[out] field          name of its field, a constant string; NULL if all is well. May be NULL
+ * @param[out] requirement    what would be right, a constant string; NULL if all is well. May be NULL
+ * @return GM_OK, GM_ERR_NULL, GM_ERR_PARAMETER
+ */
+GM_API int gm_modifications_check(const gm_modifications *modifications, int *index,
+                                  const char **field, const char **requirement);
+
+/**
+ * Exact sum of the modifications at a point, along the surface normal (m). NaN where
+ * gm_modifications_check() would not return GM_OK, or for a point outside 0 <= t1, t2 <= 1.
+ */
+GM_API double gm_modifications_value(const gm_modifications *modifications, double t1, double t2);
+
+/**
+ * Finds a uniform grid on which a bilinear table of the modifications is true to a tolerance. Few lines are
+ * preferred, and lines where linear reliefs begin. If no grid of 262144 nodes is fine enough (a linear
+ * triangular relief has a kink across the grid), one of the best is given: its error says so.
+ *
+ * @param[in]  modifications  the modifications
+ * @param[in]  face_nodes     of a table that they are to be added to: all its nodes are kept, so that it
+ *                            can be resampled exactly. 2 .. 10000; 2 = no such table
+ * @param[in]  profile_nodes  as for the face
+ * @param[in]  tolerance      >= 1e-12 m; 1e-8 m suits most purposes
+ * @param[out] grid           the grid and a guaranteed bound of its error; 0 nodes and NaN on an error
+ * @return GM_OK, GM_ERR_NULL, GM_ERR_PARAMETER
+ */
+GM_API int gm_modifications_grid_find(const gm_modifications *modifications, int face_nodes,
+                                      int profile_nodes, double tolerance,
+                                      gm_modifications_grid *grid);
+
+/**
+ * Adds the modifications to the nodes of a table as gm_flanks_set_table() takes it.
+ *
+ * @param[in]     modifications  the modifications
+ * @param[in]     face_nodes     2 .. 10000
+ * @param[in]     profile_nodes  2 .. 10000
+ * @param[in,out] deviation      [face_nodes][profile_nodes] along the surface normal (m)
+ * @return GM_OK, GM_ERR_NULL, GM_ERR_PARAMETER; on an error nothing is changed
+ */
+GM_API int gm_modifications_add(const gm_modifications *modifications, int face_nodes,
+                                int profile_nodes, double *deviation);
+
+/* ---------------------------------------------------------------------------------------------
  * Penetration
  * ------------------------------------------------------------------------------------------- */
 

@@ -106,6 +106,12 @@ typedef struct gm_flanks_options {
         profile_from;  /**< deviations (not pitch) count in profile_from <= t2 <= profile_to [0] */
     double profile_to; /**< [1] */
     double profile_blend; /**< width in t2 of the linear ramps to zero outside that range [0.1] */
+
+    /* Designed modifications of all teeth, added to what the files say. Scale and profile window do not act on
+     * them, the normal factor does. Must be for a gear with this number of teeth. */
+    const gm_modifications *drive_modifications; /**< NULL = none [NULL] */
+    const gm_modifications *coast_modifications; /**< likewise [NULL] */
+    double modification_tolerance; /**< see gm_modifications_grid_find(), >= 1e-12 m [1e-8] */
 } gm_flanks_options;
 
 GM_API void gm_flanks_options_default(gm_flanks_options *options);
@@ -113,7 +119,8 @@ GM_API void gm_flanks_options_default(gm_flanks_options *options);
 /**
  * Builds the prepared flanks of a gear. The more special set wins (tooth and flank, then tooth, then
  * flank, then `*`,`*`). Scale and profile window act on node values, so that a table stays bilinear.
- * A set for all teeth is kept once per side, not once per tooth.
+ * A set for all teeth is kept once per side, not once per tooth. With modifications the tables of a side have
+ * the grid that gm_modifications_grid_find() gives for those of the deviations (2 x 2 without).
  *
  * @param[out] flanks      the flanks
  * @param[out] memory      what they live in: free it with gm_flanks_memory_free() after the last use
