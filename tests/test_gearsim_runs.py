@@ -286,16 +286,27 @@ class Solver(Case):
         self.assertLess(largest_difference(self.run_columns(self.NOISY)["dte_um"], exact), 0.02)
 
     def test_methods_agree(self):
-        adams, bdf = self.tolerance(1e-8, "solver.method=adams"), self.tolerance(1e-8, "solver.method=bdf")
-        self.assertLess(largest_difference(adams, bdf), 1e-4)
-        self.assertNotEqual(adams, bdf)
+        adams = self.tolerance(1e-8, "solver.method=adams")
+        for method in ("bdf", "erk"):
+            other = self.tolerance(1e-8, f"solver.method={method}")
+            self.assertLess(largest_difference(adams, other), 1e-4, method)
+            self.assertNotEqual(adams, other)
+
+    def test_explicit_method_has_the_accuracy_of_the_default_and_no_jacobians(self):
+        exact = self.tolerance(1e-10)
+        errors = [largest_difference(self.tolerance(1e-4, f"solver.method={name}"), exact) for name in ("adams", "erk")]
+        self.assertLess(errors[1], errors[0])
+        result = self.gearsim([*self.NOISY, "solver.method=erk"], "--output", "run.csv")
+        self.assertRegex(result.stderr, "[1-9][0-9]* right-hand sides, 0 Jacobians")
+
+    def steps(self, *settings):
+        result = self.gearsim([*SIMPLE, *settings], "--output", "run.csv")
+        return int(result.stderr.split(" steps")[0].split()[-1])
 
     def test_longest_step_is_kept(self):
-        result = self.gearsim([*SIMPLE, "solver.max_step_s=1e-5"], "--output", "run.csv")
-        steps = int(result.stderr.split(" steps")[0].split()[-1])
-        self.assertGreaterEqual(steps, 2000)
-        result = self.gearsim(SIMPLE, "--output", "run.csv")
-        self.assertLess(int(result.stderr.split(" steps")[0].split()[-1]), 100)
+        for method in ("adams", "bdf", "erk"):
+            self.assertGreaterEqual(self.steps(f"solver.method={method}", "solver.max_step_s=1e-5"), 2000, method)
+            self.assertLess(self.steps(f"solver.method={method}"), 100, method)
 
 
 class Static(Case):

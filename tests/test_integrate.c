@@ -1,14 +1,15 @@
 /* SPDX-FileCopyrightText: The gearmesh authors */
 /* SPDX-License-Identifier: BSD-3-Clause */
 
-/* apps/gearsim/integrate.c: CVODE on the model, against closed forms and an independent integration. */
+/* apps/gearsim/integrate*.c: CVODE and ARKODE on the model, against closed forms and an independent integration. */
 #include "integrate.h"
 
 #include "gearsim_case.h"
 #include "gm_test.h"
 
 static const double micrometre = 1e-6, pi = 3.14159265358979323846;
-static const enum solver_method methods[] = {METHOD_ADAMS, METHOD_BDF};
+static const enum solver_method methods[] = {METHOD_ADAMS, METHOD_BDF, METHOD_ERK};
+enum { METHODS = sizeof methods / sizeof methods[0] };
 
 static integrator *create(const gear_model *model, enum solver_method method, double relative,
                           double absolute, const double start[]) {
@@ -55,7 +56,7 @@ static double oscillator_error(enum solver_method method, double tolerance, long
  * together are off by less than their number times that. Smaller tolerance, smaller error.
  */
 static void damped_oscillator_is_the_closed_form(void) {
-    for (int m = 0; m < 2; ++m) {
+    for (int m = 0; m < METHODS; ++m) {
         double before = (double)INFINITY;
         for (double tolerance = 1e-3; tolerance > 1e-8; tolerance *= 0.01) {
             long steps = 0;
@@ -76,7 +77,7 @@ static void damped_oscillator_is_the_closed_form(void) {
  * is where it was. Its energy (per mobility) never changes.
  */
 static void bouncing_keeps_energy_and_period(void) {
-    for (int m = 0; m < 2; ++m) {
+    for (int m = 0; m < METHODS; ++m) {
         config conf = case_config(MODEL_SIMPLE, DRIVE_SPEED);
         conf.mean_load = 0.0;
         conf.damping = 0.0;
@@ -148,38 +149,44 @@ typedef struct noise_case {
     double allowed;   /* um */
 } noise_case;
 
-/* Largest difference over 10 ms (m); the lowest x as well. */
-static double noise_error(const noise_case *noise, double *lowest) {
+/* Largest differences over 10 ms (m), for each method; the lowest x as well. */
+static void noise_errors(const noise_case *noise, double errors[METHODS], double *lowest) {
     config conf = case_config(MODEL_SIMPLE, DRIVE_SPEED);
     conf.noise_interval = noise->interval;
     conf.noise_amplitude = noise->amplitude;
     conf.damping *= noise->damping;
     conf.seed = 3;
     const gearbox gears = case_gearbox(&conf);
-    gear_model model;
-    double state[STATES_MAX], largest = 0.0;
-    model_init(&model, &conf, &gears);
-    model_quasi_static_start(&model, state);
-    GM_ASSERT_INT(model.noise != NULL, noise->closed_form);
+    gear_model models[METHODS]; /* each has its own look back at the noise */
+    integrator *solvers[METHODS];
+    double state[STATES_MAX];
+    for (int m = 0; m < METHODS; ++m) {
+        model_init(&models[m], &conf, &gears);
+        model_quasi_static_start(&models[m], state);
+        GM_ASSERT_INT(models[m].noise != NULL, noise->closed_form);
+        solvers[m] = create(&models[m], methods[m], 0.0, 1e-9 * micrometre, state);
+        errors[m] = 0.0;
+    }
 
     const int steps = 200, samples = 1000;
     const double h = 1e-5 / steps;
     double x = state[STATE_OFFSET] * micrometre, v = 0.0;
-    integrator *const solver = create(&model, METHOD_ADAMS, 0.0, 1e-9 * micrometre, state);
     *lowest = (double)INFINITY;
     for (int k = 0; k < samples; ++k) {
         for (int j = 0; j < steps; ++j) {
-            runge_kutta(&gears, &model.load, (k * steps + j) * h, h, &x, &v);
+            runge_kutta(&gears, &models[0].load, (k * steps + j) * h, h, &x, &v);
         }
         const double t = (k + 1) * 1e-5;
-        GM_ASSERT_INT(integrator_advance(solver, t, state), 0);
-        const double got = model_motion(&model, t, state).offset;
-        largest = fmax(largest, fabs(got - x));
-        *lowest = fmin(*lowest, got);
+        for (int m = 0; m < METHODS; ++m) {
+            GM_ASSERT_INT(integrator_advance(solvers[m], t, state), 0);
+            errors[m] = fmax(errors[m], fabs(model_motion(&models[m], t, state).offset - x));
+        }
+        *lowest = fmin(*lowest, x);
     }
-    integrator_free(solver);
-    model_free(&model);
-    return largest;
+    for (int m = 0; m < METHODS; ++m) {
+        integrator_free(solvers[m]);
+        model_free(&models[m]);
+    }
 }
 
 /*
@@ -196,13 +203,63 @@ static void noise_and_loss_of_contact_match_small_fixed_steps(void) {
     };
 
     for (size_t i = 0; i < sizeof cases / sizeof cases[0]; ++i) {
-        double lowest;
-        const double error = noise_error(&cases[i], &lowest);
-        gm_test_context("case %zu: error %g um, lowest %g um", i, error / micrometre,
-                        lowest / micrometre);
-        GM_ASSERT(error < cases[i].allowed * micrometre);
+        double errors[METHODS], lowest;
+        noise_errors(&cases[i], errors, &lowest);
+        for (int m = 0; m < METHODS; ++m) {
+            gm_test_context("case %zu, method %d: error %g um, lowest %g um", i, m,
+                            errors[m] / micrometre, lowest / micrometre);
+            GM_ASSERT(errors[m] < cases[i].allowed * micrometre);
+        }
         GM_ASSERT_INT(lowest < 50.0 * micrometre, cases[i].lifts_off);
     }
+}
+
+/* Error of x and x' (um, um w0) of the oscillator below at a time. */
+static void undamped_error(integrator *solver, double w0, double rest, double t, double error[2]) {
+    double state[STATES_MAX];
+
+    GM_ASSERT_INT(integrator_advance(solver, t, state), 0);
+    error[0] = fabs(state[STATE_OFFSET] - rest - cos(w0 * t));
+    error[1] = fabs(state[STATE_OFFSET_RATE] + sin(w0 * t));
+}
+
+/*
+ * Within a step of ERK: errors of both ends are carried in with the weights of a polynomial of degree 5
+ * (5/16 h of a slope at most, and 15/8 / h of a value to the slope), and the polynomial itself is off
+ * by (w0 h)^6 / 46080, its slope by 7.5e-5 (w0 h)^5 of the amplitude of 1 um. A cubic's error is some
+ * hundred times as large. BDF and Adams have polynomials of their own.
+ */
+static void values_within_a_step_are_as_good_as_its_ends(void) {
+    config conf = case_config(MODEL_SIMPLE, DRIVE_SPEED);
+    conf.damping = 0.0;
+    const gearbox gears = case_gearbox(&conf);
+    gear_model model;
+    double start[STATES_MAX], from[2], inside[2], to[2], longest = 0.0;
+    model_init(&model, &conf, &gears);
+    model_quasi_static_start(&model, start);
+    const double w0 = model.natural_frequency, rest = start[STATE_OFFSET];
+    start[STATE_OFFSET] += 1.0;
+    integrator *const solver = create(&model, METHOD_ERK, 0.0, 1e-5 * micrometre, start);
+
+    for (double begin = 0.0, end; begin * w0 < 30.0; begin = end) {
+        undamped_error(solver, w0, rest, begin, from);
+        undamped_error(solver, w0, rest, nextafter(begin, 1.0), to);
+        end = integrator_time(solver);
+        undamped_error(solver, w0, rest, end, to);
+        const double turned = w0 * (end - begin);
+        longest = fmax(longest, turned);
+        for (int i = 1; i < 8; ++i) {
+            const double ends = from[0] + to[0] + turned * (from[1] + to[1]);
+            undamped_error(solver, w0, rest, begin + 0.125 * i * (end - begin), inside);
+            gm_test_context("step of %g rad, eighth %d", turned, i);
+            /* x is some 50 um: its rounding. */
+            GM_ASSERT(inside[0] <= 1.01 * ends + pow(turned, 6) / 46080.0 + 1e-13);
+            GM_ASSERT(inside[1] <= 2.0 * ends / turned + 7.5e-5 * pow(turned, 5) + 1e-13 / turned);
+        }
+    }
+    GM_ASSERT(longest > 0.5);
+    integrator_free(solver);
+    model_free(&model);
 }
 
 /* Samples may lie anywhere between the solver's steps, and more than one in a step. */
@@ -214,13 +271,15 @@ static void the_first_sample_is_the_start(void) {
     model_init(&model, &conf, &gears);
     model_quasi_static_start(&model, start);
 
-    integrator *const solver = create(&model, METHOD_BDF, 1e-4, 1e-10, start);
-    GM_ASSERT_INT(integrator_advance(solver, 0.0, state), 0);
-    for (int i = 0; i < STATES_MAX; ++i) {
-        GM_ASSERT(state[i] == start[i]);
+    for (int m = 0; m < METHODS; ++m) {
+        integrator *const solver = create(&model, methods[m], 1e-4, 1e-10, start);
+        GM_ASSERT_INT(integrator_advance(solver, 0.0, state), 0);
+        for (int i = 0; i < STATES_MAX; ++i) {
+            GM_ASSERT(state[i] == start[i]);
+        }
+        GM_ASSERT(integrator_time(solver) == 0.0);
+        integrator_free(solver);
     }
-    GM_ASSERT(integrator_time(solver) == 0.0);
-    integrator_free(solver);
     model_free(&model);
 }
 
@@ -234,11 +293,16 @@ static void a_skipped_tooth_is_a_failure_with_its_reason(void) {
     /* Twice the speed whose energy the spring holds at half a base pitch. */
     const double start[STATES_MAX] = {0.0, 2.0 * 0.5e6 * gears.pair.transverse_base_pitch};
     double state[STATES_MAX];
-    integrator *const solver = create(&model, METHOD_ADAMS, 1e-4, 1e-10, start);
-    GM_ASSERT_INT(integrator_advance(solver, 1e-2, state), EXIT_RUN_FAILED);
-    GM_ASSERT(strstr(integrator_failure(solver), gm_status_text(GM_STATE_OUT_OF_RANGE)) != NULL);
-    GM_ASSERT(strstr(integrator_failure(solver), "at t = ") != NULL);
-    integrator_free(solver);
+    for (int m = 0; m < METHODS; ++m) {
+        integrator *const solver = create(&model, methods[m], 1e-4, 1e-10, start);
+        gm_test_context("method %d", m);
+        GM_ASSERT_INT(integrator_advance(solver, 1e-2, state), EXIT_RUN_FAILED);
+        gm_test_context("method %d: %s", m, integrator_failure(solver));
+        GM_ASSERT(strstr(integrator_failure(solver), gm_status_text(GM_STATE_OUT_OF_RANGE)) !=
+                  NULL);
+        GM_ASSERT(strstr(integrator_failure(solver), "at t = ") != NULL);
+        integrator_free(solver);
+    }
     model_free(&model);
 }
 
@@ -247,13 +311,13 @@ static void a_skipped_tooth_is_a_failure_with_its_reason(void) {
 static void no_tooth_is_stepped_over(void) {
     const double longest[] = {0.0, 1.0};
 
-    for (int i = 0; i < 2; ++i) {
+    for (int i = 0; i < 2 * METHODS; ++i) {
         const config conf = case_config(MODEL_3D, DRIVE_SPEED);
         const gearbox gears = case_gearbox(&conf);
-        const integrator_options options = {.method = METHOD_ADAMS,
+        const integrator_options options = {.method = methods[i / 2],
                                             .relative_tolerance = 1e-4,
                                             .absolute_tolerance = 1e-10,
-                                            .max_step = longest[i]};
+                                            .max_step = longest[i % 2]};
         gear_model model;
         double state[STATES_MAX];
         model_init(&model, &conf, &gears);
@@ -273,6 +337,7 @@ int main(int argc, char **argv) {
         GM_TEST(damped_oscillator_is_the_closed_form),
         GM_TEST(bouncing_keeps_energy_and_period),
         GM_TEST(noise_and_loss_of_contact_match_small_fixed_steps),
+        GM_TEST(values_within_a_step_are_as_good_as_its_ends),
         GM_TEST(the_first_sample_is_the_start),
         GM_TEST(a_skipped_tooth_is_a_failure_with_its_reason),
         GM_TEST(no_tooth_is_stepped_over),

@@ -16,7 +16,7 @@ enum mesh_model { MODEL_SIMPLE, MODEL_3D };
 enum drive_kind { DRIVE_SPEED, DRIVE_TORQUE };
 enum analysis_type { ANALYSIS_DYNAMIC, ANALYSIS_STATIC };
 enum static_period { PERIOD_MESH, PERIOD_PINION, PERIOD_HUNTING };
-enum solver_method { METHOD_BDF, METHOD_ADAMS };
+enum solver_method { METHOD_BDF, METHOD_ADAMS, METHOD_ERK };
 enum deviation_direction { DEVIATION_NORMAL, DEVIATION_TRANSVERSE };
 
 /* What a configuration is loaded for: --geometry needs [gears] alone and opens no flank file. */

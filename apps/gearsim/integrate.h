@@ -2,8 +2,8 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 
 /*
- * Integration of a model in time by CVODE, with values at any time wanted from its own interpolation. It
- * is started once and never restarted: the load is smooth.
+ * Integration of a model in time by SUNDIALS, with values at any time wanted interpolated within the
+ * solver's steps. It is started once and never restarted: the load is smooth.
  */
 #ifndef GEARSIM_INTEGRATE_H
 #define GEARSIM_INTEGRATE_H
@@ -22,11 +22,11 @@ typedef struct integrator_options {
 typedef struct integrator_statistics {
     long steps;
     long derivatives; /* evaluations of the right-hand side */
-    long jacobians;
-    long rejected; /* steps repeated because their error was too large */
+    long jacobians;   /* 0 with explicit methods */
+    long rejected;    /* steps repeated because their error was too large */
 } integrator_statistics;
 
-/* The model must stay where it is. NULL: out of memory, or options that CVODE refuses. */
+/* The model must stay where it is. NULL: out of memory, or options that SUNDIALS refuses. */
 integrator *integrator_create(const gear_model *model, const integrator_options *options,
                               const double start[]);
 void integrator_free(integrator *solver);

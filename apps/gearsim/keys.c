@@ -138,8 +138,8 @@ const key_spec keys[] = {
     {NAME("analysis", "period"), CHOICE("mesh pinion hunting"), INTO(period),
      .standard = "mesh", .used = FOR_STATIC, .help = "one tooth, one turn, or until the same teeth meet"},
 
-    {NAME("solver", "method"), CHOICE("bdf adams"), INTO(method), .standard = "adams",
-     .used = FOR_DYNAMIC, .help = "of CVODE"},
+    {NAME("solver", "method"), CHOICE("bdf adams erk"), INTO(method), .standard = "adams",
+     .used = FOR_DYNAMIC, .help = "of CVODE; erk: explicit Runge-Kutta, of ARKODE"},
     {NAME("solver", "relative_tolerance"), NUMBER(UNIT_SI, NOT_NEGATIVE), INTO(relative_tolerance),
      .standard = "1e-4", .used = FOR_DYNAMIC, .help = "of the integration"},
     {NAME("solver", "absolute_tolerance_um"), NUMBER(UNIT_UM, ABOVE_ZERO), INTO(absolute_tolerance),
