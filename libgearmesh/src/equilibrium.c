@@ -54,11 +54,12 @@ static double clamp(double value, double limit) {
  * From `start` on in the direction of `direction` until the residual has that sign. *inner is the last x before.
  * Returns 0 if x leaves its range first.
  */
-static int bracket(const problem *p, double start, double direction, double *inner, double *outer) {
+static int bracket(const problem *p, double start, double first_step, double direction,
+                   double *inner, double *outer) {
     const double limit = largest_offset(p);
     gm_penetration result;
     /* A step shorter than the rounding of x would never leave it. */
-    double step = fmax(fabs(p->target), DBL_EPSILON * p->pair->center_distance);
+    double step = fmax(first_step, DBL_EPSILON * p->pair->center_distance);
     *inner = *outer = start;
     for (int k = 0; k < BRACKET_STEPS; ++k) {
         if (direction * residual(p, *outer, &result) >= 0.0)
@@ -74,6 +75,8 @@ static int bracket(const problem *p, double start, double direction, double *inn
 
 /* Newton within [lower, upper], residual < 0 at lower and >= 0 at upper. */
 static double solve(const problem *p, double lower, double upper, gm_penetration *result) {
+    /* Shorter steps are below the rounding of the lengths that the lines of contact are clipped to. */
+    const double resolution = DBL_EPSILON * p->pair->line_of_action;
     double offset = upper;
     for (int k = 0; k < NEWTON_STEPS; ++k) {
         const double value = residual(p, offset, result);
@@ -87,8 +90,8 @@ static double solve(const problem *p, double lower, double upper, gm_penetration
         double next = offset - value / slope;
         if (!(next > lower && next < upper))
             next = lower + 0.5 * (upper - lower);
-        if (next == lower || next == upper || next == offset)
-            break; /* neighbouring numbers: as near as double precision comes */
+        if (fabs(next - offset) <= resolution || next == lower || next == upper)
+            break;
         offset = next;
     }
     return offset;
@@ -103,12 +106,15 @@ static int bracket_unloaded(const problem *p, double *lower, double *upper) {
     return *lower < *upper;
 }
 
+/* From where nothing touches; the first step leads to where ideal flanks of one pair carry the torque. */
 static int bracket_loaded(const problem *p, double *lower, double *upper) {
     const double half_backlash = 0.5 * p->pair->backlash;
     const double limit = largest_offset(p);
+    const double peak = sum_peak(p, p->target > 0.0 ? GM_DRIVE : GM_COAST);
+    const double first_step = fmax(peak, 0.0) + fabs(p->target);
     if (p->target > 0.0)
-        return bracket(p, clamp(half_backlash - sum_peak(p, GM_DRIVE), limit), 1.0, lower, upper);
-    return bracket(p, clamp(-half_backlash + sum_peak(p, GM_COAST), limit), -1.0, upper, lower);
+        return bracket(p, clamp(half_backlash - peak, limit), first_step, 1.0, lower, upper);
+    return bracket(p, clamp(peak - half_backlash, limit), first_step, -1.0, upper, lower);
 }
 
 static int find(const problem *p, double *offset, gm_penetration *result) {
