@@ -347,13 +347,13 @@ static void beyond_the_depth_it_is_exact(void) {
     }
 }
 
-static void below_the_first_touch_it_is_zero(void) {
-    const gm_cache_params params = params_of(GM_DRIVE, 8, 8, 8e-6);
+static void assert_zero_below_first_touch(double depth) {
+    const gm_cache_params params = params_of(GM_DRIVE, 8, 8, depth);
     fixture f;
     make_paper(&f, &params);
     uint64_t seed = UINT64_C(85);
     for (int i = 0; i < 300; i++) {
-        gm_test_context("state %d", i);
+        gm_test_context("depth %g, state %d", depth, i);
         gm_position position = random_position(&f, &seed);
         /* Below any touch no column is filled ... */
         position.offset = offset_of(&f, f.cache.lowest);
@@ -377,10 +377,16 @@ static void below_the_first_touch_it_is_zero(void) {
                                         (ptrdiff_t)hunting_pass(&f, &position) * f.cache.columns];
         GM_ASSERT(exact_at(&f, &position).drive == 0.0);
         /* A start is not needlessly far below: one bisection step, depth / 4096. */
-        position.offset = offset_of(&f, first + 8e-6 / 4000.0);
+        position.offset = offset_of(&f, first + depth / 4000.0);
         GM_ASSERT(exact_at(&f, &position).drive > 0.0);
     }
     free_fixture(&f);
+}
+
+/* However small the depth, a start is found as exactly and about as fast: distances are doubled, then halved. */
+static void below_the_first_touch_it_is_zero(void) {
+    assert_zero_below_first_touch(8e-6);
+    assert_zero_below_first_touch(1e-9);
 }
 
 /* From far below to far above, no dip below zero, no jump and no step back larger than the error. */
@@ -743,7 +749,7 @@ static void wrong_calls_are_refused(void) {
         params_of(GM_DRIVE, 4, 3, 20e-6),
         params_of(GM_DRIVE, 4, 10001, 20e-6),
         params_of(GM_DRIVE, 4, 4, 0.0),
-        params_of(GM_DRIVE, 4, 4, -1e-6),
+        params_of(GM_DRIVE, 4, 4, 0.9e-10),
         params_of(GM_DRIVE, 4, 4, (double)NAN),
         params_of(GM_DRIVE, 4, 4, HUGE_VAL),
         params_of(GM_DRIVE, 4, 4, 0.26 * p_bt),

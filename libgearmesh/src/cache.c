@@ -30,6 +30,8 @@ enum { START_BISECTIONS = 12 };
 
 enum { LARGEST_CELLS = 10000 };
 
+#define SMALLEST_DEPTH 1e-10 /* (m) */
+
 static const gmi_side_sum no_contact = {.sum = 0.0};
 
 /* Values of a node; by_delta and mixed are per step of delta, not per metre. */
@@ -177,7 +179,7 @@ static int check_cells(int cells) {
 static int check_params(const gm_cache_params *params, const gm_pair *pair) {
     return (params->side == GM_DRIVE || params->side == GM_COAST) &&
            check_cells(params->phase_cells) && check_cells(params->depth_cells) &&
-           params->depth > 0.0 && params->depth <= 0.25 * pair->transverse_base_pitch;
+           params->depth >= SMALLEST_DEPTH && params->depth <= 0.25 * pair->transverse_base_pitch;
 }
 
 /* All of the cache but its memory. */
@@ -280,14 +282,15 @@ static gmi_side_sum exact_at(const gm_cache *cache, gm_position *position, doubl
 
 /* Where contact begins, or a little below; infinite if no line exists at this phase. */
 static double find_start(const gm_cache *cache, gm_position *position) {
+    const double fine = ldexp(cache->depth, -START_BISECTIONS);
     double without = cache->lowest;
     double step = cache->depth;
-    while (exact_at(cache, position, without + step).sum == 0.0) {
+    for (; exact_at(cache, position, without + step).sum == 0.0; step *= 2.0) {
         without += step;
         if (without > 0.5 * cache->pair->transverse_base_pitch)
             return HUGE_VAL;
     }
-    for (int i = 0; i < START_BISECTIONS; ++i) {
+    while (step > fine) {
         step *= 0.5;
         if (exact_at(cache, position, without + step).sum == 0.0)
             without += step;

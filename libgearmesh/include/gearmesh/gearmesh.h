@@ -636,8 +636,8 @@ typedef struct gm_cache_params {
     int side; /**< flanks that are looked up, GM_DRIVE or GM_COAST; the others are exact [GM_DRIVE] */
     int phase_cells; /**< steps of the phase per base pitch, 4 .. 10000; some more at kinks [16] */
     int depth_cells; /**< steps of delta, 4 .. 10000 [40] */
-    double depth;    /**< range of delta from the first touch at each phase on (m), > 0,
-                          <= p_bt / 4 [20e-6] */
+    double depth;    /**< range of delta from the first touch at each phase on (m),
+                          1e-10 .. p_bt / 4 [20e-6] */
 } gm_cache_params;
 
 /**
