@@ -379,6 +379,7 @@ class Names(Case):
                                         (["mesh.simple_stiffness_N_per_m=1e8"], "mesh.simple_stiffness_N_per_m",
                                          "mesh.model = 3d"),
                                         (["mesh.model=simple", "flanks.scale=2"], "flanks.scale", "mesh.model = simple"),
+                                        (["mesh.model=simple", "solver.lookup=on"], "solver.lookup", "mesh.model = simple"),
                                         (["analysis.type=static"], "analysis.duration_s", "analysis.type = static"),
                                         (TORQUE[1::2], "drive.end_rpm", "drive.kind = torque")]:
             with self.subTest(name):
@@ -440,6 +441,7 @@ class Values(Case):
                 ("solver", "relative_tolerance", ["-1e-9"], ">= 0"),
                 ("solver", "absolute_tolerance_um", ["0", "-1"], "> 0"),
                 ("solver", "max_step_s", ["-1"], ">= 0"),
+                ("solver", "lookup_depth_um", ["0", "-20", "0.9e-3"], ">= 0.001"),
                 ("output", "rate_Hz", ["0", "-1"], "> 0"),
                 ("output", "oversampling", ["0", "65"], "from 1 to 64"),
                 ("output", "digits", ["2", "18"], "from 3 to 17")]:
@@ -476,7 +478,7 @@ class Values(Case):
                                       ("flanks", "deviation_direction", "normal | transverse"),
                                       ("drive", "kind", "speed | torque"), ("analysis", "type", "dynamic | static"),
                                       ("analysis", "period", "mesh | pinion | hunting"),
-                                      ("solver", "method", "bdf | adams")]:
+                                      ("solver", "method", "bdf | adams"), ("solver", "lookup", "off | on")]:
             for value in ["other", "3D"]:
                 with self.subTest(f"{key} = {value}"):
                     self.refused_value(section, key, value, f"must be {choices}")
@@ -501,6 +503,20 @@ class Values(Case):
         params = with_key(PARAMS, "mesh", "model", "simple")
         self.refused(f"run.ini:{line_of(params, 'model')}: mesh.model: ", "(got simple)", "must be 3d", params=params,
                      arguments=static)
+
+    def test_lookup_needs_helical_gears_and_stays_within_a_tooth(self):
+        spur = ["--set", "gears.helix_angle_deg=0", "--set", "gears.center_distance_mm=71.5"]
+        for key in ("pinion", "wheel"):
+            spur += ["--set", f"gears.{key}_tip_diameter_mm=" + ("77.6" if key == "pinion" else "71.0")]
+        lookup = ["--set", "solver.lookup=on"]
+        self.refused("--set solver.lookup: ", "(got on)", "must be off", arguments=spur + lookup)
+        self.write("run.ini", PARAMS)
+        self.accepted("run.ini", "--check", *spur)
+        self.accepted("run.ini", "--geometry", *spur, *lookup)
+        self.accepted("run.ini", "--check", *lookup)
+        self.refused("--set solver.lookup_depth_um: ", "(got 2000)", "at most a quarter of the base pitch, 14",
+                     arguments=lookup + ["--set", "solver.lookup_depth_um=2000"])
+        self.accepted("run.ini", "--check", "--set", "solver.lookup_depth_um=2000")
 
     def test_many_faults_are_told_at_once_but_not_all(self):
         text = self.refused("run.ini:2: ", "run.ini:4: ",

@@ -17,6 +17,7 @@ enum drive_kind { DRIVE_SPEED, DRIVE_TORQUE };
 enum analysis_type { ANALYSIS_DYNAMIC, ANALYSIS_STATIC };
 enum static_period { PERIOD_MESH, PERIOD_PINION, PERIOD_HUNTING };
 enum solver_method { METHOD_BDF, METHOD_ADAMS, METHOD_ERK };
+enum lookup_use { LOOKUP_OFF, LOOKUP_ON };
 enum deviation_direction { DEVIATION_NORMAL, DEVIATION_TRANSVERSE };
 
 /* What a configuration is loaded for: --geometry needs [gears] alone and opens no flank file. */
@@ -64,6 +65,8 @@ typedef struct config {
     double relative_tolerance;
     double absolute_tolerance; /* of x, m */
     double max_step;           /* s, 0 = none */
+    enum lookup_use lookup;    /* in place of the 3D model */
+    double lookup_depth;       /* m */
 
     char *output_file;  /* as it can be opened from the working folder */
     double output_rate; /* Hz */

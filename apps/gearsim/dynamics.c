@@ -80,11 +80,14 @@ static void show_motion(dynamic_run *run, double time, const gear_motion *motion
     }
 }
 
-static int show_mesh(dynamic_run *run, double time, const gear_motion *motion) {
+static int show_mesh(dynamic_run *run, double time, const gear_motion *motion, int with_pairs) {
     gm_penetration mesh;
-    const int status = model_penetration(&run->model, motion, &mesh);
+    int status = model_penetration(&run->model, motion, &mesh);
     double *const values = run->values;
 
+    if (status == GM_OK && with_pairs) {
+        status = model_pairs(&run->model, motion, &mesh);
+    }
     if (status != GM_OK) {
         snprintf(run->why, sizeof run->why, "no contact force at t = %.9g s; the gears: %s", time,
                  gm_status_text(status));
@@ -114,7 +117,7 @@ static int take_sample(dynamic_run *run, double time, int of_row) {
     const gear_motion motion = model_motion(&run->model, time, state);
     show_motion(run, time, &motion);
     if (of_row ? run->row_needs_mesh : run->sample_needs_mesh) {
-        return show_mesh(run, time, &motion);
+        return show_mesh(run, time, &motion, of_row && output_wants(run->output, PAIRS));
     }
     return 0;
 }

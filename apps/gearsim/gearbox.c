@@ -2,6 +2,7 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 
 #include "gearbox.h"
+#include "lookup.h"
 
 #include <gearmesh/gearmesh_io.h>
 #include <math.h>
@@ -291,6 +292,8 @@ int gearbox_open(gearbox *box, const config *conf) {
     derive_simple_model(box, conf);
     if (conf->model == MODEL_3D && conf->purpose == CONFIG_FOR_RUN)
         status = load_both_flanks(box, conf);
+    if (status == 0 && conf->purpose == CONFIG_FOR_RUN)
+        status = lookup_check(conf, box);
     if (status != 0)
         gearbox_close(box);
     return status;

@@ -28,6 +28,8 @@
     { 0, HUGE_VAL, 1, 1 }
 #define NOT_NEGATIVE                                                                               \
     { 0, HUGE_VAL, 0, 1 }
+#define AT_LEAST(a)                                                                                \
+    { a, HUGE_VAL, 0, 1 }
 #define BETWEEN(a, b)                                                                              \
     { a, b, 0, 0 }
 #define WITHIN(a, b)                                                                               \
@@ -146,6 +148,12 @@ const key_spec keys[] = {
      .standard = "1e-4", .used = FOR_DYNAMIC, .help = "of the mesh coordinate"},
     {NAME("solver", "max_step_s"), NUMBER(UNIT_SI, NOT_NEGATIVE), INTO(max_step),
      .standard = "0", .used = FOR_DYNAMIC, .help = "longest step, 0 = no limit"},
+    {NAME("solver", "lookup"), CHOICE("off on"), INTO(lookup),
+     .standard = "off", .used = FOR_DYNAMIC | FOR_3D,
+     .help = "on: approximate mesh from tables for long runs, error of some 0.1 %"},
+    {NAME("solver", "lookup_depth_um"), NUMBER(UNIT_UM, AT_LEAST(1e-3)), INTO(lookup_depth),
+     .standard = "20", .used = FOR_DYNAMIC | FOR_3D,
+     .help = "penetration up to which the tables reach, exact beyond"},
 
     {NAME("output", "file"), .kind = KEY_PATH, INTO(output_file),
      .derived = "name of the INI file, .csv", .help = "result"},

@@ -95,6 +95,8 @@ static int init_response(gear_model *model) {
 
 int model_init(gear_model *model, const config *conf, const gearbox *gears) {
     model->gears = gears;
+    model->noise = NULL;
+    model->lookup = NULL;
     model->mesh = conf->model;
     model->drive = drive_create(conf);
     model->load =
@@ -103,12 +105,18 @@ int model_init(gear_model *model, const config *conf, const gearbox *gears) {
     init_bodies(model, conf);
 
     model->natural_frequency = sqrt(model->mean_stiffness * mobility(model));
-    return init_response(model);
+    if (init_response(model) != 0 || lookup_create(&model->lookup, conf, gears) != 0) {
+        model_free(model);
+        return EXIT_RUN_FAILED;
+    }
+    return 0;
 }
 
 void model_free(gear_model *model) {
     response_free(model->noise);
+    lookup_free(model->lookup);
     model->noise = NULL;
+    model->lookup = NULL;
 }
 
 /* ---------------------------------------------------------------------------------------------
@@ -218,9 +226,9 @@ gear_motion model_motion(const gear_model *model, double time, const double stat
     return motion_with(model, time, state, &noise);
 }
 
-/* The one of the library's functions that does no more than is asked for. */
-static int penetration_of(const gear_model *model, const gear_motion *motion, int derivatives,
-                          gm_penetration *penetration) {
+/* The one of the library's exact functions that does no more than is asked for. */
+static int exact_penetration(const gear_model *model, const gear_motion *motion, int derivatives,
+                             gm_penetration *penetration) {
     const gearbox *const gears = model->gears;
 
     if (model->mesh == MODEL_SIMPLE) {
@@ -238,9 +246,35 @@ static int penetration_of(const gear_model *model, const gear_motion *motion, in
         &gears->pair, gears->pinion_flanks, gears->wheel_flanks, &position, penetration);
 }
 
+/* From the look-up if there is one. */
+static int penetration_of(const gear_model *model, const gear_motion *motion, int derivatives,
+                          gm_penetration *penetration) {
+    if (model->lookup == NULL) {
+        return exact_penetration(model, motion, derivatives, penetration);
+    }
+
+    gm_position position;
+    const int status = gm_position_from_pinion_angle(
+        &model->gears->pair, motion->pinion_angle, motion->offset, motion->offset_rate, &position);
+    return status != GM_OK ? status
+                           : gm_cache_penetration_at(model->lookup, &position, penetration);
+}
+
 int model_penetration(const gear_model *model, const gear_motion *motion,
                       gm_penetration *penetration) {
     return penetration_of(model, motion, 0, penetration);
+}
+
+int model_pairs(const gear_model *model, const gear_motion *motion, gm_penetration *penetration) {
+    if (penetration->drive_pairs >= 0 && penetration->coast_pairs >= 0) {
+        return GM_OK;
+    }
+
+    gm_penetration exact;
+    const int status = exact_penetration(model, motion, 0, &exact);
+    penetration->drive_pairs = exact.drive_pairs;
+    penetration->coast_pairs = exact.coast_pairs;
+    return status;
 }
 
 double model_force(const gear_model *model, const gm_penetration *penetration) {

@@ -26,6 +26,7 @@
 #include "drive.h"
 #include "gearbox.h"
 #include "load.h"
+#include "lookup.h"
 #include "response.h"
 
 /* Places in the state vector. A prescribed speed needs the first two only. */
@@ -52,6 +53,7 @@ typedef struct gear_model {
     double natural_frequency; /* w0 (rad/s) */
     double response_decay;    /* zeta w0 of the response (1/s) */
     response *noise;          /* to the noise; NULL: the load is as it is, and u = x */
+    gm_cache *lookup;         /* in place of the 3D model; NULL: the model itself */
     int states;
 } gear_model;
 
@@ -75,6 +77,9 @@ gear_motion model_motion(const gear_model *model, double time, const double stat
 /* Penetration of the flanks, without its derivatives. Returns a library status. */
 int model_penetration(const gear_model *model, const gear_motion *motion,
                       gm_penetration *penetration);
+
+/* Adds the pairs that touch where a look-up has not counted them. Returns a library status. */
+int model_pairs(const gear_model *model, const gear_motion *motion, gm_penetration *penetration);
 
 double model_force(const gear_model *model, const gm_penetration *penetration);
 

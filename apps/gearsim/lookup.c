@@ -1,0 +1,68 @@
+/* SPDX-FileCopyrightText: The gearmesh authors */
+/* SPDX-License-Identifier: BSD-3-Clause */
+#include "lookup.h"
+
+#include <stdlib.h>
+
+/* Steps of 0.5 um with the default depth, as the library's defaults. */
+static gm_cache_params params_of(const config *conf) {
+    gm_cache_params params;
+
+    gm_cache_params_default(&params);
+    params.side = conf->mean_load < 0.0 ? GM_COAST : GM_DRIVE;
+    params.depth = conf->lookup_depth;
+    return params;
+}
+
+static int is_wanted(const config *conf) {
+    return conf->lookup == LOOKUP_ON && conf->model == MODEL_3D &&
+           conf->analysis == ANALYSIS_DYNAMIC;
+}
+
+int lookup_check(const config *conf, const gearbox *gears) {
+    const double deepest = 0.25 * gears->pair.transverse_base_pitch;
+
+    if (!is_wanted(conf))
+        return 0;
+    if (gears->pair.twist == 0.0) {
+        config_complain(
+            conf, "solver.lookup",
+            "not for spur gears, whose sum of penetrations jumps (got on), must be off");
+        return EXIT_BAD_INPUT;
+    }
+    if (conf->lookup_depth > deepest) {
+        config_complain(
+            conf, "solver.lookup_depth_um",
+            "out of range (got %.9g), must be at most a quarter of the base pitch, %.9g",
+            1e6 * conf->lookup_depth, 1e6 * deepest);
+        return EXIT_BAD_INPUT;
+    }
+    return 0;
+}
+
+int lookup_create(gm_cache **cache, const config *conf, const gearbox *gears) {
+    const gm_cache_params params = params_of(conf);
+
+    *cache = NULL;
+    if (!is_wanted(conf))
+        return 0;
+
+    /* One block: the cache, and behind it its tables, both aligned for double. */
+    const size_t size =
+        gm_cache_size(&params, &gears->pair, gears->pinion_flanks, gears->wheel_flanks);
+    gm_cache *const created = size > 0 ? malloc(sizeof *created + size) : NULL;
+
+    if (created == NULL)
+        return EXIT_RUN_FAILED;
+    if (gm_cache_init(created, &params, &gears->pair, gears->pinion_flanks, gears->wheel_flanks,
+                      created + 1, size) != GM_OK) {
+        free(created);
+        return EXIT_RUN_FAILED;
+    }
+    *cache = created;
+    return 0;
+}
+
+void lookup_free(gm_cache *cache) {
+    free(cache);
+}

@@ -1,0 +1,17 @@
+/* SPDX-FileCopyrightText: The gearmesh authors */
+/* SPDX-License-Identifier: BSD-3-Clause */
+
+/* The look-up cache that `[solver] lookup = on` asks for; it fills itself as the run goes on. */
+#ifndef GEARSIM_LOOKUP_H
+#define GEARSIM_LOOKUP_H
+
+#include "gearbox.h"
+
+/* Whether these gears can have what is asked for. Returns 0, or EXIT_BAD_INPUT after a message on stderr. */
+int lookup_check(const config *conf, const gearbox *gears);
+
+/* NULL if the run is not to use one. Returns 0, or EXIT_RUN_FAILED if there is no memory. */
+int lookup_create(gm_cache **cache, const config *conf, const gearbox *gears);
+void lookup_free(gm_cache *cache);
+
+#endif
