@@ -9,6 +9,7 @@
 #include "config.h"
 #include "ini_file.h"
 #include "keys.h"
+#include "modification_keys.h"
 
 #include <math.h>
 #include <stdarg.h>
@@ -436,6 +437,8 @@ static int check_together(const config *conf) {
 
     if (conf->purpose == CONFIG_FOR_GEOMETRY)
         return faults;
+    if (conf->model == MODEL_3D)
+        faults += modification_keys_check(conf);
     faults += conf->analysis == ANALYSIS_STATIC ? check_static(conf) : check_dynamic(conf);
     return faults + check_output_is_no_input(conf);
 }
@@ -446,6 +449,8 @@ static void warn_of_unused(const config *conf) {
     for (int i = 0; i < key_count; ++i)
         if (conf->entries[i].text != NULL && !key_is_used(&keys[i], conf, &reason))
             config_warn(conf, keys[i].full_name, "not used with %s", reason);
+    if (conf->model == MODEL_3D)
+        modification_keys_warn(conf);
 }
 
 /* ---------------------------------------------------------------------------------------------
@@ -506,6 +511,7 @@ static void start(config *conf, const config_request *request) {
     conf->quiet = request->quiet;
     conf->purpose = request->purpose;
     conf->entries = allocate((size_t)key_count * sizeof *conf->entries);
+    modification_keys_clear(conf);
     key_assign_defaults(conf);
 }
 

@@ -28,6 +28,22 @@ typedef struct flank_files {
     char *pitch;
 } flank_files;
 
+/* Keys of one modification; MODIFICATION_SHAPE is the only one that is no number. */
+enum modification_field {
+    MODIFICATION_AMOUNT,
+    MODIFICATION_WIDTH,  /* along the face */
+    MODIFICATION_LENGTH, /* along the profile, in one of three ways */
+    MODIFICATION_RADIUS,
+    MODIFICATION_SHARE,
+    MODIFICATION_SHAPE,
+    MODIFICATION_FIELDS
+};
+
+typedef struct modification_values {
+    double value[MODIFICATION_SHAPE]; /* SI, NaN = not given */
+    int shape;                        /* place in the key's choices, -1 = not given */
+} modification_values;
+
 typedef struct config {
     char *path; /* of the INI file, as given */
 
@@ -38,6 +54,10 @@ typedef struct config {
     double flank_scale;
     enum deviation_direction deviation_direction;
     double profile_from, profile_to, profile_blend;
+
+    /* [gear][both flanks, drive, coast][enum gm_modification_kind] as given, see modification_keys.h */
+    modification_values modifications[2][3][GM_MODIFICATION_KINDS];
+    double modification_tolerance; /* m */
 
     enum mesh_model model;
     double stiffness;        /* K of one tooth pair, N/m */
@@ -86,7 +106,7 @@ typedef struct config {
 } config;
 
 /* Room for config_note(). */
-enum { PROVENANCE_NOTES = 4 };
+enum { PROVENANCE_NOTES = 16 };
 
 /* Exit codes of gearsim. */
 enum exit_code { EXIT_DONE = 0, EXIT_RUN_FAILED = 1, EXIT_BAD_INPUT = 2, EXIT_INTERRUPTED = 130 };

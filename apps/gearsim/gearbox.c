@@ -3,6 +3,7 @@
 
 #include "gearbox.h"
 #include "lookup.h"
+#include "modification_keys.h"
 
 #include <gearmesh/gearmesh_io.h>
 #include <math.h>
@@ -223,31 +224,80 @@ static gm_flanks_options flank_options(const config *conf, const gm_pair *pair) 
     return options;
 }
 
+static const char *const flank_names[2][2] = {{"pinion_drive", "pinion_coast"},
+                                              {"wheel_drive", "wheel_coast"}};
+
+/* How true the table of a design is: a note, or a warning where the tolerance is missed. */
+static void note_design(const config *conf, const char *flank, const gm_modifications_grid *grid) {
+    const char *key = "modifications.tolerance_um";
+
+    if (grid->error > conf->modification_tolerance)
+        config_warn(conf, key,
+                    "missed: the table of %s with %d x %d nodes is off by up to %.3g um, a finer "
+                    "one would have too many nodes",
+                    flank, grid->face_nodes, grid->profile_nodes, 1e6 * grid->error);
+    else if (!conf->quiet)
+        fprintf(stderr,
+                "%s: note: [modifications] of %s: table of %d x %d nodes, off by at most %.3g um\n",
+                conf->path, flank, grid->face_nodes, grid->profile_nodes, 1e6 * grid->error);
+}
+
+/* The grids that gm_flanks_build() will find as well. */
+static void find_grids(gearbox *box, const config *conf, int gear, const gear_design *design,
+                       const gm_deviations *deviations) {
+    const int face_nodes = deviations != NULL ? deviations->face_nodes : 2;
+    const int profile_nodes = deviations != NULL ? deviations->profile_nodes : 2;
+
+    for (int side = GM_DRIVE; side <= GM_COAST; ++side) {
+        gm_modifications_grid *grid = &box->modification_grid[gear][side];
+        if (design->of[side].count > 0 &&
+            gm_modifications_grid_find(&design->of[side], face_nodes, profile_nodes,
+                                       conf->modification_tolerance, grid) == GM_OK)
+            note_design(conf, flank_names[gear][side], grid);
+    }
+}
+
+static int refuse_flanks(const config *conf, const flank_task *task, const gm_io_error *error) {
+    if (task->files->deviations != NULL)
+        return refuse_file(conf, task->deviations_key, error);
+    if (task->files->pitch != NULL)
+        return refuse_file(conf, task->pitch_key, error);
+    fprintf(stderr, "%s: [modifications]: %s\n", conf->path, error->text);
+    return EXIT_BAD_INPUT;
+}
+
 static int build_flanks(gearbox *box, const config *conf, const flank_task *task, int gear,
-                        const gm_deviations *deviations, const gm_pitch *pitch) {
-    const gm_flanks_options options = flank_options(conf, &box->pair);
+                        const gear_design *design, const gm_deviations *deviations,
+                        const gm_pitch *pitch) {
+    gm_flanks_options options = flank_options(conf, &box->pair);
     gm_io_error error = {0};
 
+    options.drive_modifications = &design->of[GM_DRIVE];
+    options.coast_modifications = &design->of[GM_COAST];
+    options.modification_tolerance = conf->modification_tolerance;
+    find_grids(box, conf, gear, design, deviations);
     if (gm_flanks_build(&box->flank_storage[gear], &box->flank_memory[gear], task->teeth,
                         deviations, pitch, &options, &error) == GM_IO_OK)
         return 0;
-    return refuse_file(conf, deviations != NULL ? task->deviations_key : task->pitch_key, &error);
+    return refuse_flanks(conf, task, &error);
 }
 
-/* Reads the files of one gear (0 = pinion, 1 = wheel) into prepared flanks, if there are any. */
+/* Files and design of one gear (0 = pinion, 1 = wheel) become prepared flanks, if there are any. */
 static int load_flanks(gearbox *box, const config *conf, const flank_task *task, int gear) {
     const int has_deviations = task->files->deviations != NULL;
     const int has_pitch = task->files->pitch != NULL;
     gm_deviations deviations = {0};
     gm_pitch pitch = {0};
-    int status = 0;
+    gear_design design;
+    int status = gear_design_make(&design, conf, &box->pair, gear);
+    const int has_design = design.of[GM_DRIVE].count + design.of[GM_COAST].count > 0;
 
-    if (has_deviations)
+    if (status == 0 && has_deviations)
         status = read_deviations(conf, task, &deviations);
     if (status == 0 && has_pitch)
         status = read_pitch(conf, task, &pitch);
-    if (status == 0 && (has_deviations || has_pitch))
-        status = build_flanks(box, conf, task, gear, has_deviations ? &deviations : NULL,
+    if (status == 0 && (has_deviations || has_pitch || has_design))
+        status = build_flanks(box, conf, task, gear, &design, has_deviations ? &deviations : NULL,
                               has_pitch ? &pitch : NULL);
     gm_deviations_free(&deviations);
     gm_pitch_free(&pitch);
@@ -372,8 +422,26 @@ void gearbox_print_geometry(const gearbox *box, const config *conf, FILE *stream
     print_value(stream, "mesh_frequency_per_rpm_Hz", box->pair.pinion.teeth / 60.0);
 }
 
+/* The table that stands for a design. */
+static void note_grid(config *conf, const char *flank, const gm_modifications_grid *grid) {
+    char name[64];
+
+    if (grid->face_nodes == 0)
+        return;
+    snprintf(name, sizeof name, "%s_modification_face_nodes", flank);
+    config_note(conf, name, grid->face_nodes);
+    snprintf(name, sizeof name, "%s_modification_profile_nodes", flank);
+    config_note(conf, name, grid->profile_nodes);
+    snprintf(name, sizeof name, "%s_modification_error_um", flank);
+    config_note(conf, name, 1e6 * grid->error);
+}
+
 void gearbox_note(const gearbox *box, config *conf) {
     const double frequency = eigenfrequency(box, conf);
+
+    for (int gear = 0; gear < 2; ++gear)
+        for (int side = GM_DRIVE; side <= GM_COAST; ++side)
+            note_grid(conf, flank_names[gear][side], &box->modification_grid[gear][side]);
 
     if (isfinite(frequency))
         config_note(conf, "eigenfrequency_Hz", frequency);

@@ -14,6 +14,9 @@ typedef struct gearbox {
     double simple_stiffness; /* K_simple, N/m: of the simple model */
     double simple_damping;   /* D_simple = D eps_alpha, N s/m */
 
+    gm_modifications_grid
+        modification_grid[2][2]; /* [gear][side] of the tables, 0 nodes = no design */
+
     gm_flanks flank_storage[2];
     void *flank_memory[2];
 } gearbox;

@@ -39,6 +39,8 @@
 #define COUNT(low, high)      .kind = KEY_COUNT, .range = BETWEEN(low, high)
 #define CHOICE(names)         .kind = KEY_CHOICE, .choices = (names)
 
+#include "modification_rows.h"
+
 /* clang-format off */
 const key_spec keys[] = {
     {NAME("gears", "pinion_teeth"), COUNT(3, 100000), INTO_GEARS(pinion_teeth),
@@ -93,6 +95,10 @@ const key_spec keys[] = {
      .standard = "1", .used = FOR_3D, .help = "to here"},
     {NAME("flanks", "profile_blend"), NUMBER(UNIT_SI, NOT_NEGATIVE), INTO(profile_blend),
      .standard = "0.1", .used = FOR_3D, .help = "width of the ramps to zero outside that range"},
+
+    {NAME("modifications", "tolerance_um"), NUMBER(UNIT_UM, {1e-5, HUGE_VAL, 0, 1}), INTO(modification_tolerance),
+     .standard = "0.01", .used = FOR_3D, .help = "how far the table of a design may be off"},
+    MODIFICATION_ROWS,
 
     {NAME("mesh", "model"), CHOICE("simple 3d"), INTO(model), .standard = "3d",
      .help = "simple: a spring with backlash"},
@@ -487,6 +493,8 @@ void key_assign_defaults(config *conf) {
             (void)key_assign(&keys[i], conf, keys[i].standard, fault);
         else if (keys[i].kind == KEY_NUMBER)
             *(double *)(void *)((char *)conf + keys[i].target) = (double)NAN;
+        else if (keys[i].kind == KEY_CHOICE)
+            *(int *)(void *)((char *)conf + keys[i].target) = -1;
     }
 }
 
@@ -553,7 +561,7 @@ static void print_key(const key_spec *key, FILE *stream) {
     char values[80];
 
     describe_values(key, values, sizeof values);
-    fprintf(stream, "  %-25s ", key->name);
+    fprintf(stream, "  %-25s ", key->family != NULL ? key->family : key->name);
     if (standard != NULL)
         fprintf(stream, "[%s] ", standard);
     fputs(key->help, stream);
@@ -568,6 +576,9 @@ void keys_print(FILE *stream) {
     for (int i = 0; i < key_count; ++i) {
         if (i == 0 || strcmp(keys[i].section, keys[i - 1].section) != 0)
             fprintf(stream, "[%s]\n", keys[i].section);
-        print_key(&keys[i], stream);
+        if (keys[i].family != NULL && keys[i - 1].family == NULL)
+            fputs(modification_legend, stream);
+        if (keys[i].family_member == 0)
+            print_key(&keys[i], stream);
     }
 }

@@ -55,6 +55,8 @@ typedef struct key_spec {
     unsigned used;        /* situations that use the key, 0 = all */
     unsigned required;    /* situations that require it, 0 = none */
     const char *help;
+    const char *family; /* how --help names a key that exists in many places; NULL = by its name */
+    int family_member;  /* 0 = the one that --help shows */
 } key_spec;
 
 extern const key_spec keys[];
