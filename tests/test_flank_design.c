@@ -292,6 +292,47 @@ static void long_tip_relief_takes_the_transmission_error_of_its_load_away(void) 
     gm_flanks_memory_free(places[1]);
 }
 
+/* ---------------------------------------------------------------------------------------------
+ * Both flanks
+ *
+ * Mirrored at the plane through both axes, a spur pair turns from phi_p, x to -phi_p, -x, drive flanks become
+ * coast flanks, and t1 and t2 of a point stay.
+ * ------------------------------------------------------------------------------------------- */
+
+static double offset_at(const gm_flanks *pinion, double angle, double torque) {
+    double offset = (double)NAN;
+    GM_ASSERT_INT(gm_static_equilibrium(&pair, pinion, NULL, angle, REFERENCE_STIFFNESS, torque,
+                                        &offset, NULL),
+                  GM_OK);
+    return offset;
+}
+
+static void the_same_design_on_the_other_flank_is_its_mirror_image(void) {
+    pair = spur_pair();
+    const gm_modification uneven[] = {
+        {GM_MOD_TIP_RELIEF, GM_SHAPE_PARABOLIC, GM_RANGE_SHARE, 15 * UM, 0.0, 0.4},
+        {GM_MOD_END_RELIEF_I, GM_SHAPE_LINEAR, 0, 10 * UM, 4e-3, 0.0},
+        {GM_MOD_TWIST, 0, 0, 8 * UM, 0.0, 0.0},
+        {GM_MOD_HELIX_SLOPE, 0, 0, 12 * UM, 0.0, 0.0},
+    };
+    const gm_modifications of = {uneven, 4, &pair.pinion, pair.face_width};
+    gm_flanks_options_default(&options);
+    options.drive_modifications = options.coast_modifications = &of;
+    GM_ASSERT_INT(
+        gm_flanks_build(&flanks, &memory, pair.pinion.teeth, NULL, NULL, &options, &error),
+        GM_IO_OK);
+    double largest = 0.0;
+    for (int k = 0; k < 40; k++) {
+        const double angle = 6.283185307179586 * (k + 0.37) / 40 / pair.pinion.teeth;
+        const double forward = offset_at(&flanks, angle, 20.0);
+        /* x is found to a rounding of the path, some millimetres */
+        GM_ASSERT_ABS(offset_at(&flanks, -angle, -20.0), -forward, 1e-15);
+        largest = fmax(largest, fabs(forward - offset_at(NULL, angle, 20.0)));
+    }
+    GM_ASSERT(largest > UM); /* the design is felt */
+    end();
+}
+
 int main(int argc, char **argv) {
     static const gm_test tests[] = {
         GM_TEST(a_design_alone_takes_one_table_for_all_teeth_of_its_side),
@@ -302,6 +343,7 @@ int main(int argc, char **argv) {
         GM_TEST(the_nodes_of_a_file_are_kept_exactly),
         GM_TEST(the_profile_window_acts_on_the_file_only),
         GM_TEST(designs_that_cannot_be_are_refused),
+        GM_TEST(the_same_design_on_the_other_flank_is_its_mirror_image),
         GM_TEST(long_tip_relief_takes_the_transmission_error_of_its_load_away),
     };
     return gm_test_main("unit.flank_design", tests, GM_TEST_COUNT(tests), argc, argv);

@@ -157,8 +157,10 @@ class Notes(Case):
         self.assertNotIn("warning", text)
 
     def test_simple_model_uses_none(self):
-        result = self.accepted("run.ini", "--check", "--set", "mesh.model=simple", *settings("pinion_tip_relief_um=3"))
-        self.assertEqual(result.stderr, "--set modifications.pinion_tip_relief_um: warning: not used with mesh.model = simple\n")
+        for pair in ["pinion_tip_relief_um=3", "pinion_tip_relief_shape=linear"]:  # neither is looked at any further
+            result = self.accepted("run.ini", "--check", "--set", "mesh.model=simple", *settings(pair))
+            key = pair.split("=")[0]
+            self.assertEqual(result.stderr, f"--set modifications.{key}: warning: not used with mesh.model = simple\n")
 
     def test_geometry_looks_at_none(self):
         result = self.accepted("run.ini", "--geometry", *settings("pinion_tip_relief_um=3"))
