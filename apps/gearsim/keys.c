@@ -162,13 +162,13 @@ const key_spec keys[] = {
      .help = "penetration up to which the tables reach, exact beyond"},
 
     {NAME("output", "file"), .kind = KEY_PATH, INTO(output_file),
-     .derived = "name of the INI file, .csv", .help = "result"},
+     .derived = "name of the INI file, .csv", .help = "result; HDF5 if it ends in .h5 or .hdf5"},
     {NAME("output", "rate_Hz"), NUMBER(UNIT_SI, ABOVE_ZERO), INTO(output_rate),
      .standard = "25600", .used = FOR_DYNAMIC, .help = "rows per simulated second"},
     {NAME("output", "oversampling"), COUNT(1, 64), INTO(oversampling),
      .standard = "4", .used = FOR_DYNAMIC, .help = "samples per row, low-pass filtered; 1 = plain samples"},
     {NAME("output", "digits"), COUNT(3, 17), INTO(digits),
-     .standard = "10", .help = "significant digits"},
+     .standard = "10", .help = "significant digits in CSV"},
     {NAME("output", "columns"), .kind = KEY_TEXT, INTO(columns),
      .standard = "all", .help = "names separated by commas"},
 };

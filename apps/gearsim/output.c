@@ -2,9 +2,7 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 #define _XOPEN_SOURCE 700
 
-#include "output.h"
-#include "columns.h"
-#include "number.h"
+#include "output_format.h"
 
 #include <errno.h>
 #include <fcntl.h>
@@ -14,25 +12,39 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-enum {
-    BUFFER_SIZE = 1 << 16,
-    ROW_SIZE_MAX = COLUMNS_MAX * NUMBER_TEXT_SIZE,
-    FILE_MODE = 0666 /* as the umask allows */
-};
+enum { FILE_MODE = 0666 }; /* as the umask allows */
 
 static const char file_key[] = "output.file";
 
-struct output_file {
-    int file;
-    char *path; /* where the result goes in the end */
-    char *part; /* where it grows */
-    column_list columns;
-    int digits;
-    off_t written; /* bytes of whole lines in the file */
-    int error;     /* errno of the write that failed, 0 = none */
-    size_t used;   /* bytes in the buffer; whole lines only */
-    char buffer[BUFFER_SIZE];
-};
+/* ---------------------------------------------------------------------------------------------
+ * Formats
+ * ------------------------------------------------------------------------------------------- */
+
+static int ends_with(const char *text, const char *suffix) {
+    const size_t length = strlen(text), suffix_length = strlen(suffix);
+
+    return length >= suffix_length && strcmp(text + length - suffix_length, suffix) == 0;
+}
+
+/* By the name that was asked for, a link's target may have any. NULL after a message. */
+static const output_format *format_of(const config *conf) {
+    if (!ends_with(conf->output_file, ".h5") && !ends_with(conf->output_file, ".hdf5")) {
+        return &csv_format;
+    }
+#ifdef GEARSIM_HDF5
+    return &hdf5_format;
+#else
+    config_complain(conf, file_key, "'%s': this gearsim was built without HDF5; name a .csv file",
+                    conf->output_file);
+    return NULL;
+#endif
+}
+
+int output_fail(output_file *output, int error) {
+    output->error = error;
+    fprintf(stderr, "gearsim: %s: %s\n", output->part, strerror(error));
+    return EXIT_RUN_FAILED;
+}
 
 /* ---------------------------------------------------------------------------------------------
  * Paths
@@ -136,7 +148,10 @@ static output_file *create(const config *conf, const char *const names[], int na
         return NULL;
     }
 
-    *exit_code = columns_select(&created->columns, conf, names, name_count);
+    created->format = format_of(conf);
+    *exit_code = created->format == NULL
+                     ? EXIT_BAD_INPUT
+                     : columns_select(&created->columns, conf, names, name_count);
     if (*exit_code == 0) {
         *exit_code = check_place(conf, created->path, created->part);
     }
@@ -161,90 +176,6 @@ int output_check(const config *conf, const char *const names[], int name_count) 
  * Writing
  * ------------------------------------------------------------------------------------------- */
 
-/* Writes as much as the disk takes, in *done; returns an errno or 0. */
-static int write_all(int file, const char *text, size_t size, size_t *done) {
-    *done = 0;
-    while (*done < size) {
-        const ssize_t count = write(file, text + *done, size - *done);
-        if (count < 0 && errno != EINTR) {
-            return errno;
-        }
-        if (count > 0) {
-            *done += (size_t)count;
-        }
-    }
-    return 0;
-}
-
-/* Length of the whole lines at the start of a text. */
-static size_t whole_lines(const char *text, size_t size) {
-    while (size > 0 && text[size - 1] != '\n') {
-        --size;
-    }
-    return size;
-}
-
-/* Cuts the line that a full disk has left half written. */
-static void cut_to_whole_lines(output_file *output) {
-    if (ftruncate(output->file, output->written) == 0) {
-        (void)lseek(output->file, output->written, SEEK_SET);
-    }
-}
-
-/* Empties the buffer. After an error nothing more is written. Returns 0 or EXIT_RUN_FAILED. */
-static int flush(output_file *output) {
-    size_t done;
-
-    if (output->error != 0) {
-        return EXIT_RUN_FAILED;
-    }
-    output->error = write_all(output->file, output->buffer, output->used, &done);
-    output->written += (off_t)whole_lines(output->buffer, done);
-    output->used = 0;
-    if (output->error == 0) {
-        return 0;
-    }
-
-    fprintf(stderr, "gearsim: %s: %s\n", output->part, strerror(output->error));
-    cut_to_whole_lines(output);
-    return EXIT_RUN_FAILED;
-}
-
-/* A line of any length, which must end in '\n' and not be split: longer than the buffer is an error. */
-static int put_line(output_file *output, const char *first, const char *second) {
-    const size_t size = strlen(first) + strlen(second) + 1;
-
-    if (size > BUFFER_SIZE - output->used && flush(output) != 0) {
-        return EXIT_RUN_FAILED;
-    }
-    if (size >= BUFFER_SIZE) {
-        output->error = EOVERFLOW;
-        return EXIT_RUN_FAILED;
-    }
-    output->used += (size_t)sprintf(output->buffer + output->used, "%s%s", first, second);
-    output->buffer[output->used++] = '\n';
-    return 0;
-}
-
-static int put_header(output_file *output, const config *conf, const char *const names[]) {
-    char header[BUFFER_SIZE / 16] = "";
-    int failed = put_line(output, "# gearsim ", gm_version());
-
-    for (int i = 0; i < conf->provenance_count && !failed; ++i) {
-        failed = put_line(output, "# ", conf->provenance[i]);
-    }
-    for (int i = 0; i < output->columns.count; ++i) {
-        if (i > 0) {
-            strcat(header, ",");
-        }
-        strcat(header, names[output->columns.name[i]]);
-    }
-    failed = failed || put_line(output, header, "");
-
-    /* On the disk at once: a full one is found before the run, not after it. */
-    return failed ? EXIT_RUN_FAILED : flush(output);
-}
-
 /* A write beyond the limit on file sizes is to fail like a full disk, not to kill the run. */
 static void ignore_file_size_signal(void) {
 #ifdef SIGXFSZ
@@ -260,14 +191,14 @@ output_file *output_open(const config *conf, const char *const names[], int name
     }
 
     ignore_file_size_signal();
-    opened->file = open(opened->part, O_WRONLY | O_CREAT | O_TRUNC, FILE_MODE);
+    opened->file = open(opened->part, O_RDWR | O_CREAT | O_TRUNC, FILE_MODE);
     if (opened->file < 0) {
         config_complain(conf, file_key, "cannot write '%s': %s", opened->part, strerror(errno));
         *exit_code = EXIT_BAD_INPUT;
         output_free(opened);
         return NULL;
     }
-    if (put_header(opened, conf, names) != 0) {
+    if (opened->format->begin(opened, conf, names) != 0) {
         *exit_code = output_close(opened, "the header could not be written");
         return NULL;
     }
@@ -284,37 +215,12 @@ int output_wants(const output_file *output, int name) {
 }
 
 int output_row(output_file *output, const double values[]) {
-    if (output->used > BUFFER_SIZE - ROW_SIZE_MAX && flush(output) != 0) {
-        return EXIT_RUN_FAILED;
-    }
-
-    char *out = output->buffer + output->used;
-    for (int i = 0; i < output->columns.count; ++i) {
-        /* + 0.0: no "-0" in tables. */
-        out += number_format(out, values[output->columns.name[i]] + 0.0, output->digits);
-        *out++ = ',';
-    }
-    out[-1] = '\n';
-    output->used = (size_t)(out - output->buffer);
-
-    return output->error != 0 ? EXIT_RUN_FAILED : 0;
+    return output->format->row(output, values);
 }
 
 /* ---------------------------------------------------------------------------------------------
  * The end
  * ------------------------------------------------------------------------------------------- */
-
-/* Says in the file that it is not whole, if the disk takes that line as a whole. */
-static void mark_incomplete(output_file *output, const char *why) {
-    char line[512];
-    size_t done;
-    const int length = snprintf(line, sizeof line, "# incomplete: %s\n", why);
-
-    if (length > 0 && (size_t)length < sizeof line &&
-        write_all(output->file, line, (size_t)length, &done) != 0) {
-        cut_to_whole_lines(output);
-    }
-}
 
 /* close() is the last to tell of a write that failed. */
 static int close_file(output_file *output) {
@@ -327,11 +233,8 @@ static int close_file(output_file *output) {
 }
 
 int output_close(output_file *output, const char *incomplete) {
-    int exit_code = flush(output);
+    int exit_code = output->format->end(output, incomplete);
 
-    if (exit_code != 0 || incomplete != NULL) {
-        mark_incomplete(output, output->error != 0 ? strerror(output->error) : incomplete);
-    }
     if (close_file(output) != 0) {
         exit_code = EXIT_RUN_FAILED;
     }

@@ -2,9 +2,9 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 
 /*
- * The result file: `FILE.part` while it grows, renamed to FILE when it is whole. Provenance lines, one
- * header line, rows. A run that ends early leaves FILE.part with whole lines and, where the disk lets
- * it, a last line `# incomplete: why`.
+ * The result file: `FILE.part` while it grows, renamed to FILE when it is whole. Its name says the format:
+ * HDF5 if it ends in .h5 or .hdf5, else CSV. A run that ends early leaves FILE.part with the rows until
+ * then and, where the disk lets it, the reason.
  */
 #ifndef GEARSIM_OUTPUT_H
 #define GEARSIM_OUTPUT_H

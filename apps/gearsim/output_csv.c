@@ -1,0 +1,160 @@
+/* SPDX-FileCopyrightText: The gearmesh authors */
+/* SPDX-License-Identifier: BSD-3-Clause */
+
+/*
+ * CSV: provenance lines that begin with '#', a line of names, rows; a run that ends early leaves whole
+ * lines and, where the disk lets it, a last line `# incomplete: why`.
+ */
+#include "number.h"
+#include "output_format.h"
+
+#include <errno.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+enum { BUFFER_SIZE = 1 << 16, ROW_SIZE_MAX = COLUMNS_MAX * NUMBER_TEXT_SIZE };
+
+typedef struct csv_memory {
+    off_t written; /* bytes of whole lines in the file */
+    size_t used;   /* bytes in the buffer; whole lines only */
+    char buffer[BUFFER_SIZE];
+} csv_memory;
+
+/* Writes as much as the disk takes, in *done; returns an errno or 0. */
+static int write_all(int file, const char *text, size_t size, size_t *done) {
+    *done = 0;
+    while (*done < size) {
+        const ssize_t count = write(file, text + *done, size - *done);
+        if (count < 0 && errno != EINTR) {
+            return errno;
+        }
+        if (count > 0) {
+            *done += (size_t)count;
+        }
+    }
+    return 0;
+}
+
+/* Length of the whole lines at the start of a text. */
+static size_t whole_lines(const char *text, size_t size) {
+    while (size > 0 && text[size - 1] != '\n') {
+        --size;
+    }
+    return size;
+}
+
+/* Cuts the line that a full disk has left half written. */
+static void cut_to_whole_lines(const output_file *output) {
+    const csv_memory *const memory = output->memory;
+
+    if (ftruncate(output->file, memory->written) == 0) {
+        (void)lseek(output->file, memory->written, SEEK_SET);
+    }
+}
+
+/* Empties the buffer. After an error nothing more is written. */
+static int flush(output_file *output) {
+    csv_memory *const memory = output->memory;
+    size_t done;
+
+    if (output->error != 0) {
+        return EXIT_RUN_FAILED;
+    }
+    const int error = write_all(output->file, memory->buffer, memory->used, &done);
+    memory->written += (off_t)whole_lines(memory->buffer, done);
+    memory->used = 0;
+    if (error == 0) {
+        return 0;
+    }
+
+    cut_to_whole_lines(output);
+    return output_fail(output, error);
+}
+
+/* A line of any length, which must end in '\n' and not be split: longer than the buffer is an error. */
+static int put_line(output_file *output, const char *first, const char *second) {
+    csv_memory *const memory = output->memory;
+    const size_t size = strlen(first) + strlen(second) + 1;
+
+    if (size > BUFFER_SIZE - memory->used && flush(output) != 0) {
+        return EXIT_RUN_FAILED;
+    }
+    if (size >= BUFFER_SIZE) {
+        return output_fail(output, EOVERFLOW);
+    }
+    memory->used += (size_t)sprintf(memory->buffer + memory->used, "%s%s", first, second);
+    memory->buffer[memory->used++] = '\n';
+    return 0;
+}
+
+static int begin(output_file *output, const config *conf, const char *const names[]) {
+    char header[BUFFER_SIZE / 16] = "";
+
+    output->memory = calloc(1, sizeof(csv_memory));
+    if (output->memory == NULL) {
+        return output_fail(output, ENOMEM);
+    }
+
+    int failed = put_line(output, "# gearsim ", gm_version());
+    for (int i = 0; i < conf->provenance_count && !failed; ++i) {
+        failed = put_line(output, "# ", conf->provenance[i]);
+    }
+    for (int i = 0; i < output->columns.count; ++i) {
+        if (i > 0) {
+            strcat(header, ",");
+        }
+        strcat(header, names[output->columns.name[i]]);
+    }
+    failed = failed || put_line(output, header, "");
+
+    return failed ? EXIT_RUN_FAILED : flush(output);
+}
+
+static int row(output_file *output, const double values[]) {
+    csv_memory *const memory = output->memory;
+
+    if (memory->used > BUFFER_SIZE - ROW_SIZE_MAX && flush(output) != 0) {
+        return EXIT_RUN_FAILED;
+    }
+
+    char *out = memory->buffer + memory->used;
+    for (int i = 0; i < output->columns.count; ++i) {
+        /* + 0.0: no "-0" in tables. */
+        out += number_format(out, values[output->columns.name[i]] + 0.0, output->digits);
+        *out++ = ',';
+    }
+    out[-1] = '\n';
+    memory->used = (size_t)(out - memory->buffer);
+
+    return output->error != 0 ? EXIT_RUN_FAILED : 0;
+}
+
+/* Says in the file that it is not whole, if the disk takes that line as a whole. */
+static void mark_incomplete(output_file *output, const char *why) {
+    char line[512];
+    size_t done;
+    const int length = snprintf(line, sizeof line, "# incomplete: %s\n", why);
+
+    if (length > 0 && (size_t)length < sizeof line &&
+        write_all(output->file, line, (size_t)length, &done) != 0) {
+        cut_to_whole_lines(output);
+    }
+}
+
+static int end(output_file *output, const char *incomplete) {
+    if (output->memory == NULL) {
+        return EXIT_RUN_FAILED;
+    }
+
+    const int failed = flush(output);
+    const char *const why = output->error != 0 ? strerror(output->error) : incomplete;
+    if (why != NULL) {
+        mark_incomplete(output, why);
+    }
+    free(output->memory);
+    output->memory = NULL;
+    return failed;
+}
+
+const output_format csv_format = {.begin = begin, .row = row, .end = end};

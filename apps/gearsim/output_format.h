@@ -1,0 +1,42 @@
+/* SPDX-FileCopyrightText: The gearmesh authors */
+/* SPDX-License-Identifier: BSD-3-Clause */
+
+/*
+ * What output.c asks of a format of the result file. Names, places, `.part` and the rename are common to
+ * all; a format puts provenance, names and rows into the file that is open.
+ */
+#ifndef GEARSIM_OUTPUT_FORMAT_H
+#define GEARSIM_OUTPUT_FORMAT_H
+
+#include "columns.h"
+#include "output.h"
+
+typedef struct output_format {
+    /* Writes all that precedes the rows, to the disk: a full one is found before the run, not after it. */
+    int (*begin)(output_file *output, const config *conf, const char *const names[]);
+
+    int (*row)(output_file *output, const double values[]);
+
+    /* Writes the rows that are left and, if there is a reason, that the file is not whole. Called whatever
+     * became of begin() and the rows. */
+    int (*end)(output_file *output, const char *incomplete);
+} output_format;
+
+/* All three return 0, or EXIT_RUN_FAILED after output_fail(). */
+extern const output_format csv_format, hdf5_format;
+
+struct output_file {
+    const output_format *format;
+    void *memory; /* of the format, freed by its end() */
+    int file;     /* `part` */
+    char *path;   /* where the result goes in the end */
+    char *part;   /* where it grows */
+    column_list columns;
+    int digits;
+    int error; /* errno of the write that failed, 0 = none: nothing more is written */
+};
+
+/* Keeps and tells why the file takes no more; returns EXIT_RUN_FAILED. */
+int output_fail(output_file *output, int error);
+
+#endif
