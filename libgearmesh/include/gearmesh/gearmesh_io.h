@@ -15,6 +15,8 @@
 #ifndef GEARMESH_IO_H
 #define GEARMESH_IO_H
 
+#include <stdint.h>
+
 #include "gearmesh.h"
 
 #ifdef __cplusplus
@@ -144,6 +146,151 @@ GM_API int gm_deviations_ideal_teeth(const gm_deviations *deviations, int side);
 
 /** Number of teeth whose side no row covers, so that it has no pitch deviation; 0 as above. */
 GM_API int gm_pitch_ideal_teeth(const gm_pitch *pitch, int side);
+
+/* ---------------------------------------------------------------------------------------------
+ * Flank quality: measured values, tolerances and classes (libgearmesh/docs/flank-quality.md)
+ * ------------------------------------------------------------------------------------------- */
+
+/** What ISO 1328-1:2013 gives tolerances for. All values and tolerances in m, in the transverse section. */
+enum gm_quality_kind {
+    GM_QUALITY_SINGLE_PITCH =
+        0, /**< f_p: a pitch against the mean pitch, arc at the reference circle */
+    GM_QUALITY_TOTAL_PITCH =
+        1,                  /**< F_p: range of the positions of all flanks of a side, same arc */
+    GM_QUALITY_RUN_OUT = 2, /**< F_r: range of the radial places of a ball in all spaces */
+    GM_QUALITY_PROFILE_SLOPE = 3, /**< f_H_alpha, along the base tangent as all that follow */
+    GM_QUALITY_PROFILE_FORM = 4,  /**< f_f_alpha */
+    GM_QUALITY_PROFILE_TOTAL = 5, /**< F_alpha */
+    GM_QUALITY_HELIX_SLOPE = 6,   /**< f_H_beta */
+    GM_QUALITY_HELIX_FORM = 7,    /**< f_f_beta */
+    GM_QUALITY_HELIX_TOTAL = 8    /**< F_beta */
+};
+#define GM_QUALITY_KINDS 9
+
+#define GM_QUALITY_BEST_CLASS  1
+#define GM_QUALITY_WORST_CLASS 11
+
+/** Symbol of a kind in ASCII, `f_H_alpha`; never NULL, "unknown" for any other integer. */
+GM_API const char *gm_quality_symbol(int kind);
+
+/**
+ * Tolerance of one kind, rounded as the standard says [ISO 1328-1:2013, 5.2, 5.3; F_r: annex].
+ *
+ * @param[in] pair           the gear pair
+ * @param[in] wheel          0 = its pinion, else its wheel
+ * @param[in] kind           enum gm_quality_kind
+ * @param[in] quality_class  GM_QUALITY_BEST_CLASS .. GM_QUALITY_WORST_CLASS
+ * @return m, NaN for arguments out of range; outside the standard's ranges (gm_quality_is_in_scope())
+ *         the formula is used all the same
+ */
+GM_API double gm_quality_tolerance(const gm_pair *pair, int wheel, int kind, int quality_class);
+
+/** Whether the standard's formulae are meant for this gear: 5 <= z <= 1000, 5 mm <= d <= 15 m, 0.5 mm <= m_n
+ *  <= 70 mm, 4 mm <= b <= 1.2 m, |beta| <= 45 deg; 0 or 1. */
+GM_API int gm_quality_is_in_scope(const gm_pair *pair, int wheel);
+
+/** Evaluation ranges. */
+typedef struct gm_quality_options {
+    double profile_from; /**< t2 where the evaluation of the profile begins [0] */
+    double profile_to;   /**< t2 where it ends [0.95]; 0 <= profile_from < profile_to <= 1 */
+    double face_margin;  /**< cut off the helix evaluation at both ends, in t1, 0 .. 0.45
+                              [NaN: the smaller one of 0.05 and m_n / b] */
+    int extrapolate;     /**< slopes: 1 = rise of the mean line from t = 0 to 1, 0 = over the
+                              evaluation range only [1] */
+    int end_material; /**< 1 = behind the evaluation range (profile: at the tip; helix: at both ends)
+                              material that sticks out counts for form and total, 0 = nothing does [1] */
+} gm_quality_options;
+
+GM_API void gm_quality_options_default(gm_quality_options *options);
+
+/** Values of one flank, signed where the standard has signs; NaN where no file says anything. */
+typedef struct gm_flank_quality {
+    double
+        single_pitch; /**< > 0: the pitch from the tooth before (i - 1) to this one is too long (m) */
+    double
+        cumulative_pitch; /**< against tooth 0 of the same side, > 0: ahead in the gear's positive
+                                  direction of rotation (m) */
+    double profile_slope; /**< > 0: material rises towards the tip (m) */
+    double profile_form;
+    double profile_total;
+    double helix_slope; /**< > 0: material rises with t1 (m) */
+    double helix_form;
+    double helix_total;
+} gm_flank_quality;
+
+/** The worst value of one kind. */
+typedef struct gm_quality_value {
+    double value; /**< absolute (m); NaN = not evaluated */
+    int tooth; /**< which tooth has it: for the single pitch the second one of the two, for the run-out
+                            the one whose drive flank bounds the outermost space; -1 for total pitch, or none */
+    int side;          /**< GM_DRIVE or GM_COAST; -1 for the run-out, or none */
+    int quality_class; /**< best class whose tolerance holds it; 12 = none does; 0 = not evaluated */
+} gm_quality_value;
+
+/** All of a gear. */
+typedef struct gm_quality {
+    gm_quality_value worst[GM_QUALITY_KINDS]; /**< by enum gm_quality_kind */
+    int quality_class; /**< the worst class of those evaluated; 12, 0 as above */
+} gm_quality;
+
+/**
+ * Evaluates flanks by the definitions of ISO 1328-1:2013: pitch and run-out from the pitch list (a side
+ * without a row, and with it the run-out, is not evaluated), profile from the trace at t1 = 0.5, helix from that
+ * at t2 = 0.5, of every flank that has a set. The mean line is that of least squares over the evaluation range,
+ * exact for the polygon between the nodes. The design is the unmodified involute helicoid, and nothing is filtered.
+ *
+ * @param[out] quality     worst values and classes; all not evaluated on an error
+ * @param[out] flanks      [2 * teeth] values of every flank, all drive flanks first; may be NULL
+ * @param[in]  pair        the gear pair
+ * @param[in]  wheel       0 = the pinion is evaluated, else the wheel
+ * @param[in]  deviations  along the surface normal; NULL = none
+ * @param[in]  pitch       NULL = none
+ * @param[in]  options     NULL = defaults
+ * @param[out] error       may be NULL
+ * @return GM_IO_OK, GM_IO_ERR_NULL, GM_IO_ERR_OPTION (also another number of teeth, values that are not
+ *         finite), GM_IO_ERR_MEMORY
+ */
+GM_API int gm_quality_evaluate(gm_quality *quality, gm_flank_quality *flanks, const gm_pair *pair,
+                               int wheel, const gm_deviations *deviations, const gm_pitch *pitch,
+                               const gm_quality_options *options, gm_io_error *error);
+
+/** A wave that goes on from tooth to tooth, as a ghost order of a machine: along the path of contact it is a
+ *  pure sine of the gear's rotation. */
+typedef struct gm_flank_wave {
+    int order;        /**< waves per revolution of the gear, 1 .. 1000000 */
+    double amplitude; /**< along the surface normal, m, >= 0 */
+} gm_flank_wave;
+
+/** What is generated. */
+typedef struct gm_generate_options {
+    int quality_class; /**< 1 .. 11, required [0] */
+    uint64_t seed;     /**< same seed, same flanks [1] */
+    double
+        share; /**< worst value / tolerance, of every kind, 0.8 .. 0.99: at least 0.8 keeps it out of the
+                       next better class [0.95] */
+    int face_nodes;             /**< along t1, 9 .. 1000 [21] */
+    int profile_nodes;          /**< along t2, 9 .. 1000 [31] */
+    const gm_flank_wave *waves; /**< [wave_count] [NULL] */
+    int wave_count;             /**< 0 .. 100 [0] */
+} gm_generate_options;
+
+GM_API void gm_generate_options_default(gm_generate_options *options);
+
+/**
+ * Makes flanks of a gear that measures to a class: with the default options of gm_quality_evaluate(), the worst
+ * value of every kind is `share` times its tolerance, to 1e-9 m. Every tooth is different.
+ *
+ * @param[out] deviations  a set for every flank; free it with gm_deviations_free(). All zero on an error
+ * @param[out] pitch       all flanks; free it with gm_pitch_free(). All zero on an error
+ * @param[in]  pair        the gear pair
+ * @param[in]  wheel       0 = its pinion, else its wheel
+ * @param[in]  options     what is wanted
+ * @param[out] error       may be NULL
+ * @return GM_IO_OK, GM_IO_ERR_NULL, GM_IO_ERR_OPTION (also where the wanted values contradict each other: the
+ *         waves use up a tolerance, or about ten teeth and fewer), GM_IO_ERR_MEMORY
+ */
+GM_API int gm_flanks_generate(gm_deviations *deviations, gm_pitch *pitch, const gm_pair *pair,
+                              int wheel, const gm_generate_options *options, gm_io_error *error);
 
 #ifdef __cplusplus
 }
