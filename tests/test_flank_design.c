@@ -209,13 +209,14 @@ static void designs_that_cannot_be_are_refused(void) {
     refused("no grid", "1e-12 m");
     begin();
     static gm_modification
-        many[GM_MODIFICATIONS_MAX]; /* 5 m together, beyond a double with this factor */
+        many[GM_MODIFICATIONS_MAX]; /* 2 m together, beyond a double with this factor */
     for (int k = 0; k < GM_MODIFICATIONS_MAX; k++) {
-        many[k] = (gm_modification){.kind = GM_MOD_HELIX_SLOPE, .amount = 0.01};
+        many[k] =
+            (gm_modification){.kind = GM_MOD_CROWNING, .shape = GM_SHAPE_PARABOLIC, .amount = 0.01};
     }
     design.list = many;
     design.count = GM_MODIFICATIONS_MAX;
-    options.normal_factor = 1e308;
+    options.normal_factor = 1.5e308;
     refused("the modifications cannot be used with these options", "");
 }
 

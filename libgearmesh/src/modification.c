@@ -167,7 +167,7 @@ static problem check_flank(const gm_modifications *of) {
     if (!(roll_of(of) > 0.0) || !gmi_is_finite(roll_of(of)))
         return problem_of("gear", "a gear of a pair that gm_pair_init() has filled");
     if (of->count < 0 || of->count > GM_MODIFICATIONS_MAX)
-        return problem_of("count", "a number from 0 to 1000");
+        return problem_of("count", "a number from 0 to 200");
     return problem_of(NULL, NULL);
 }
 
@@ -330,19 +330,20 @@ static double axis_error(const gm_modifications *of, int axis, int cells) {
     return error;
 }
 
-/* Fewest cells, a multiple of `base`, with an error within the limit; 0 = none. */
-static int fewest_cells(const gm_modifications *of, int axis, int base, double limit) {
-    for (int cells = base; cells <= LARGEST_CELLS; cells += base) {
+/* Fewest cells, a multiple of `base` up to `most`, with an error within the limit; 0 = none. */
+static int fewest_cells(const gm_modifications *of, int axis, int base, int most, double limit) {
+    for (int cells = base; cells <= most; cells += base) {
         if (axis_error(of, axis, cells) <= limit)
             return cells;
     }
     return 0;
 }
 
-static int is_affordable(const int cells[2], const int base[2]) {
-    const double nodes = (cells[FACE] + 1.0) * (cells[PROFILE] + 1.0);
-    const double least = (base[FACE] + 1.0) * (base[PROFILE] + 1.0);
-    return nodes <= TABLE_NODES || nodes <= least;
+/* Most cells along an axis beside others along the other one, so that a table stays affordable. */
+static int most_cells(int axis, const int base[2], int others) {
+    const int affordable = TABLE_NODES / (others + 1) - 1;
+    const int most = affordable < LARGEST_CELLS ? affordable : LARGEST_CELLS;
+    return most > base[axis] || others > base[1 - axis] ? most : base[axis];
 }
 
 /*
@@ -354,18 +355,37 @@ static int divide_limit(const gm_modifications *of, const int base[2], double li
                                        0.625, 0.75,  0.875, 1.0 - 1e-6};
     int fewest = 0;
     for (size_t k = 0; k < sizeof face_part / sizeof face_part[0]; ++k) {
-        const int tried[2] = {
-            fewest_cells(of, FACE, base[FACE], face_part[k] * limit),
-            fewest_cells(of, PROFILE, base[PROFILE], (1.0 - face_part[k]) * limit)};
-        const int lines = tried[FACE] + tried[PROFILE];
-        if (tried[FACE] > 0 && tried[PROFILE] > 0 && is_affordable(tried, base) &&
-            (fewest == 0 || lines < fewest)) {
-            fewest = lines;
-            cells[FACE] = tried[FACE];
-            cells[PROFILE] = tried[PROFILE];
+        const int face = fewest_cells(of, FACE, base[FACE], most_cells(FACE, base, base[PROFILE]),
+                                      face_part[k] * limit);
+        if (face == 0)
+            continue;
+        const int profile =
+            fewest_cells(of, PROFILE, base[PROFILE], most_cells(PROFILE, base, face),
+                         (1.0 - face_part[k]) * limit);
+        if (profile > 0 && (fewest == 0 || face + profile < fewest)) {
+            fewest = face + profile;
+            cells[FACE] = face;
+            cells[PROFILE] = profile;
         }
     }
     return fewest;
+}
+
+/* The grid for the tolerance, or for a limit that is about as low as a table can have. */
+static void find_cells(const gm_modifications *of, const int base[2], double tolerance,
+                       int cells[2]) {
+    double kept = tolerance;
+    /* At the latest a limit above all amounts is kept, by the grid that is given. */
+    while (!divide_limit(of, base, kept, cells))
+        kept *= 4.0;
+    double missed = 0.25 * kept;
+    for (int halving = 0; kept > tolerance && halving < 3; ++halving) {
+        const double limit = sqrt(missed * kept);
+        if (divide_limit(of, base, limit, cells))
+            kept = limit;
+        else
+            missed = limit;
+    }
 }
 
 /* What the operations at a node and in the table may lose beside the bound (m). */
@@ -396,9 +416,7 @@ int gm_modifications_grid_find(const gm_modifications *modifications, int face_n
 
     const int base[2] = {face_nodes - 1, profile_nodes - 1};
     int cells[2] = {base[FACE], base[PROFILE]};
-    /* At the latest a limit above all amounts is kept, by the grid that is given. */
-    for (double limit = tolerance; !divide_limit(modifications, base, limit, cells); limit *= 1.5)
-        ;
+    find_cells(modifications, base, tolerance, cells);
     grid->face_nodes = cells[FACE] + 1;
     grid->profile_nodes = cells[PROFILE] + 1;
     grid->error = axis_error(modifications, FACE, cells[FACE]) +

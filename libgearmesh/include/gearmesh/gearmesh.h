@@ -384,7 +384,7 @@ enum gm_modification_range {
 };
 
 /** Largest number of modifications of a flank. */
-#define GM_MODIFICATIONS_MAX 1000
+#define GM_MODIFICATIONS_MAX 200
 
 /** One designed modification of a flank. Fields that its kind does not use are ignored. */
 typedef struct gm_modification {
