@@ -1,0 +1,429 @@
+#!/usr/bin/python3
+# SPDX-FileCopyrightText: The gearmesh authors
+# SPDX-License-Identifier: BSD-3-Clause
+"""scripts/flanks and what it reads with, from constructed flanks whose numbers are known."""
+import os
+import re
+import struct
+import subprocess
+import sys
+import tempfile
+import unittest
+
+import numpy as np
+
+sys.dont_write_bytecode = True
+ROOT = os.path.join(os.path.dirname(os.path.abspath(__file__)), os.pardir)
+SCRIPTS = os.path.join(ROOT, "scripts")
+PAPER = os.path.join(ROOT, "data", "paper")
+sys.path.insert(0, SCRIPTS)
+import flankfile  # noqa: E402
+
+HEADER = "tooth,flank,t1,t2,deviation_um\n"
+PITCH_HEADER = "tooth,flank,deviation_um\n"
+DRIVE, COAST, ALL = 0, 1, flankfile.ALL
+
+
+def rows(tooth, flank, deviation_um, nodes=(3, 5)):
+    """Rows of a set: a constant, or a function of t1 and t2."""
+    lines = []
+    for k1 in range(nodes[0]):
+        for k2 in range(nodes[1]):
+            t1, t2 = k1 / (nodes[0] - 1), k2 / (nodes[1] - 1)
+            value = deviation_um(t1, t2) if callable(deviation_um) else deviation_um
+            lines.append(f"{tooth},{flank},{t1:.6g},{t2:.6g},{value:.9g}\n")
+    return "".join(lines)
+
+
+class Folder(unittest.TestCase):
+    """A folder for the files of each test."""
+
+    def setUp(self):
+        folder = tempfile.TemporaryDirectory()
+        self.addCleanup(folder.cleanup)
+        self.folder = folder.name
+
+    def path(self, name):
+        return os.path.join(self.folder, name)
+
+    def write(self, text, name="gear.csv"):
+        with open(self.path(name), "wb") as file:
+            file.write(text if isinstance(text, bytes) else text.encode("utf-8"))
+        return self.path(name)
+
+    def flanks(self, *arguments):
+        return subprocess.run(
+            [os.path.join(SCRIPTS, "flanks"), *arguments],
+            cwd=self.folder,
+            env={**os.environ, "PYTHONDONTWRITEBYTECODE": "1"},
+            capture_output=True,
+            text=True,
+        )
+
+    def text_of(self, name):
+        with open(self.path(name), encoding="utf-8") as file:
+            return file.read()
+
+
+class Reading(Folder):
+    def test_node_values_stand_where_they_belong_in_any_order_of_rows(self):
+        lines = rows(0, "drive", lambda t1, t2: 10 * t1 + t2).splitlines(keepends=True)
+        expected_um = 10 * np.linspace(0, 1, 3)[:, None] + np.linspace(0, 1, 5)
+        for text in (lines, lines[::-1]):
+            sets = flankfile.read_flanks(self.write(HEADER + "".join(text)))
+            np.testing.assert_array_equal(sets[0, DRIVE], expected_um)
+
+    def test_whatever_the_format_allows(self):
+        plain = rows("*", "*", lambda t1, t2: t1 - 2 * t2)
+        spaced = "\ufeff# c,o;m\n\n" + HEADER.replace(",", " ,\t") + "  # x\n" + plain.replace(",", " , ")
+        loose = plain.replace(",0.25,", ",0.250009,").replace(",-1\n", ",-.1e+1\n")
+        expected_um = flankfile.read_flanks(self.write(HEADER + plain))[ALL, ALL]
+        for text in (spaced, HEADER + loose, (HEADER + plain).replace("\n", "\r\n"), HEADER + plain.rstrip("\n")):
+            np.testing.assert_array_equal(flankfile.read_flanks(self.write(text))[ALL, ALL], expected_um)
+
+    def test_the_most_special_set_wins_whole(self):
+        text = rows("*", "*", 1) + rows("*", "coast", 2) + rows(1, "*", 3) + rows(1, "coast", 4)
+        sets = flankfile.read_flanks(self.write(HEADER + text))
+        won = [[float(flankfile.winner(sets, tooth, side).max()) for side in (DRIVE, COAST)] for tooth in range(3)]
+        self.assertEqual(won, [[1, 2], [3, 4], [1, 2]])
+        del sets[ALL, ALL]
+        self.assertIsNone(flankfile.winner(sets, 0, DRIVE))
+
+    def test_paper_files_are_read_as_they_are(self):
+        sets = flankfile.read_flanks(os.path.join(PAPER, "pinion_flanks.csv"))
+        self.assertEqual((len(sets), sets[0, DRIVE].shape), (90, (21, 31)))
+        with open(os.path.join(PAPER, "pinion_flanks.csv"), encoding="ascii") as file:
+            values = [float(line.rsplit(",", 1)[1]) for line in file if line[0].isdigit()]
+        self.assertEqual(sorted(values), sorted(np.concatenate([table.ravel() for table in sets.values()])))
+
+
+class BadFiles(Folder):
+    """Every offence is named with file and line, exit status 2, and nothing is left behind."""
+
+    def assert_refused(self, text, line, *words, arguments=()):
+        path = self.write(text)
+        result = self.flanks("gear.csv", *arguments)
+        self.assertEqual(result.returncode, 2, result.stderr)
+        self.assertEqual(result.stdout, "")
+        self.assertNotIn("Traceback", result.stderr)
+        for word in (f"gear.csv:{line}:", *words):
+            self.assertIn(word, result.stderr)
+        self.assertEqual(os.listdir(self.folder), [os.path.basename(path)])
+
+    def test_the_same_file_without_an_offence_is_accepted(self):
+        self.write(HEADER + rows(0, "drive", 1))
+        self.assertEqual(self.flanks("gear.csv", "--no-pictures").returncode, 0)
+
+    def test_missing_file(self):
+        result = self.flanks("nowhere.csv")
+        self.assertEqual(result.returncode, 2)
+        self.assertIn("nowhere.csv: cannot be read: No such file", result.stderr)
+
+    def test_wrong_headers(self):
+        good = rows(0, "drive", 1)
+        self.assert_refused("tooth,flank,t2,t1,deviation_um\n" + good, 1, "tooth,flank,t2,t1", HEADER.strip())
+        self.assert_refused(good, 1, "the header is '0,drive,0,0,1'")
+        self.assert_refused(PITCH_HEADER + "0,drive,1\n", 1, "pitch file")
+        self.assert_refused("# only a comment\n", 2, "empty")
+        self.assert_refused(HEADER, 1, "no rows")
+
+    def test_decimal_commas_and_other_delimiters(self):
+        good = rows(0, "drive", 1.5)
+        self.assert_refused(HEADER + good.replace("1.5", "1,5"), 2, "6 fields", "decimal comma")
+        self.assert_refused((HEADER + good).replace(",", ";"), 1, "semicolons")
+        self.assert_refused(HEADER + good.replace(",", "\t"), 2, "tabs")
+        self.assert_refused(HEADER + "0,drive,0,0\n", 2, "4 fields")
+
+    def test_what_is_no_number(self):
+        for text in ("nan", "inf", "0x1p3", "1.5um", "", "--1", "1e", "\u0661"):
+            bad = rows(0, "drive", 7).replace(",7\n", f",{text}\n", 1)
+            self.assert_refused(HEADER + bad, 2, f"deviation_um is '{text}'")
+        self.assert_refused(HEADER + rows(0, "drive", 7).replace(",7\n", ",1e999\n", 1), 2, "too large")
+
+    def test_teeth_and_flanks(self):
+        self.assert_refused(HEADER + rows(-1, "drive", 1), 2, "tooth is '-1'")
+        self.assert_refused(HEADER + rows(0, "left", 1), 2, "flank is 'left'", "drive, coast or *")
+        self.assert_refused(HEADER + rows(17, "drive", 1), 2, "tooth is 17; 0 to 16", arguments=("--gear-teeth", "17"))
+        self.assert_refused(HEADER + rows(123456, "drive", 1), 2, "tooth is 123456")
+
+    def test_grids(self):
+        lines = rows(0, "drive", 1).splitlines(keepends=True)
+        second = rows(1, "*", 1).splitlines(keepends=True)
+        self.assert_refused(HEADER + "".join(lines + second[:-1]), 17, "tooth 1, flank *", "no row for t1 = 1, t2 = 1")
+        self.assert_refused(HEADER + "".join(lines + second + second[3:4]), 32, "second row for t1 = 0, t2 = 0.75")
+        self.assert_refused(HEADER + "".join(lines).replace("0.25", "0.3"), 3, "t2 = 0.3", "right value is 0.25")
+        self.assert_refused(HEADER + "".join(lines) + rows(1, "drive", 1, (3, 4)), 18, "t2 = 0.333333")
+        self.assert_refused(HEADER + "".join(lines).replace(",0.25,", ",0.250011,"), 3, "0.250011")
+        self.assert_refused(HEADER + "".join(lines[10:]), 2, "only one position t1 = 1")
+        self.assert_refused(HEADER + "".join(lines[:10]), 7, "t1 ends at 0.5")
+        self.assert_refused(HEADER + "".join(lines) + "0,drive,2,0,1\n", 17, "t1 is 2")
+
+    def test_bytes_that_are_no_text(self):
+        good = (HEADER + rows(0, "drive", 1)).encode()
+        self.assert_refused(good + b"0,drive,0,0,\0", 17, "zero byte")
+        self.assert_refused(good + b"0,drive,0,0,1\r0\n", 17, "carriage return")
+        self.assert_refused(good + b"0,drive,0,0," + b"1" * 1000, 17, "longer than 1000")
+
+    def test_pitch_files(self):
+        for text, words in (
+            ("0,drive,1\n1,drive,1\n0,drive,2\n", ["pitch.csv:4:", "tooth 0, flank drive", "line 2"]),
+            ("0,drive,nan\n", ["pitch.csv:2:", "nan"]),
+            ("0,drive,0,0,1\n", ["pitch.csv:2:", "5 fields"]),
+        ):
+            self.write(HEADER + rows(0, "drive", 1))
+            self.write(PITCH_HEADER + text, "pitch.csv")
+            result = self.flanks("gear.csv", "pitch.csv")
+            self.assertEqual((result.returncode, result.stdout), (2, ""), result.stderr)
+            for word in words:
+                self.assertIn(word, result.stderr)
+            self.assertEqual(sorted(os.listdir(self.folder)), ["gear.csv", "pitch.csv"])
+
+    def test_options(self):
+        self.write(HEADER + rows(0, "drive", 1) + rows(4, "*", 1))
+        for option, value, word in (
+            ("--tooth", "5", "no tooth 5; 0 to 4"),
+            ("--tooth", "-1", "whole number"),
+            ("--teeth", "0,9", "no tooth 9; 0 to 4"),
+            ("--teeth", "0,0", "different"),
+            ("--flank", "left", "invalid choice"),
+            ("--gear-teeth", "2", "3 to 1000"),
+            ("--output", "no/such/folder/stem", "no/such/folder: there is no such folder"),
+        ):
+            result = self.flanks("gear.csv", f"{option}={value}")
+            self.assertEqual((result.returncode, result.stdout), (2, ""), option)
+            self.assertIn(word, result.stderr)
+        self.assertEqual(self.flanks("gear.csv", "--gear-teeth=5", "--teeth=0,4", "--no-pictures").returncode, 0)
+
+
+class Summary(Folder):
+    def lines_of(self, *arguments):
+        result = self.flanks(*arguments, "--no-pictures")
+        self.assertEqual(result.returncode, 0, result.stderr)
+        return result.stdout.splitlines(), result.stderr
+
+    def test_extremes_and_rms_of_each_side(self):
+        """Drive: a plane from -3 to 5 um on tooth 2 only. Coast: 4 um on all, 3 um on tooth 0."""
+        drive = rows("*", "drive", 0) + rows(2, "drive", lambda t1, t2: 8 * t1 * t2 - 3, (3, 5))
+        self.write(HEADER + drive + rows("*", "coast", 4) + rows(0, "coast", 3))
+        lines, _ = self.lines_of("gear.csv", "--gear-teeth", "4")
+        t1, t2 = np.linspace(0, 1, 3)[:, None], np.linspace(0, 1, 5)
+        rms_um = np.sqrt(((8 * t1 * t2 - 3) ** 2).mean() / 4)
+        self.assertEqual(lines[0], "gear.csv: 4 teeth, 4 sets of 3 x 5 nodes (t1 x t2)")
+        self.assertEqual(lines[1].split(), ["drive", "rms", f"{rms_um:.3f}", "um"])
+        self.assertEqual(lines[2].split("min")[1].split(), "-3.000 (tooth 2, t1 0, t2 0)".split())
+        self.assertEqual(lines[3].split("max")[1].split(), "5.000 (tooth 2, t1 1, t2 1)".split())
+        self.assertEqual(lines[4].split(), ["coast", "rms", f"{np.sqrt((3 * 16 + 9) / 4):.3f}", "um"])
+        self.assertEqual(lines[5].split("min")[1].split(), "3.000 (tooth 0, t1 0, t2 0)".split())
+        self.assertEqual(lines[6].split("max")[1].split(), "4.000 (tooth 1, t1 0, t2 0)".split())
+
+    def test_pitch_numbers(self):
+        """The largest step is the one from the last tooth to the first; coast has a row for all others."""
+        self.write(HEADER + rows("*", "*", 0))
+        drive = "".join(f"{i},drive,{value}\n" for i, value in enumerate([5, 3, 1, -1, -2.5]))
+        self.write(PITCH_HEADER + drive + "*,coast,0.5\n3,coast,-1.25\n", "pitch.csv")
+        lines, errors = self.lines_of("gear.csv", "pitch.csv")
+        self.assertEqual(errors, "")
+        self.assertIn("5 teeth", lines[0])
+        drive = "drive f_p 7.500 um (tooth 0 against 4) F_p 7.500 um (tooth 4 to 0)"
+        coast = "coast f_p 1.750 um (tooth 3 against 2) F_p 1.750 um (tooth 3 to 0)"
+        self.assertEqual([line.split() for line in lines[-2:]], [drive.split(), coast.split()])
+
+    def test_single_and_total_pitch_of_an_eccentricity(self):
+        """A sine of amplitude a: F_p = 2 a, f_p = 2 a sin(pi / z)."""
+        pitch_um = 6 * np.sin(2 * np.pi * np.arange(40) / 40)
+        single_um = flankfile.single_pitch_um(pitch_um)
+        self.assertAlmostEqual(np.abs(single_um).max(), 12 * np.sin(np.pi / 40), delta=0.01)
+        self.assertAlmostEqual(single_um.sum(), 0.0)
+        self.assertAlmostEqual(single_um[1], pitch_um[1] - pitch_um[0])
+        self.assertAlmostEqual(flankfile.total_pitch_um(pitch_um), 12.0)
+
+    def test_flanks_without_rows_are_ideal_and_said(self):
+        self.write(HEADER + rows(2, "drive", 6))
+        self.write(PITCH_HEADER + "2,*,1\n", "pitch.csv")
+        lines, errors = self.lines_of("gear.csv", "pitch.csv")
+        self.assertIn("3 teeth, 1 set ", lines[0])
+        self.assertIn(f"rms {np.sqrt(12):7.3f}", lines[1])
+        self.assertIn("gear.csv: no row for tooth 0, flank drive and 4 more: ideal", errors)
+        self.assertIn("pitch.csv: no row for tooth 0, flank drive and 3 more: ideal", errors)
+
+    def test_one_tooth_stands_for_all_if_none_is_named(self):
+        self.write(HEADER + rows("*", "*", 1))
+        self.assertIn("gear.csv: one tooth for all, 1 set", self.lines_of("gear.csv")[0][0])
+
+
+class Pictures(Folder):
+    def png_size(self, name):
+        with open(self.path(name), "rb") as file:
+            head = file.read(24)
+        self.assertEqual(head[:8], b"\x89PNG\r\n\x1a\n")
+        return struct.unpack(">II", head[16:24])
+
+    def svg_text(self, name):
+        """The words of a picture, a space between its texts."""
+        svg = self.text_of(name)
+        self.assertIn("<svg", svg)
+        self.assertIn("DejaVu Sans", svg)
+        found = re.findall(r"<text[^>]*>(.*?)</text>", svg, re.DOTALL)
+        return " ".join(re.sub(r"<[^>]*>|\s+", " ", text).strip() for text in found)
+
+    def write_gear(self):
+        """7 teeth; tooth 5 deviates most, on its coast flank."""
+        flanks = rows("*", "*", lambda t1, t2: -4 * (2 * t1 - 1) ** 2) + rows(5, "coast", lambda t1, t2: 9 * t2 - 2)
+        pitch_um = [0, 1, 3.25, 2, 0, -1, -2]
+        self.write(HEADER + flanks)
+        self.write(PITCH_HEADER + "".join(f"{i},*,{value}\n" for i, value in enumerate(pitch_um)), "pitch.csv")
+
+    def test_all_pictures_are_made_with_their_labels_and_nothing_else(self):
+        self.write_gear()
+        result = self.flanks("gear.csv", "pitch.csv", "--output", "out", "--title", "it's a \"test\" 50 %")
+        self.assertEqual((result.returncode, result.stderr), (0, ""))
+        names = [f"out_{name}" for name in ("topography", "traces", "pitch", "teeth")]
+        expected = [f"{name}.{suffix}" for name in names for suffix in ("png", "svg")] + ["gear.csv", "pitch.csv"]
+        self.assertEqual(sorted(os.listdir(self.folder)), sorted(expected))
+        for name in names:
+            self.assertGreater(min(self.png_size(name + ".png")), 600)
+            self.assertIn(name, result.stdout)
+            self.assertIn("it's a &quot;test&quot; 50 %", self.svg_text(name + ".svg").replace('"', "&quot;"))
+
+        labels = {
+            "topography": ["tooth 0, drive flank", "-4.00 to +0.00 µm", "tooth 5, coast flank", "-2.00 to +7.00 µm",
+                           "t1, along the face (z / face width)", "t2, along the profile (0 start, 1 tip)",
+                           "deviation / µm"],
+            "traces": ["Profile traces at mid face", "Helix traces at mid profile", "drive flanks", "coast flanks",
+                       "tip", "start", "+ material", "2 µm"],
+            "pitch": ["Single pitch deviation", "= 2.25 µm (tooth 2)",
+                      "Cumulative pitch deviation", "= 5.25 µm (teeth 6 and 2)"],
+            "teeth": ["drive flanks", "coast flanks", "drive: mean, range", "coast: pitch",
+                      "deviation / µm (+ material added)"],
+        }
+        for name, texts in labels.items():
+            shown = self.svg_text(f"out_{name}.svg")
+            for text in texts:
+                self.assertIn(text, shown)
+
+    def test_without_a_pitch_file_there_is_no_pitch(self):
+        self.write_gear()
+        self.assertEqual(self.flanks("gear.csv").returncode, 0)
+        self.assertIn("gear_teeth.png", os.listdir(self.folder))
+        self.assertNotIn("gear_pitch.png", os.listdir(self.folder))
+        self.assertNotIn("pitch", self.svg_text("gear_teeth.svg"))
+
+    def test_chosen_tooth_flank_and_traces(self):
+        self.write_gear()
+        result = self.flanks("gear.csv", "--tooth", "3", "--teeth", "1,5")
+        self.assertEqual(result.returncode, 0, result.stderr)
+        both = self.svg_text("gear_topography.svg")
+        self.assertIn("tooth 3, drive flank", both)
+        self.assertIn("tooth 3, coast flank", both)
+        self.assertNotIn("all, mean", self.svg_text("gear_traces.svg"))
+        # The coast profile of tooth 5 rises by 9 um from start to tip, without any error of form.
+        numbers = " 9.0 +9.0 0.0 "
+        self.assertIn(numbers, self.svg_text("gear_traces.svg"))
+
+        result = self.flanks("gear.csv", "--tooth", "3", "--flank", "coast", "--teeth", "1,2", "--overlay")
+        self.assertEqual(result.returncode, 0, result.stderr)
+        one = self.svg_text("gear_topography.svg")
+        self.assertNotIn("drive flank", one)
+        self.assertIn("tooth 3, coast flank", one)
+        self.assertIn("all, mean", self.svg_text("gear_traces.svg"))
+        self.assertNotIn(numbers, self.svg_text("gear_traces.svg"))
+
+    def test_flat_flanks_are_drawn_without_complaint(self):
+        """Ideal ones have no contour line, constant ones no range."""
+        for deviation_um, nodes, pitch_um in ((0, (3, 5), 0), (5, (2, 2), 3), (-1e-4, (2, 90), 0)):
+            self.write(HEADER + rows("*", "*", deviation_um, nodes))
+            self.write(PITCH_HEADER + f"*,*,{pitch_um}\n", "pitch.csv")
+            for pitch in (["pitch.csv"], []):
+                result = self.flanks("gear.csv", *pitch, "--gear-teeth", "5", "--overlay")
+                self.assertEqual((result.returncode, result.stderr), (0, ""))
+
+    def test_a_failed_drawing_leaves_nothing(self):
+        self.write_gear()
+        self.write("#!/bin/sh\necho no >&2\nexit 1\n", "gnuplot")
+        os.chmod(self.path("gnuplot"), 0o755)
+        result = subprocess.run(
+            [os.path.join(SCRIPTS, "flanks"), "gear.csv"], cwd=self.folder, capture_output=True, text=True,
+            env={**os.environ, "PATH": self.folder + ":" + os.environ["PATH"], "PYTHONDONTWRITEBYTECODE": "1"})
+        self.assertEqual(result.returncode, 1)
+        self.assertIn("flanks: gnuplot flanks_", result.stderr)
+        self.assertNotIn("Traceback", result.stderr)
+        self.assertEqual(sorted(os.listdir(self.folder)), ["gear.csv", "gnuplot", "pitch.csv"])
+
+
+class Traces(Folder):
+    """Where the curves of the trace picture stand."""
+
+    def setUp(self):
+        super().setUp()
+        import importlib.machinery
+        import importlib.util
+
+        loader = importlib.machinery.SourceFileLoader("flanks", os.path.join(SCRIPTS, "flanks"))
+        self.script = importlib.util.module_from_spec(importlib.util.spec_from_loader("flanks", loader))
+        loader.exec_module(self.script)
+
+    def test_cuts_are_at_the_middle_also_between_nodes(self):
+        for nodes in ((3, 5), (4, 6)):
+            t1, t2 = np.linspace(0, 1, nodes[0])[:, None], np.linspace(0, 1, nodes[1])
+            table_um = 10 * t1 + 3 * t2 + t1 * t2
+            np.testing.assert_allclose(self.script.profile_um(table_um), 5 + 3.5 * t2)
+            np.testing.assert_allclose(self.script.helix_um(table_um), (1.5 + 10.5 * t1).ravel())
+
+    def test_material_points_outwards_on_both_sides(self):
+        traces_um = np.array([[[0.0, 3.0], [0.0, 3.0]]])
+        panel = self.script.TracePanel(traces_um, traces_um)
+        for side, outwards in ((DRIVE, -1), (COAST, 1)):
+            x = panel.x(0, side, traces_um[0][side])
+            self.assertEqual(x[0], panel.nominal(0, side))
+            self.assertAlmostEqual((x[1] - x[0]) * outwards * panel.slot_um, 3.0)
+            self.assertGreater(x[0] * outwards, panel.GAP)
+            self.assertLess(x[1] * outwards, panel.GAP + 1)
+
+    def test_numbers_of_a_trace(self):
+        t = np.linspace(0, 1, 101)
+        np.testing.assert_allclose(self.script.trace_numbers_um(4 - 6 * t), (6, -6, 0), atol=1e-12)
+        total_um, slope_um, form_um = self.script.trace_numbers_um(2 * np.cos(4 * np.pi * t))
+        np.testing.assert_allclose((total_um, slope_um, form_um), (4, 0, 4), atol=0.05)
+
+    def test_round_numbers_of_scales(self):
+        for value, expected in ((0, 1), (1, 1), (1.01, 2), (2.5, 5), (5.1, 10), (0.03, 0.05), (49, 50), (1000, 1000)):
+            self.assertAlmostEqual(self.script.round_up(value), expected)
+        for largest_um in (1e-3, 0.7, 6, 6.1, 22.9, 300):
+            range_um, step_um = self.script.colour_scale(largest_um)
+            self.assertGreaterEqual(range_um, largest_um * (1 - 1e-9))
+            self.assertLessEqual(range_um / step_um, 6)
+            self.assertAlmostEqual(range_um / step_um, round(range_um / step_um))
+
+    def test_tiles_stand_in_rows_from_the_top(self):
+        side_um = np.array([np.full((2, 2), float(tooth)) for tooth in range(10)])
+        image = self.script.tile_image(side_um, 8)
+        self.assertEqual(image.shape, (2 * self.script.TILE_HEIGHT, 8 * self.script.TILE_WIDTH))
+        self.assertEqual(image[self.script.TILE_HEIGHT, 0], 0)
+        self.assertEqual(image[self.script.TILE_HEIGHT, 7 * self.script.TILE_WIDTH], 7)
+        self.assertEqual(image[0, self.script.TILE_WIDTH], 9)
+        self.assertTrue(np.isnan(image[0, 2 * self.script.TILE_WIDTH]))
+
+    def test_teeth_of_the_traces_are_even_round_the_gear(self):
+        class Options:
+            teeth = None
+
+        for teeth, expected in ((45, [0, 11, 23, 34]), (40, [0, 10, 20, 30]), (3, [0, 1, 2]), (1, [0])):
+            gear = self.script.Gear(teeth, {(ALL, ALL): np.zeros((2, 2))}, None)
+            self.assertEqual(self.script.trace_teeth(gear, Options), expected)
+
+
+class Palette(unittest.TestCase):
+    def test_both_arms_fall_in_equal_steps_of_lightness_from_a_neutral_middle(self):
+        with open(os.path.join(SCRIPTS, "flanks_style.gp"), encoding="utf-8") as file:
+            colours = re.findall(r"-?\d '#([0-9a-f]{6})'", file.read())
+        self.assertEqual(len(colours), 13)
+        rgb = np.array([[int(c[i : i + 2], 16) / 255 for i in (0, 2, 4)] for c in colours])
+        linear = np.where(rgb <= 0.04045, rgb / 12.92, ((rgb + 0.055) / 1.055) ** 2.4)
+        lightness = 116 * np.cbrt(linear @ [0.2126, 0.7152, 0.0722]) - 16
+        np.testing.assert_allclose(lightness, 96 - 64 * np.abs(np.arange(-6, 7)) / 6, atol=0.6)
+        self.assertEqual(len(set(rgb[6])), 1)
+        self.assertTrue((rgb[:6, 2] > rgb[:6, 0]).all() and (rgb[7:, 0] > rgb[7:, 2]).all())
+
+
+if __name__ == "__main__":
+    unittest.main()
