@@ -16,6 +16,7 @@ from scipy import interpolate, signal
 
 COLUMNS = ("time_s", "pinion_speed_rpm", "pinion_angle_rad", "contact_force_N")
 PAIRS_COLUMN = "pairs_in_contact"
+HDF5_SIGNATURE = b"\x89HDF\r\n\x1a\n"
 
 # A sampled signal is trusted up to this share of its rate: the low-pass of gearsim passes it unchanged.
 TRUSTED_SHARE_OF_RATE = 0.4
@@ -36,7 +37,7 @@ class RunError(Exception):
 
 
 class Run:
-    """Columns of a gearsim CSV, and what its first lines say of its origin."""
+    """Columns of a result of gearsim, and what it says of its origin."""
 
     def __init__(self, time_s, speed_rpm, angle_rad, force_N, pairs=None, provenance=None):
         self.time_s = time_s
@@ -54,30 +55,60 @@ class Run:
 
 
 def read_run(path):
-    """Read a gearsim CSV; raises RunError or OSError with a message for people."""
-    provenance, names, head_lines = _read_head(path)
+    """Read a result of gearsim, CSV or HDF5; raises RunError or OSError with a message for people."""
+    with open(path, "rb") as file:
+        is_hdf5 = file.read(len(HDF5_SIGNATURE)) == HDF5_SIGNATURE
+    columns, provenance, incomplete = _read_hdf5(path) if is_hdf5 else _read_csv(path)
+    if len(columns[0]) < 2:
+        raise RunError(f"{path}: fewer than two rows")
+    _check_columns(path, columns)
+    run = Run(*columns, provenance=provenance)
+    run.incomplete = incomplete
+    return run
+
+
+def _wanted(path, names):
+    """Those of the names that an analysis reads, in the order of Run."""
     missing = [name for name in COLUMNS if name not in names]
     if missing:
         raise RunError(f"{path}: no column {', '.join(missing)}; add it to output.columns of the run")
-    wanted = [name for name in COLUMNS + (PAIRS_COLUMN,) if name in names]
+    return [name for name in COLUMNS + (PAIRS_COLUMN,) if name in names]
+
+
+def _read_hdf5(path):
+    """Columns, provenance, and why the run ended early (None: it did not)."""
+    try:
+        import h5py
+    except ImportError as error:
+        raise RunError(f"{path}: HDF5 is read by h5py, which is not installed (Debian: python3-h5py)") from error
+    try:
+        with h5py.File(path, "r") as file:
+            provenance = {name: _text(value) for name, value in file.attrs.items()}
+            columns = [file[name][:] for name in _wanted(path, file)]
+    except OSError as error:
+        raise RunError(f"{path}: {error}") from error
+    return columns, provenance, provenance.pop("incomplete", None)
+
+
+def _text(value):
+    return value.decode("utf-8", errors="replace") if isinstance(value, bytes) else str(value)
+
+
+def _read_csv(path):
+    """The same of a CSV."""
+    provenance, names, head_lines = _read_head(path)
     try:
         table = np.loadtxt(
             path,
             delimiter=",",
             comments="#",
             skiprows=head_lines,
-            usecols=[names.index(name) for name in wanted],
+            usecols=[names.index(name) for name in _wanted(path, names)],
             ndmin=2,
         )
     except ValueError as error:
         raise RunError(f"{path}: {error}") from error
-    if len(table) < 2:
-        raise RunError(f"{path}: fewer than two rows")
-    columns = [np.ascontiguousarray(column) for column in table.T]
-    _check_columns(path, columns)
-    run = Run(*columns, provenance=provenance)
-    run.incomplete = _incomplete_reason(path)
-    return run
+    return [np.ascontiguousarray(column) for column in table.T], provenance, _incomplete_reason(path)
 
 
 def _read_head(path):

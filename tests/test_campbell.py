@@ -11,6 +11,7 @@ import sys
 import tempfile
 import unittest
 
+import h5py
 import numpy as np
 from scipy import signal
 
@@ -284,11 +285,25 @@ class CommandLine(unittest.TestCase):
             file.write(tail)
         return path
 
-    def campbell(self, *arguments):
+    def write_hdf5(self, names=COLUMNS.split(","), **attributes):
+        """The run as gearsim writes it: texts of variable length, but for `incomplete`."""
+        table = [self.run.time_s, self.run.speed_rpm, self.run.angle_rad, self.run.force_N]
+        path = os.path.join(self.folder, "run.h5")
+        with h5py.File(path, "w") as file:
+            for name, data in zip(names, table):
+                file.create_dataset(name, data=data, chunks=(4096,), maxshape=(None,))
+            for line in HEAD.splitlines()[1:]:
+                name, value = line[2:].split(" = ")
+                file.attrs[name] = value
+            for name, value in attributes.items():
+                file.attrs[name] = value
+        return path
+
+    def campbell(self, *arguments, **environment):
         return subprocess.run(
             [os.path.join(SCRIPTS, "campbell"), *arguments],
             cwd=self.folder,
-            env={**os.environ, "PYTHONDONTWRITEBYTECODE": "1"},
+            env={**os.environ, "PYTHONDONTWRITEBYTECODE": "1", **environment},
             capture_output=True,
             text=True,
         )
@@ -332,6 +347,43 @@ class CommandLine(unittest.TestCase):
         read = runup.read_run(path)
         self.assertAlmostEqual(read.rate_Hz, 8192.0, delta=1e-3)
         self.assertAlmostEqual(read.force_N.mean(), MEAN_N, delta=1.0)
+
+    def test_hdf5_is_the_same_as_csv(self):
+        options = ("--eigenfrequency", "1979.16", "--no-pictures", "--output")
+        for path, stem in ((self.write(), "from_csv"), (self.write_hdf5(), "from_hdf5")):
+            result = self.campbell(path, *options, stem)
+            self.assertEqual((result.returncode, result.stderr), (0, ""))
+        for name in ("map.bin", "cuts.dat", "spectrum.dat"):
+            one, other = (np.fromfile(path, "<f4") if name == "map.bin" else np.loadtxt(path)
+                          for path in (os.path.join(self.folder, f"{stem}_{name}") for stem in ("from_csv", "from_hdf5")))
+            # CSV has ten digits of forces of 1 kN: 1e-7 N of noise, on logarithms of some mN.
+            np.testing.assert_allclose(one, other, rtol=1e-4, atol=1e-4)
+
+    def test_hdf5_is_known_by_its_content_and_says_what_it_is(self):
+        path = self.write_hdf5(incomplete=np.bytes_(b"interrupted"), eigenfrequency_Hz="1979.16")
+        os.rename(path, path + ".part")
+        run = runup.read_run(path + ".part")
+        np.testing.assert_array_equal(run.force_N, self.run.force_N)
+        self.assertEqual((run.provenance["gears.wheel_teeth"], run.incomplete), ("41", "interrupted"))
+        self.assertIsNone(run.pairs)
+        result = self.campbell(path + ".part", "--no-pictures")
+        self.assertEqual(result.returncode, 0, result.stderr)
+        self.assertIn("ended early (interrupted)", result.stderr)
+        self.assertNotIn("eigenfrequency", result.stderr)
+
+    def test_bad_hdf5_is_said_in_a_line(self):
+        path = self.write_hdf5(names=COLUMNS.replace("pinion_angle_rad", "other").split(","))
+        self.assert_input_error(self.campbell(path), "pinion_angle_rad", "output.columns")
+        path = self.write_hdf5()
+        os.truncate(path, 3000)
+        self.assert_input_error(self.campbell(path), "run.h5")
+
+    def test_missing_h5py_is_said_in_a_line(self):
+        with open(os.path.join(self.folder, "h5py.py"), "w", encoding="ascii") as file:
+            file.write("raise ImportError('as if it were not installed')\n")
+        self.assert_input_error(self.campbell(self.write_hdf5(), PYTHONPATH=self.folder), "run.h5", "python3-h5py")
+        result = self.campbell(self.write(), "--no-pictures", PYTHONPATH=self.folder)
+        self.assertEqual(result.returncode, 0, result.stderr)
 
     def test_missing_column_is_named(self):
         path = self.write(columns=COLUMNS.replace("pinion_angle_rad", "wheel_angle_rad"))
