@@ -1,0 +1,65 @@
+/* SPDX-FileCopyrightText: The gearmesh authors */
+/* SPDX-License-Identifier: BSD-3-Clause */
+
+/*
+ * gearflanks: makes the flank and pitch files of a gear of a class of ISO 1328-1, and says which class
+ * such files measure to. `gearflanks --help` says all of its use.
+ */
+#include "gearbox.h"
+#include "make.h"
+#include "report.h"
+
+#include <errno.h>
+#include <string.h>
+
+static int load_and_do(const flanks_options *options) {
+    const config_request request = {.path = options->parameters,
+                                    .quiet = 1, /* doubts about the gears are gearsim's to tell */
+                                    .purpose = CONFIG_FOR_GEOMETRY};
+    config conf;
+    gearbox box;
+    int status = config_load(&conf, &request);
+
+    if (status != 0)
+        return status;
+    status = gearbox_open(&box, &conf);
+    if (status == 0) {
+        const flank_files *files = options->wheel ? &conf.wheel_flanks : &conf.pinion_flanks;
+
+        status = options->task == FLANKS_MAKE ? make_flanks(options, &box.pair)
+                                              : report_flanks(options, &box.pair, files);
+        gearbox_close(&box);
+    }
+    config_free(&conf);
+    return status;
+}
+
+static int do_task(const flanks_options *options) {
+    switch (options->task) {
+    case FLANKS_HELP:
+        options_print_help(stdout);
+        return EXIT_DONE;
+    case FLANKS_VERSION:
+        printf("gearflanks %s\n", gm_version());
+        return EXIT_DONE;
+    default:
+        return load_and_do(options);
+    }
+}
+
+/* A full disk behind stdout shows only when the text is written out. */
+static int finish_stdout(int status) {
+    if (fflush(stdout) == 0 && !ferror(stdout))
+        return status;
+    fprintf(stderr, "gearflanks: cannot write to stdout: %s\n", strerror(errno));
+    return status == EXIT_DONE ? EXIT_RUN_FAILED : status;
+}
+
+int main(int argc, char *argv[]) {
+    flanks_options options;
+    int status = options_parse(&options, argc, argv);
+
+    if (status == 0)
+        status = do_task(&options);
+    return finish_stdout(status);
+}

@@ -1,0 +1,13 @@
+/* SPDX-FileCopyrightText: The gearmesh authors */
+/* SPDX-License-Identifier: BSD-3-Clause */
+
+/* Makes flanks and writes them. */
+#ifndef GEARFLANKS_MAKE_H
+#define GEARFLANKS_MAKE_H
+
+#include "options.h"
+
+/* Returns an exit code; messages go to stderr. */
+int make_flanks(const flanks_options *options, const gm_pair *pair);
+
+#endif

@@ -1,0 +1,32 @@
+/* SPDX-FileCopyrightText: The gearmesh authors */
+/* SPDX-License-Identifier: BSD-3-Clause */
+
+/* The command line of gearflanks. */
+#ifndef GEARFLANKS_OPTIONS_H
+#define GEARFLANKS_OPTIONS_H
+
+#include "config.h"
+
+#include <gearmesh/gearmesh_io.h>
+
+enum flanks_task { FLANKS_MAKE, FLANKS_EVALUATE, FLANKS_HELP, FLANKS_VERSION };
+
+enum { FLANKS_MOST_WAVES = 100 };
+
+typedef struct flanks_options {
+    enum flanks_task task;
+    const char *parameters; /* the INI file */
+    int wheel;              /* 0 = pinion, 1 = wheel */
+    const char *deviations; /* file names, NULL = not given */
+    const char *pitch;
+    int teeth; /* --teeth: the values of every flank */
+    gm_generate_options generate;
+    gm_flank_wave waves[FLANKS_MOST_WAVES]; /* what generate.waves points to */
+} flanks_options;
+
+/* Returns 0, or EXIT_BAD_INPUT after a message on stderr. */
+int options_parse(flanks_options *options, int count, char *const texts[]);
+
+void options_print_help(FILE *stream);
+
+#endif

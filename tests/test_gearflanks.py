@@ -1,0 +1,274 @@
+#!/usr/bin/env python3
+# SPDX-FileCopyrightText: The gearmesh authors
+# SPDX-License-Identifier: BSD-3-Clause
+"""
+gearflanks: what it makes measures to the class asked for, what it evaluates is what the definitions give
+when worked out here again from the files, and bad input is refused with exit code 2.
+
+    test_gearflanks.py GEARFLANKS [-v] [name of a test]...
+"""
+import csv
+import math
+import os
+import subprocess
+import sys
+import tempfile
+import unittest
+
+GEARFLANKS = os.environ.get("GEARFLANKS", "gearflanks")
+DATA = os.path.join(os.path.dirname(os.path.abspath(__file__)), os.pardir, "data", "paper")
+PARAMS = os.path.join(DATA, "fig14.ini")
+KINDS = ["f_p", "F_p", "F_r", "f_H_alpha", "f_f_alpha", "F_alpha", "f_H_beta", "f_f_beta", "F_beta"]
+
+# The gears of data/paper/.
+TEETH = {"pinion": 45, "wheel": 41}
+ALPHA_N, BETA = math.radians(16), math.radians(33)
+ALPHA_T = math.atan(math.tan(ALPHA_N) / math.cos(BETA))
+BETA_B = math.atan(math.tan(BETA) * math.cos(ALPHA_T))
+
+
+def table(text):
+    """Rows of the table by quantity: (value, tooth, flank, class, tolerance) as texts, and the class."""
+    lines = [line for line in text.splitlines() if not line.startswith("#")]
+    assert lines[0].split() == ["quantity", "value_um", "tooth", "flank", "class", "tolerance_um"], lines[0]
+    assert [line.split()[0] for line in lines[1:10]] == KINDS
+    assert lines[10].startswith("class ") and len(lines) == 11
+    return {line.split()[0]: line.split()[1:] for line in lines[1:10]}, lines[10].split()[1]
+
+
+def file_rows(name):
+    with open(os.path.join(DATA, name), encoding="ascii", newline="") as file:
+        return list(csv.DictReader(line for line in file if not line.startswith("#")))
+
+
+class Case(unittest.TestCase):
+    def setUp(self):
+        folder = tempfile.TemporaryDirectory()
+        self.addCleanup(folder.cleanup)
+        self.folder = folder.name
+
+    def path(self, name):
+        return os.path.join(self.folder, name)
+
+    def write(self, name, text):
+        with open(self.path(name), "w", encoding="ascii") as file:
+            file.write(text)
+        return self.path(name)
+
+    def run_it(self, *arguments):
+        return subprocess.run(
+            [GEARFLANKS, *arguments], cwd=self.folder, capture_output=True, text=True, check=False, timeout=60
+        )
+
+    def accepted(self, *arguments):
+        result = self.run_it(*arguments)
+        self.assertEqual((result.returncode, result.stderr), (0, ""), arguments)
+        return result.stdout
+
+    def refused(self, said, *arguments, code=2):
+        result = self.run_it(*arguments)
+        self.assertEqual(result.returncode, code, result.stderr)
+        self.assertIn(said, result.stderr)
+        self.assertEqual(result.stdout, "")
+
+
+class Make(Case):
+    def make(self, gear, *more):
+        self.accepted(PARAMS, "--gear", gear, "--flanks", "f.csv", "--pitch", "p.csv", *more)
+        return self.accepted(PARAMS, "--gear", gear, "--evaluate", "--flanks", "f.csv", "--pitch=p.csv")
+
+    def test_every_kind_measures_to_the_class(self):
+        for gear, quality_class, seed in (("pinion", "3", "1"), ("wheel", "8", "2"), ("wheel", "11", "77")):
+            rows, overall = table(self.make(gear, "--class", quality_class, "--seed", seed))
+            self.assertEqual(overall, quality_class)
+            for kind, (value, _, _, of_class, tolerance) in rows.items():
+                self.assertEqual(of_class, quality_class, kind)
+                self.assertAlmostEqual(float(value), 0.95 * float(tolerance), delta=2e-3, msg=kind)
+
+    def test_the_files_say_how_they_were_made(self):
+        self.make("wheel", "--class=5", "--seed=9", "--nodes=17x19", "--wave", "67:0.25", "--share", "0.9")
+        for name in ("f.csv", "p.csv"):
+            with open(self.path(name), encoding="ascii") as file:
+                head = "".join(line for line in file if line.startswith("#"))
+            for said in ("wheel of 41 teeth", "class 5", "seed 9", "share 0.9", "17x19", "order 67, 0.25 um"):
+                self.assertIn(said, head)
+        self.assertEqual(sorted(os.listdir(self.folder)), ["f.csv", "p.csv"])
+
+    def test_a_seed_gives_its_own_flanks(self):
+        contents = []
+        for seed in ("1", "1", "2"):
+            self.make("wheel", "--class", "6", "--nodes", "9x9", "--seed", seed)
+            with open(self.path("f.csv"), "rb") as file:
+                contents.append(file.read().split(b"deviation_um", 1)[1])
+        self.assertTrue(contents[0] == contents[1])
+        self.assertFalse(contents[0] == contents[2])
+
+    def test_an_existing_file_stays_if_nothing_can_be_made(self):
+        old = self.write("f.csv", "old\n")
+        self.refused("waves use up", PARAMS, "--gear", "pinion", "--class", "2", "--flanks", "f.csv",
+                     "--pitch", "p.csv", "--wave", "67:30")
+        with open(old, encoding="ascii") as file:
+            self.assertEqual(file.read(), "old\n")
+        self.assertEqual(os.listdir(self.folder), ["f.csv"])
+
+    def test_a_file_that_cannot_be_written_is_a_failure(self):
+        self.refused("no/f.csv: ", PARAMS, "--gear", "pinion", "--class", "6", "--flanks", "no/f.csv",
+                     "--pitch", "p.csv", code=1)
+
+
+class Evaluate(Case):
+    """Against the definitions, computed here from the rows of the files."""
+
+    def flank_values(self, gear):
+        text = self.accepted(PARAMS, "--gear", gear, "--evaluate", "--teeth")
+        rows = list(csv.DictReader(text.splitlines()))
+        self.assertEqual(len(rows), 2 * TEETH[gear])
+        return {(int(row["tooth"]), row["flank"]): row for row in rows}
+
+    def test_pitch(self):
+        for gear, teeth in TEETH.items():
+            measured = self.flank_values(gear)
+            pitch = {(int(r["tooth"]), r["flank"]): float(r["deviation_um"]) for r in file_rows(gear + "_pitch.csv")}
+            worst, ranges = 0.0, []
+            for flank in ("drive", "coast"):
+                ahead = 1 if (flank == "drive") == (gear == "pinion") else -1
+                places = [ahead * pitch[i, flank] / math.cos(ALPHA_T) for i in range(teeth)]
+                ranges.append(max(places) - min(places))
+                for i in range(teeth):
+                    expected = places[i] - places[i - 1]
+                    worst = max(worst, abs(expected))
+                    self.assertAlmostEqual(float(measured[i, flank]["single_pitch_um"]), expected, delta=1e-4)
+            rows, _ = table(self.accepted(PARAMS, "--gear", gear, "--evaluate"))
+            self.assertAlmostEqual(float(rows["f_p"][0]), worst, delta=1e-3)
+            self.assertAlmostEqual(float(rows["F_p"][0]), max(ranges), delta=1e-3)
+
+    def mean_line(self, trace, start, end):
+        """Level and gradient through many points of the polygon."""
+        count, last = 2000, len(trace) - 1
+        points = [start + (end - start) * (k + 0.5) / count for k in range(count)]
+        values = []
+        for t in points:
+            node = min(int(t * last), last - 1)
+            values.append(trace[node] + (t * last - node) * (trace[node + 1] - trace[node]))
+        middle, mean = math.fsum(points) / count, math.fsum(values) / count
+        gradient = math.fsum((t - middle) * v for t, v in zip(points, values)) / math.fsum(
+            (t - middle) ** 2 for t in points
+        )
+        return mean - gradient * middle, gradient
+
+    def form(self, trace, line, start, end):
+        """Range inside; outside (of the profile: not at the foot, as it begins there) only what sticks out."""
+        last = len(trace) - 1
+        inside, outside = [], []
+        for k, value in enumerate(trace):
+            rest = value - line[0] - line[1] * k / last
+            (inside if start <= k / last <= end else outside).append(rest)
+        for t in (start, end):
+            node = min(int(t * last), last - 1)
+            value = trace[node] + (t * last - node) * (trace[node + 1] - trace[node])
+            inside.append(value - line[0] - line[1] * t)
+        return max(inside + outside) - min(inside)
+
+    def test_profile_and_helix(self):
+        nodes = {}
+        for row in file_rows("wheel_flanks.csv"):
+            key = (round(float(row["t1"]) * 20), round(float(row["t2"]) * 30))
+            nodes.setdefault((int(row["tooth"]), row["flank"]), {})[key] = float(row["deviation_um"])
+        measured = self.flank_values("wheel")
+        factor = 1 / math.cos(BETA_B)
+        for flank in ((0, "drive"), (8, "drive"), (40, "coast")):
+            profile = [factor * nodes[flank][10, k] for k in range(31)]
+            helix = [factor * nodes[flank][k, 15] for k in range(21)]
+            for trace, start, end, name in ((profile, 0.0, 0.95, "alpha"), (helix, 0.05, 0.95, "beta")):
+                line = self.mean_line(trace, start, end)
+                row = measured[flank]
+                # 2000 points: the sums are off by about 1e-4 um at the kinks
+                self.assertAlmostEqual(float(row[f"f_H_{name}_um"]), line[1], delta=2e-3)
+                self.assertAlmostEqual(float(row[f"f_f_{name}_um"]), self.form(trace, line, start, end), delta=2e-3)
+                self.assertAlmostEqual(
+                    float(row[f"F_{name}_um"]), self.form(trace, (0.0, 0.0), start, end), delta=2e-4
+                )
+
+    def test_the_table_has_the_worst_of_all_flanks(self):
+        measured = self.flank_values("pinion")
+        rows, overall = table(self.accepted(PARAMS, "--gear", "pinion", "--evaluate"))
+        for kind in KINDS[3:]:
+            value, tooth, flank = rows[kind][:3]
+            worst = max(measured, key=lambda key, kind=kind: abs(float(measured[key][kind + "_um"])))
+            self.assertEqual((int(tooth), flank), worst, kind)
+            self.assertAlmostEqual(float(value), abs(float(measured[worst][kind + "_um"])), delta=1e-3)
+        self.assertEqual(int(overall), max(int(row[3]) for row in rows.values()))
+
+    def test_what_no_file_says_has_no_class(self):
+        pitch = self.write("p.csv", "tooth,flank,deviation_um\n*,drive,0\n3,drive,900\n")
+        rows, overall = table(self.accepted(PARAMS, "--gear", "pinion", "--evaluate", "--pitch", pitch))
+        self.assertEqual(rows["F_p"][3], ">11")
+        self.assertEqual(overall, ">11")
+        for kind in KINDS[2:]:
+            self.assertEqual(rows[kind], ["-"] * 5)
+
+
+class Refusals(Case):
+    make = (PARAMS, "--gear", "pinion", "--class", "6", "--flanks", "f.csv", "--pitch", "p.csv")
+
+    def tearDown(self):
+        self.assertFalse(os.path.exists(self.path("f.csv")))
+
+    def test_options(self):
+        self.refused("an INI file is missing")
+        self.refused("--gear is missing", PARAMS, "--evaluate")
+        self.refused("--class is missing", PARAMS, "--gear", "pinion")
+        self.refused("both needed", PARAMS, "--gear", "pinion", "--class", "6", "--flanks", "f.csv")
+        self.refused("unknown option --what", *self.make, "--what")
+        self.refused("a value is missing behind --seed", *self.make, "--seed")
+        self.refused("a second INI file", *self.make, "b.ini")
+        self.refused("same file: f.csv", *self.make, "--pitch", "f.csv")
+        self.refused("would be overwritten", *self.make, "--pitch", PARAMS)
+        self.refused("not together with --evaluate: --class", *self.make, "--evaluate")
+        self.refused("only together with --evaluate: --teeth", *self.make, "--teeth")
+
+    def test_values(self):
+        for option, value, right in (
+            ("--gear", "ring", "pinion or wheel"),
+            ("--class", "6.5", "1 to 11"),
+            ("--class", "12", "1 to 11"),
+            ("--seed", "-1", "0 to 18446744073709551615"),
+            ("--seed", "18446744073709551616", "0 to 18446744073709551615"),
+            ("--share", "0x1", "0.8 to 0.99"),
+            ("--share", "1", "0.8 to 0.99"),
+            ("--nodes", "21", "such as 21x31"),
+            ("--nodes", "5x31", "9 to 1000"),
+            ("--wave", "67", "such as 67:0.5"),
+            ("--wave", "67:", "such as 67:0.5"),
+            ("--wave", "67:nan", "such as 67:0.5"),
+        ):
+            self.refused(right, *self.make, option, value)
+
+    def test_files(self):
+        bad = self.write("bad.csv", "tooth,flank,deviation_um\n0,drive,x\n")
+        self.refused(f"{bad}:2: ", PARAMS, "--gear", "pinion", "--evaluate", "--pitch", bad)
+        self.refused("no.ini", "no.ini", "--gear", "pinion", "--evaluate")
+        ini = self.write("bad.ini", "[gears]\npinion_teeth = x\n")
+        self.refused(f"{ini}:2: gears.pinion_teeth", ini, "--gear", "pinion", "--evaluate")
+        fig13 = os.path.join(DATA, "fig13.ini")
+        self.refused("nothing to evaluate", fig13, "--gear", "pinion", "--evaluate")
+
+
+class Informative(Case):
+    def test_help_and_version(self):
+        text = self.accepted("--help")
+        for option in ("--gear", "--flanks", "--pitch", "--class", "--seed", "--share", "--nodes", "--wave",
+                       "--evaluate", "--teeth", "--help", "--version"):
+            self.assertIn(option, text)
+        self.assertRegex(self.accepted("--version"), r"^gearflanks \d+\.\d+\.\d+\n$")
+
+    def test_a_full_disk_is_noticed(self):
+        with open("/dev/full", "w", encoding="ascii") as full:
+            result = subprocess.run([GEARFLANKS, "--help"], stdout=full, stderr=subprocess.PIPE, check=False)
+        self.assertEqual(result.returncode, 1)
+
+
+if __name__ == "__main__":
+    if len(sys.argv) > 1 and not sys.argv[1].startswith("-"):
+        GEARFLANKS = os.path.abspath(sys.argv.pop(1))
+    unittest.main()
