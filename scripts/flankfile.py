@@ -45,7 +45,10 @@ def _read_lines(path):
         line = content[: content.index(b"\0")].count(b"\n") + 1
         _fail(path, line, "a zero byte: this is not plain text")
     text = content.decode("utf-8-sig", errors="replace")
-    return [line[:-1] if line.endswith("\r") else line for line in text.split("\n")]
+    lines = text.split("\n")
+    if not lines[-1]:
+        lines.pop()  # the last line has an end
+    return [line[:-1] if line.endswith("\r") else line for line in lines]
 
 
 def _other_delimiter(line):

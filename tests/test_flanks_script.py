@@ -82,10 +82,10 @@ class Reading(Folder):
             np.testing.assert_array_equal(flankfile.read_flanks(self.write(text))[ALL, ALL], expected_um)
 
     def test_the_most_special_set_wins_whole(self):
-        text = rows("*", "*", 1) + rows("*", "coast", 2) + rows(1, "*", 3) + rows(1, "coast", 4)
+        text = rows("*", "*", 1) + rows("*", "coast", 2) + rows(1, "*", 3) + rows(1, "coast", 4) + rows(2, "*", 5)
         sets = flankfile.read_flanks(self.write(HEADER + text))
-        won = [[float(flankfile.winner(sets, tooth, side).max()) for side in (DRIVE, COAST)] for tooth in range(3)]
-        self.assertEqual(won, [[1, 2], [3, 4], [1, 2]])
+        won = [[float(flankfile.winner(sets, tooth, side).max()) for side in (DRIVE, COAST)] for tooth in range(4)]
+        self.assertEqual(won, [[1, 2], [3, 4], [5, 5], [1, 2]])
         del sets[ALL, ALL]
         self.assertIsNone(flankfile.winner(sets, 0, DRIVE))
 
@@ -124,7 +124,7 @@ class BadFiles(Folder):
         self.assert_refused("tooth,flank,t2,t1,deviation_um\n" + good, 1, "tooth,flank,t2,t1", HEADER.strip())
         self.assert_refused(good, 1, "the header is '0,drive,0,0,1'")
         self.assert_refused(PITCH_HEADER + "0,drive,1\n", 1, "pitch file")
-        self.assert_refused("# only a comment\n", 2, "empty")
+        self.assert_refused("# only a comment\n", 1, "empty")
         self.assert_refused(HEADER, 1, "no rows")
 
     def test_decimal_commas_and_other_delimiters(self):
@@ -142,6 +142,7 @@ class BadFiles(Folder):
 
     def test_teeth_and_flanks(self):
         self.assert_refused(HEADER + rows(-1, "drive", 1), 2, "tooth is '-1'")
+        self.assert_refused(HEADER + rows("\u0661", "drive", 1), 2, "tooth is '\u0661'")
         self.assert_refused(HEADER + rows(0, "left", 1), 2, "flank is 'left'", "drive, coast or *")
         self.assert_refused(HEADER + rows(17, "drive", 1), 2, "tooth is 17; 0 to 16", arguments=("--gear-teeth", "17"))
         self.assert_refused(HEADER + rows(123456, "drive", 1), 2, "tooth is 123456")
@@ -152,6 +153,8 @@ class BadFiles(Folder):
         self.assert_refused(HEADER + "".join(lines + second[:-1]), 17, "tooth 1, flank *", "no row for t1 = 1, t2 = 1")
         self.assert_refused(HEADER + "".join(lines + second + second[3:4]), 32, "second row for t1 = 0, t2 = 0.75")
         self.assert_refused(HEADER + "".join(lines).replace("0.25", "0.3"), 3, "t2 = 0.3", "right value is 0.25")
+        slip = rows(0, "drive", 1, (6, 5)).replace("0.25", "0.26", 1)
+        self.assert_refused(HEADER + slip, 3, "t2 = 0.26 is not on the uniform grid of 6 x 5 nodes", "right value is 0.25")
         self.assert_refused(HEADER + "".join(lines) + rows(1, "drive", 1, (3, 4)), 18, "t2 = 0.333333")
         self.assert_refused(HEADER + "".join(lines).replace(",0.25,", ",0.250011,"), 3, "0.250011")
         self.assert_refused(HEADER + "".join(lines[10:]), 2, "only one position t1 = 1")
