@@ -7,6 +7,7 @@
  * what is not freed or closed is seen, and the locale has a decimal comma on any machine.
  */
 #include "io_test.h"
+#include "reference_gear.h"
 
 #define TEETH 5
 
@@ -159,6 +160,20 @@ static int build_with_design(void) {
     return gm_flanks_build(&flanks, &memory, TEETH, &deviations, &pitch, &options, &error);
 }
 
+static gm_pair gears;
+
+static int generate(void) {
+    gm_generate_options options;
+    gm_generate_options_default(&options);
+    options.quality_class = 6;
+    return gm_flanks_generate(&deviations, &pitch, &gears, 1, &options, &error);
+}
+
+static int evaluate(void) {
+    gm_quality quality;
+    return gm_quality_evaluate(&quality, NULL, &gears, 1, &deviations, &pitch, NULL, &error);
+}
+
 static int write_deviations(void) {
     return gm_deviations_write(&deviations, IO_TEST_PATH("out.csv"), &error);
 }
@@ -234,6 +249,14 @@ static void building_flanks_survives_any_failed_allocation(void) {
     gm_flanks_memory_free(memory);
     survives_any_failed_allocation(build_with_design, 4); /* also two designs and a table */
     GM_ASSERT_INT(flanks.coast.face_nodes - 1, 23);       /* 5 um / 23^2 is below 0.01 um */
+    free_all();
+    GM_ASSERT_INT(alive, 0);
+}
+
+static void flank_quality_survives_any_failed_allocation(void) {
+    gears = reference_pair(REFERENCE_FACE_WIDTH);
+    survives_any_failed_allocation(generate, 1 + 82 + 4 + 2); /* sets, tables, pitch, work */
+    survives_any_failed_allocation(evaluate, 3);              /* values, index, trace */
     free_all();
     GM_ASSERT_INT(alive, 0);
 }
@@ -352,6 +375,7 @@ int main(int argc, char **argv) {
         GM_TEST(explaining_a_missing_node_survives_any_failed_allocation),
         GM_TEST(reading_pitch_survives_any_failed_allocation),
         GM_TEST(building_flanks_survives_any_failed_allocation),
+        GM_TEST(flank_quality_survives_any_failed_allocation),
         GM_TEST(writing_survives_any_failed_allocation),
         GM_TEST(refusing_a_file_leaves_nothing_behind),
         GM_TEST(refusing_to_write_or_to_build_leaves_nothing_behind),
