@@ -99,7 +99,7 @@ do for [format in 'png svg'] {
         set ztics step_um format '%g'
         set xlabel 't1, face' offset 0,-0.5
         set ylabel 't2, profile' offset 0,-0.5
-        set zlabel 'deviation' . um rotate offset 0.3,0
+        set zlabel 'deviation' . um rotate offset 1.1,0
         set grid ztics lt 1 lw 0.6 lc rgb '#cccccc'
         set pm3d depthorder border lc rgb '#404040' lw 0.3
         set colorbox user origin screen 0.91, screen from_top(top + 455) size screen 0.016, screen 400.0 / height
