@@ -15,6 +15,7 @@
 #include <errno.h>
 #include <fcntl.h>
 #include <hdf5.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <unistd.h>
@@ -105,7 +106,7 @@ static herr_t write_provenance(hid_t place, const char *line) {
 static herr_t write_incomplete(hdf5_memory *memory, const char *why) {
     char text[REASON_SIZE] = "";
 
-    strncat(text, why, sizeof text - 1);
+    snprintf(text, sizeof text, "%s", why);
     return H5Awrite(memory->incomplete, memory->reason, text);
 }
 
