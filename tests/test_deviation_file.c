@@ -388,14 +388,15 @@ static void a_written_file_reads_back_to_the_same_bits(void) {
     gm_deviations_free(&deviations);
 }
 
-static void a_written_file_is_what_a_user_would_write(void) {
+/* One set of 2 x profile_nodes nodes with 1, 2, 3 .. um. */
+static void assert_written(int profile_nodes, const char *expected) {
     static const char path[] = IO_TEST_PATH("out.csv");
     make_own(0);
     own.face_nodes = 2;
-    own.profile_nodes = 2;
+    own.profile_nodes = profile_nodes;
     own.set_count = 1;
-    for (int node = 0; node < 4; node++) {
-        values[0][node] = 1e-6 * (node + 1);
+    for (int node = 0; node < 2 * profile_nodes; node++) {
+        values[0][node] = (node + 1) / 1e6;
     }
     GM_ASSERT_INT(gm_deviations_write(&own, path, &error), GM_IO_OK);
     char text[1000] = "";
@@ -404,7 +405,14 @@ static void a_written_file_is_what_a_user_would_write(void) {
         text[fread(text, 1, sizeof text - 1, file)] = '\0';
         fclose(file);
     }
-    GM_ASSERT_STRING(text, HEADER SET("*,drive"));
+    GM_ASSERT_STRING(text, expected);
+}
+
+static void a_written_file_is_what_a_user_would_write(void) {
+    assert_written(2, HEADER SET("*,drive"));
+    assert_written(4, HEADER "*,drive,0,0,1\n*,drive,0,0.333333,2\n*,drive,0,0.666667,3\n"
+                             "*,drive,0,1,4\n*,drive,1,0,5\n*,drive,1,0.333333,6\n"
+                             "*,drive,1,0.666667,7\n*,drive,1,1,8\n");
 }
 
 static void a_file_that_cannot_be_written_is_an_error(void) {

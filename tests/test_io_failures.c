@@ -169,6 +169,15 @@ static int generate(void) {
     return gm_flanks_generate(&deviations, &pitch, &gears, 1, &options, &error);
 }
 
+static int generate_scatter(void) {
+    gm_flank_scatter scatter;
+    gm_generate_options options;
+    gm_flank_scatter_paper(&scatter);
+    gm_generate_options_default(&options);
+    options.scatter = &scatter;
+    return gm_flanks_generate(&deviations, &pitch, &gears, 0, &options, &error);
+}
+
 static int evaluate(void) {
     gm_quality quality;
     return gm_quality_evaluate(&quality, NULL, &gears, 1, &deviations, &pitch, NULL, &error);
@@ -255,8 +264,11 @@ static void building_flanks_survives_any_failed_allocation(void) {
 
 static void flank_quality_survives_any_failed_allocation(void) {
     gears = reference_pair(REFERENCE_FACE_WIDTH);
-    survives_any_failed_allocation(generate, 1 + 82 + 4 + 2); /* sets, tables, pitch, work */
-    survives_any_failed_allocation(evaluate, 3);              /* values, index, trace */
+    survives_any_failed_allocation(generate_scatter,
+                                   1 + 90 + 4 + 2); /* sets, tables, pitch, work */
+    free_all();
+    survives_any_failed_allocation(generate, 1 + 82 + 4 + 2);
+    survives_any_failed_allocation(evaluate, 3); /* values, index, trace */
     free_all();
     GM_ASSERT_INT(alive, 0);
 }

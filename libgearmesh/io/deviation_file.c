@@ -27,6 +27,9 @@ static const char *const columns[COLUMN_COUNT] = {"tooth", "flank", "t1", "t2", 
 /* Micrometres in the file, metres in memory. */
 #define MICRO (-6)
 
+/* Of t1 and t2 when written: nodes are told apart and found again with a tolerance of 1e-5. */
+#define PLACE_DIGITS 6
+
 static int fail_memory(gm_io_error *error) {
     return gmi_error_set(error, GM_IO_ERR_MEMORY, 0, "out of memory");
 }
@@ -324,8 +327,8 @@ static void write_node(FILE *file, const gm_deviations *deviations, const gm_dev
     char t2[GMI_NUMBER_SIZE];
     char value[GMI_NUMBER_SIZE];
     fprintf(file, "%s,%s,%s,%s,%s\n", gmi_tooth_name(tooth, set->tooth), gmi_side_name(set->side),
-            gmi_number_text(t1, (double)face / (deviations->face_nodes - 1), 0, 0),
-            gmi_number_text(t2, (double)profile / (deviations->profile_nodes - 1), 0, 0),
+            gmi_number_text(t1, (double)face / (deviations->face_nodes - 1), 0, PLACE_DIGITS),
+            gmi_number_text(t2, (double)profile / (deviations->profile_nodes - 1), 0, PLACE_DIGITS),
             gmi_number_text(value, set->values[node], -MICRO, 0));
 }
 

@@ -2,7 +2,8 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 
 /*
- * Flanks from random numbers: options, memory, waves; flank_generate_class.c does the rest.
+ * Flanks from random numbers: options, memory, waves. What they are to be is a class (flank_generate_class.c) or
+ * amounts that scatter (flank_generate_scatter.c).
  *
  * Same flanks on every machine: integers, + - * / and sqrt only, and a sine of its own. What the pair derives with
  * those of the C library is wiped out by rounding to 1e-10 m.
@@ -55,9 +56,12 @@ static double contact_turns(const gmi_generator *make, int tooth, int side, doub
            (roll + t1 * make->pair->twist) / (2.0 * pi * gear->base_radius);
 }
 
-void gmi_waves_draw(gmi_generator *make) {
+/* From a stream of their own, so that a wave leaves all else as it is. */
+static void draw_phases(const gmi_generator *make) {
+    gmi_random start = make->random;
+    gmi_random own = {gmi_random_bits(&start)};
     for (int i = 0; i < 2 * make->options->wave_count; i++) {
-        make->wave_phase[i] = gmi_random_uniform(&make->random, 0.0, 1.0);
+        make->wave_phase[i] = gmi_random_uniform(&own, 0.0, 1.0);
     }
 }
 
@@ -177,19 +181,27 @@ static int allocate(gmi_generator *make) {
 
 static int check_options(const gmi_generator *make) {
     const gm_generate_options *options = make->options;
-    int status = gmi_check_teeth(make->gear->teeth, make->error);
-    if (status == GM_IO_OK) {
-        status = gmi_class_check(make);
-    }
-    if (status == GM_IO_OK &&
-        (options->face_nodes < GMI_LEAST_NODES || options->face_nodes > GMI_MOST_NODES ||
-         options->profile_nodes < GMI_LEAST_NODES || options->profile_nodes > GMI_MOST_NODES)) {
+    if (options->face_nodes < GMI_LEAST_NODES || options->face_nodes > GMI_MOST_NODES ||
+        options->profile_nodes < GMI_LEAST_NODES || options->profile_nodes > GMI_MOST_NODES) {
         return gmi_error_set(make->error, GM_IO_ERR_OPTION, 0,
                              "a grid of %d x %d nodes; %d to %d each way are right",
                              options->face_nodes, options->profile_nodes, GMI_LEAST_NODES,
                              GMI_MOST_NODES);
     }
+    int status = gmi_check_teeth(make->gear->teeth, make->error);
+    if (status == GM_IO_OK) {
+        status = options->scatter != NULL ? gmi_scatter_check(make) : gmi_class_check(make);
+    }
     return status == GM_IO_OK ? check_waves(make) : status;
+}
+
+static int fill(gmi_generator *make) {
+    draw_phases(make);
+    if (make->options->scatter == NULL) {
+        return gmi_class_fill(make);
+    }
+    gmi_scatter_fill(make);
+    return GM_IO_OK;
 }
 
 static void clear(gm_deviations *deviations, gm_pitch *pitch) {
@@ -214,14 +226,14 @@ int gm_flanks_generate(gm_deviations *deviations, gm_pitch *pitch, const gm_pair
                           .gear = wheel ? &pair->wheel : &pair->pinion,
                           .wheel = wheel != 0,
                           .options = options,
-                          .random = {options->seed},
+                          .random = {wheel ? ~options->seed : options->seed},
                           .error = error};
     int status = check_options(&make);
     if (status == GM_IO_OK) {
         status = allocate(&make);
     }
     if (status == GM_IO_OK) {
-        status = gmi_class_fill(&make);
+        status = fill(&make);
     }
     free(make.work);
     free(make.wave_phase);

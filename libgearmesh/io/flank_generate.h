@@ -32,14 +32,15 @@ typedef struct gmi_generator {
     gm_io_error *error;
 } gmi_generator;
 
-/** Draws the phases that gmi_waves_fill() adds. */
-void gmi_waves_draw(gmi_generator *make);
-
 /** Sum of all waves at the nodes of a set, along the normal; replaces what is there. */
 void gmi_waves_fill(const gmi_generator *make, const gm_deviation_set *set);
 
 /** Flanks of a class: checks the options that it alone has, and fills deviations and pitch. */
 int gmi_class_check(const gmi_generator *make);
 int gmi_class_fill(gmi_generator *make);
+
+/** Flanks that scatter: likewise. */
+int gmi_scatter_check(const gmi_generator *make);
+void gmi_scatter_fill(gmi_generator *make);
 
 #endif /* GEARMESH_FLANK_GENERATE_H */

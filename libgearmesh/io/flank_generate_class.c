@@ -397,7 +397,6 @@ static int generate_flank(generator *make, const roles *parts, int flank) {
 static int generate_flanks(generator *make) {
     roles of;
     draw_roles(make, &of);
-    gmi_waves_draw(make->common);
     int status = GM_IO_OK;
     for (int flank = 0; status == GM_IO_OK && flank < make->common->deviations->set_count;
          flank++) {

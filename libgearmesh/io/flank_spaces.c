@@ -6,14 +6,13 @@
 #include "flank_random.h"
 
 gmi_spaces gmi_spaces_begin(int teeth, double *work, double phase) {
-    const gmi_spaces spaces = {
-        .teeth = teeth, .cosine = work, .sine = work + teeth, .error = work + 2 * (size_t)teeth};
+    double *sine = work + teeth;
     for (int i = 0; i < teeth; i++) {
         const double turns = (double)i / teeth + phase;
-        spaces.cosine[i] = gmi_sine_of_turns(turns + 0.25);
-        spaces.sine[i] = gmi_sine_of_turns(turns);
+        work[i] = gmi_sine_of_turns(turns + 0.25);
+        sine[i] = gmi_sine_of_turns(turns);
     }
-    return spaces;
+    return (gmi_spaces){.teeth = teeth, .cosine = work, .sine = sine, .error = sine + teeth};
 }
 
 double gmi_spaces_first_order(const gmi_spaces *of, int space, double side) {

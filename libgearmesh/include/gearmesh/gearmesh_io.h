@@ -261,24 +261,72 @@ typedef struct gm_flank_wave {
     double amplitude; /**< along the surface normal, m, >= 0 */
 } gm_flank_wave;
 
-/** What is generated. */
+/** An amount that is distributed normally from flank to flank (never farther from the mean than 6 standard deviations). */
+typedef struct gm_scatter_normal {
+    double mean;      /**< m */
+    double deviation; /**< standard deviation, m, >= 0 */
+} gm_scatter_normal;
+
+/** An amount that is distributed uniformly from flank to flank. */
+typedef struct gm_scatter_uniform {
+    double low;
+    double high;
+} gm_scatter_uniform;
+
+/** What profile or helix has all along, t = 0 .. 1, along the surface normal. */
+typedef struct gm_trace_scatter {
+    gm_scatter_normal slope; /**< material rises so much from t = 0 to 1 [0] */
+    /** So much is missing at both ends and none in the middle, a parabola [0] */
+    gm_scatter_normal crowning;
+    gm_scatter_uniform wave; /**< amplitude of a wave of any phase, m, >= 0 [0] */
+    /** How many waves from t = 0 to 1, not whole; at least 4 nodes per wave [1 .. 3] */
+    gm_scatter_uniform wave_count;
+} gm_trace_scatter;
+
+/** Flanks of a production: each one is drawn anew, from these. All amounts are 10 mm at most. */
+typedef struct gm_flank_scatter {
+    gm_trace_scatter profile;     /**< from t2 = 0 to 1 */
+    gm_trace_scatter helix;       /**< from t1 = 0 to 1 */
+    gm_scatter_normal foot;       /**< material at t2 = 0, falls linearly to 0 at foot_end [0] */
+    double foot_end;              /**< t2, 0 < foot_end <= 1 [0.35] */
+    gm_scatter_normal tip_relief; /**< missing at the tip, a parabola from 0 at tip_start on [0] */
+    double tip_start;             /**< t2, 0 <= tip_start < 1 [0.8] */
+    double roughness;             /**< standard deviation of every node, m [0] */
+    /** Standard deviation of the place of each tooth space about their mean, along the line of action in the
+     *  transverse section, m [0] */
+    double pitch;
+    /** Of the gear's axis, m: a first order of this amplitude in the pitch of drive and coast flanks, and twice as much
+     *  run-out [0] */
+    double eccentricity;
+} gm_flank_scatter;
+
+/** Ideal flanks: all amounts 0. */
+GM_API void gm_flank_scatter_default(gm_flank_scatter *scatter);
+
+/** The flanks that the synthetic figures of the paper are computed with (data/paper/README.md). */
+GM_API void gm_flank_scatter_paper(gm_flank_scatter *scatter);
+
+/** What is generated: flanks of a class, or with scatter flanks of a production. */
 typedef struct gm_generate_options {
-    int quality_class; /**< 1 .. 11, required [0] */
-    uint64_t seed;     /**< same seed, same flanks [1] */
-    double
-        share; /**< worst value / tolerance, of every kind, 0.8 .. 0.99: at least 0.8 keeps it out of the
-                       next better class [0.95] */
-    int face_nodes;             /**< along t1, 9 .. 1000 [21] */
-    int profile_nodes;          /**< along t2, 9 .. 1000 [31] */
-    const gm_flank_wave *waves; /**< [wave_count] [NULL] */
+    int quality_class; /**< 1 .. 11, required without scatter [0] */
+    /** Of a class: worst value / tolerance, of every kind, 0.8 .. 0.99: at least 0.8 keeps it out of the next better
+     *  class [0.95] */
+    double share;
+    const gm_flank_scatter *scatter; /**< NULL = a class is wanted [NULL] */
+    uint64_t seed;     /**< same seed, same flanks; pinion and wheel have nothing in common [1] */
+    int face_nodes;    /**< along t1, 9 .. 1000 [21] */
+    int profile_nodes; /**< along t2, 9 .. 1000 [31] */
+    const gm_flank_wave *waves; /**< [wave_count], added to all flanks [NULL] */
     int wave_count;             /**< 0 .. 100 [0] */
 } gm_generate_options;
 
 GM_API void gm_generate_options_default(gm_generate_options *options);
 
 /**
- * Makes flanks of a gear that measures to a class: with the default options of gm_quality_evaluate(), the worst
- * value of every kind is `share` times its tolerance, to 1e-9 m. Every tooth is different.
+ * Makes flanks of a gear from random numbers; every tooth is different.
+ *
+ * Of a class: with the default options of gm_quality_evaluate(), the worst value of every kind is `share` times its
+ * tolerance, to 1e-9 m. With scatter: amounts are drawn for each flank; gm_quality_evaluate() says what they measure to.
  *
  * @param[out] deviations  a set for every flank; free it with gm_deviations_free(). All zero on an error
  * @param[out] pitch       all flanks; free it with gm_pitch_free(). All zero on an error
@@ -286,8 +334,8 @@ GM_API void gm_generate_options_default(gm_generate_options *options);
  * @param[in]  wheel       0 = its pinion, else its wheel
  * @param[in]  options     what is wanted
  * @param[out] error       may be NULL
- * @return GM_IO_OK, GM_IO_ERR_NULL, GM_IO_ERR_OPTION (also where the wanted values contradict each other: the
- *         waves use up a tolerance, or about ten teeth and fewer), GM_IO_ERR_MEMORY
+ * @return GM_IO_OK, GM_IO_ERR_NULL, GM_IO_ERR_OPTION (also a class together with scatter, and where the values of a
+ *         class contradict each other: the waves use up a tolerance, or about ten teeth and fewer), GM_IO_ERR_MEMORY
  */
 GM_API int gm_flanks_generate(gm_deviations *deviations, gm_pitch *pitch, const gm_pair *pair,
                               int wheel, const gm_generate_options *options, gm_io_error *error);
