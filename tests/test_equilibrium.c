@@ -7,6 +7,36 @@
 #include "random_gears.h"
 #include "reference_gear.h"
 
+#include <stdlib.h>
+
+/* Stated accuracy of x, as part of the centre distance. */
+#define ACCURACY 1e-15
+
+/* Evaluations made by the library: the linker puts this in their place (--wrap). Elsewhere none are counted. */
+static long evaluations;
+
+#ifdef GM_TEST_COUNTS_EVALUATIONS
+int __real_gm_penetration_3d_at(const gm_pair *pair, const gm_flanks *pinion_flanks,
+                                const gm_flanks *wheel_flanks, const gm_position *position,
+                                gm_penetration *result);
+int __wrap_gm_penetration_3d_at(const gm_pair *pair, const gm_flanks *pinion_flanks,
+                                const gm_flanks *wheel_flanks, const gm_position *position,
+                                gm_penetration *result);
+
+int __wrap_gm_penetration_3d_at(const gm_pair *pair, const gm_flanks *pinion_flanks,
+                                const gm_flanks *wheel_flanks, const gm_position *position,
+                                gm_penetration *result) {
+    evaluations += pair != NULL ? 1 : 0;
+    return __real_gm_penetration_3d_at(pair, pinion_flanks, wheel_flanks, position, result);
+}
+#endif
+
+/* Draws a net sum of up to some per cent of a module, as a torque for a stiffness of 1e8 N/m. */
+static double random_torque(const random_case *c, uint64_t *seed) {
+    return 1e8 * (double)c->model.base_radius[1] * c->params.normal_module *
+           gm_test_uniform(seed, -1e-2, 1e-2);
+}
+
 static void equilibrium_inverts_the_sum(void) {
     uint64_t seed = UINT64_C(51);
     int solved = 0;
@@ -105,9 +135,20 @@ static void the_first_of_two_equilibria_counts(void) {
     GM_ASSERT_INT(at(&pair, NULL, NULL, angle, pair.backlash / 2 + 0.76 * target).drive_pairs, 1);
     double x = NAN;
     gm_penetration r;
-    GM_ASSERT_INT(gm_static_equilibrium(&pair, NULL, NULL, angle, 1e8, torque, &x, &r), GM_OK);
-    GM_ASSERT_ABS(x, pair.backlash / 2 + target / 2, length_rounding(&pair));
-    GM_ASSERT_INT(r.drive_pairs, 2);
+    /* Also from within the second branch, and for a torque that no first step outwards meets by chance. */
+    static const double guesses[] = {NAN, 0.5, 0.74, 0.8, 1.0, 3.0, 40.0};
+    static const double parts[] = {1.0, 0.9, 1.13, 1.49};
+    for (size_t k = 0; k < 28; k++) {
+        const double part = parts[k / 7];
+        gm_test_context("%g of the torque, guess %g", part, guesses[k % 7]);
+        GM_ASSERT_INT(gm_static_equilibrium_near(&pair, NULL, NULL, angle, 1e8, part * torque,
+                                                 pair.backlash / 2 + guesses[k % 7] * target, &x,
+                                                 &r),
+                      GM_OK);
+        GM_ASSERT_ABS(x, pair.backlash / 2 + part * target / 2, length_rounding(&pair));
+        GM_ASSERT_INT(r.drive_pairs, 2);
+    }
+    gm_test_context("the second branch");
     /* A little more torque than two pairs reach before one leaves: the second branch it is. */
     const double more = 1.6 * torque;
     GM_ASSERT_INT(gm_static_equilibrium(&pair, NULL, NULL, angle, 1e8, more, &x, &r), GM_OK);
@@ -274,6 +315,329 @@ static void equilibrium_refuses_what_it_must(void) {
     GM_ASSERT_NAN(r.penetration);
 }
 
+/* ---------------------------------------------------------------------------------------------
+ * Against bisection of the sum alone
+ * ------------------------------------------------------------------------------------------- */
+
+static gm_penetration sum_at(const random_case *c, double offset) {
+    gm_position position;
+    gm_penetration result;
+    GM_ASSERT_INT(gm_position_from_pinion_angle(&c->pair, c->pinion_angle, offset, 0.0, &position),
+                  GM_OK);
+    GM_ASSERT_INT(gm_penetration_3d_sum_at(&c->pair, c->use[0], c->use[1], &position, &result),
+                  GM_OK);
+    return result;
+}
+
+enum quantity { NET, DRIVE, COAST };
+
+static double quantity_at(const random_case *c, enum quantity quantity, double offset) {
+    const gm_penetration r = sum_at(c, offset);
+    return quantity == NET ? r.penetration : quantity == DRIVE ? r.drive : -r.coast;
+}
+
+/* Where a quantity that grows with x passes `target`: the middle of two neighbouring doubles, about. */
+static double bisect(const random_case *c, enum quantity quantity, double target) {
+    double high = 0.499999 * c->pair.transverse_base_pitch;
+    double low = -high;
+    for (int k = 0; k < 80; k++) {
+        const double middle = 0.5 * (low + high);
+        if (quantity_at(c, quantity, middle) > target) {
+            high = middle;
+        } else {
+            low = middle;
+        }
+    }
+    return 0.5 * (low + high);
+}
+
+static void bisection_of_the_sum_gives_the_same(void) {
+    uint64_t seed = UINT64_C(53);
+    int compared = 0;
+    for (int i = 0; i < 400; i++) {
+        random_case c;
+        GM_ASSERT_INT(random_case_make(&c, &seed, i % 4 != 0), GM_OK);
+        gm_test_context("case %d, helix %g", i, c.params.helix_angle);
+        const double torque = random_torque(&c, &seed);
+        const double target = torque / (1e8 * c.pair.wheel.base_radius);
+        double x = NAN;
+        gm_penetration r;
+        /* Next to spur the sum falls where a line leaves, and more than one x carries the torque. */
+        const int grows = fabs(c.pair.twist) > 0.05 * c.params.normal_module;
+        if (grows && gm_static_equilibrium(&c.pair, c.use[0], c.use[1], c.pinion_angle, 1e8, torque,
+                                           &x, &r) == GM_OK) {
+            /* Where little touches, the rounding of the sum moves x by more. */
+            const double touching = fmin(1.0, r.drive_contact + r.coast_contact);
+            GM_ASSERT_ABS(x, bisect(&c, NET, target),
+                          ACCURACY * c.params.center_distance / touching);
+            compared++;
+        }
+        random_case_free(&c);
+    }
+    gm_test_context("all cases");
+    GM_ASSERT(compared > 200);
+}
+
+/* Without torque x is determined where the first drive flank touches before the last coast flank lets go. */
+static void no_torque_is_carried_where_both_sides_touch(void) {
+    uint64_t seed = UINT64_C(54);
+    int jammed = 0, open = 0;
+    for (int i = 0; i < 400; i++) {
+        random_case c;
+        GM_ASSERT_INT(random_case_make(&c, &seed, i % 4 != 0), GM_OK);
+        c.pair.backlash = c.params.normal_module * gm_test_uniform(&seed, -2e-3, 2e-3);
+        gm_test_context("case %d, helix %g", i, c.params.helix_angle);
+        const double overlap = bisect(&c, COAST, -1e-300) - bisect(&c, DRIVE, 0.0);
+        double x = NAN;
+        gm_penetration r;
+        const int status =
+            gm_static_equilibrium(&c.pair, c.use[0], c.use[1], c.pinion_angle, 1e8, 0.0, &x, &r);
+        if (overlap > 1e-9) {
+            if (GM_ASSERT_INT(status, GM_OK) && fabs(c.pair.twist) > 0.0) {
+                GM_ASSERT(r.drive > 0.0 && r.coast > 0.0);
+                GM_ASSERT_ABS(r.drive, r.coast, 1e-14 * c.params.center_distance);
+            }
+            jammed++;
+        } else if (overlap < -1e-9) {
+            GM_ASSERT_INT(status, GM_UNDETERMINED);
+            GM_ASSERT_NAN(x);
+            open++;
+        }
+        random_case_free(&c);
+    }
+    gm_test_context("all cases");
+    GM_ASSERT(jammed > 80 && open > 80);
+}
+
+/* ---------------------------------------------------------------------------------------------
+ * A guess
+ * ------------------------------------------------------------------------------------------- */
+
+static void a_guess_does_not_change_the_answer(void) {
+    uint64_t seed = UINT64_C(55);
+    int found = 0;
+    for (int i = 0; i < 600; i++) {
+        random_case c;
+        GM_ASSERT_INT(random_case_make(&c, &seed, i % 4 != 0), GM_OK);
+        const double torque = i % 20 == 0 ? 0.0 : random_torque(&c, &seed);
+        double x = NAN;
+        gm_penetration r;
+        const int status =
+            gm_static_equilibrium(&c.pair, c.use[0], c.use[1], c.pinion_angle, 1e8, torque, &x, &r);
+        found += status == GM_OK;
+        const double pitch = c.pair.transverse_base_pitch;
+        const double sum = torque / (1e8 * c.pair.wheel.base_radius);
+        const double guesses[] = {x,
+                                  x + 1e-3 * sum,
+                                  x - 1e-3 * sum,
+                                  x + 10.0 * sum,
+                                  x - sum,
+                                  0.0,
+                                  -x,
+                                  0.49 * pitch,
+                                  -0.4999999 * pitch,
+                                  pitch,
+                                  -1e300,
+                                  1e-300,
+                                  HUGE_VAL,
+                                  -HUGE_VAL,
+                                  NAN};
+        for (size_t k = 0; k < sizeof guesses / sizeof guesses[0]; k++) {
+            gm_test_context("case %d, helix %g, guess %zu", i, c.params.helix_angle, k);
+            double again = 0.0;
+            gm_penetration there;
+            GM_ASSERT_INT(gm_static_equilibrium_near(&c.pair, c.use[0], c.use[1], c.pinion_angle,
+                                                     1e8, torque, guesses[k], &again, &there),
+                          status);
+            if (status == GM_OK) {
+                const double touching = fmin(1.0, r.drive_contact + r.coast_contact);
+                GM_ASSERT_ABS(again, x, 2.0 * ACCURACY * c.params.center_distance / touching);
+            } else {
+                GM_ASSERT_NAN(again);
+                GM_ASSERT_NAN(there.penetration);
+            }
+        }
+        random_case_free(&c);
+    }
+    gm_test_context("all cases");
+    GM_ASSERT(found > 500);
+}
+
+/*
+ * Spur flanks with 20 um more on every pinion tooth touch from delta = -20 um on. Choose the phase so that one more line
+ * enters at delta = -5 um: there n lines with 15 um each become n + 1, and a sum between is carried by the edge.
+ */
+static void a_step_of_the_sum_is_the_answer_from_any_guess(void) {
+    const gm_pair pair = spur_pair();
+    const gm_flanks_params sizes = {25, 0, 0, 0, 0, 0, 0};
+    double memory[256];
+    gm_flanks flanks;
+    GM_ASSERT_INT(gm_flanks_init(&flanks, &sizes, memory, sizeof memory), GM_OK);
+    GM_ASSERT_INT(gm_flanks_set_pitch(&flanks, GM_DRIVE, GM_ALL_TEETH, 20e-6), GM_OK);
+    const double rho = pair.line_of_action - 5e-6 - pair.wheel.start_roll_length;
+    const double angle = (rho - pair.phase_origin) / pair.pinion.base_radius;
+    const double step = 0.5 * pair.backlash - 5e-6;
+    const gm_penetration before = at(&pair, &flanks, NULL, angle, step - 1e-12);
+    const gm_penetration behind = at(&pair, &flanks, NULL, angle, step + 1e-12);
+    GM_ASSERT_INT(behind.drive_pairs, before.drive_pairs + 1);
+    GM_ASSERT_ABS(behind.drive - before.drive, 15e-6, 1e-11);
+
+    const double torque = 1e8 * pair.wheel.base_radius * 0.5 * (before.drive + behind.drive);
+    const double guesses[] = {NAN,         step,         step - 1e-6, step + 1e-6,
+                              step - 9e-6, step + 30e-6, 0.0,         1e-3};
+    for (size_t k = 0; k < sizeof guesses / sizeof guesses[0]; k++) {
+        gm_test_context("guess %g", guesses[k]);
+        double x = NAN;
+        gm_penetration r;
+        GM_ASSERT_INT(gm_static_equilibrium_near(&pair, &flanks, NULL, angle, 1e8, torque,
+                                                 guesses[k], &x, &r),
+                      GM_OK);
+        GM_ASSERT_ABS(x, step, ACCURACY * pair.center_distance);
+        GM_ASSERT(fabs(r.drive - before.drive) < 1e-11 || fabs(r.drive - behind.drive) < 1e-11);
+    }
+}
+
+/*
+ * With a transverse contact ratio of 0.6 the lines grow shorter as x grows, and the sum is largest near 0.3 base
+ * pitches: what carries the torque lies before. From behind it, or across a gap, the way must lead back there.
+ */
+static void a_guess_beyond_the_largest_sum_finds_back(void) {
+    gm_pair_params params = reference_params(REFERENCE_FACE_WIDTH);
+    const gm_pair full = make_pair(&params);
+    const double half_path = 0.3 * full.transverse_base_pitch;
+    const double climb = tan(full.working_pressure_angle);
+    params.pinion_tip_radius =
+        hypot(full.pinion.base_radius, full.pinion.base_radius * climb + half_path);
+    params.wheel_tip_radius =
+        hypot(full.wheel.base_radius, full.wheel.base_radius * climb + half_path);
+    const gm_pair pair = make_pair(&params);
+    const double pitch = pair.transverse_base_pitch;
+    GM_ASSERT_ABS(pair.transverse_contact_ratio, 0.6, 1e-12);
+    const gm_flanks_params sizes = {45, 0, 0, 0, 0, 0, 0};
+    double memory[256];
+    gm_flanks flanks;
+    GM_ASSERT_INT(gm_flanks_init(&flanks, &sizes, memory, sizeof memory), GM_OK);
+
+    /* Without and with a gap of 0.12 base pitches before all teeth but one, which is elsewhere. */
+    for (int gap = 0; gap < 2; gap++) {
+        const double angle = 0.1;
+        const double best = gap == 0 ? 0.3 * pitch : 0.36 * pitch;
+        const double sum = 0.9 * at(&pair, &flanks, NULL, angle, best).drive;
+        const double torque = 1e8 * pair.wheel.base_radius * sum;
+        const double behind = 0.49 * pitch;
+        GM_ASSERT(at(&pair, &flanks, NULL, angle, behind).drive < sum);
+        const double guesses[] = {NAN, behind, 0.4999 * pitch, 0.6 * pair.backlash};
+        for (size_t k = 0; k < sizeof guesses / sizeof guesses[0]; k++) {
+            gm_test_context("gap %d, guess %g", gap, guesses[k]);
+            double x = NAN;
+            gm_penetration r;
+            GM_ASSERT_INT(gm_static_equilibrium_near(&pair, &flanks, NULL, angle, 1e8, torque,
+                                                     guesses[k], &x, &r),
+                          GM_OK);
+            GM_ASSERT(x < best);
+            GM_ASSERT_ABS(r.drive, sum, ACCURACY * pair.center_distance);
+        }
+        for (int tooth = 0; tooth < 45; tooth++) {
+            GM_ASSERT_INT(
+                gm_flanks_set_pitch(&flanks, GM_DRIVE, tooth, tooth == 20 ? 0.0 : -0.12 * pitch),
+                GM_OK);
+        }
+    }
+}
+
+/* ---------------------------------------------------------------------------------------------
+ * How many evaluations it takes
+ * ------------------------------------------------------------------------------------------- */
+
+/* Flanks of one gear: a crowned and rough table of its own on each drive tooth, runout in the pitch. */
+static gm_flanks measured_flanks(int teeth, uint64_t *seed, void **memory) {
+    enum { FACE_NODES = 21, PROFILE_NODES = 31 };
+    const gm_flanks_params sizes = {teeth, teeth, FACE_NODES, PROFILE_NODES, 0, 0, 0};
+    const size_t size = gm_flanks_size(&sizes);
+    gm_flanks flanks;
+    *memory = malloc(size);
+    GM_ASSERT_INT(gm_flanks_init(&flanks, &sizes, *memory, size), GM_OK);
+    for (int tooth = 0; tooth < teeth; tooth++) {
+        double values[FACE_NODES * PROFILE_NODES];
+        const double slope = gm_test_uniform(seed, -3e-6, 3e-6);
+        for (int n = 0; n < FACE_NODES * PROFILE_NODES; n++) {
+            const double u = 2.0 * (n / PROFILE_NODES) / (FACE_NODES - 1.0) - 1.0;
+            const double v = 2.0 * (n % PROFILE_NODES) / (PROFILE_NODES - 1.0) - 1.0;
+            values[n] =
+                slope * u - 4e-6 * u * u - 2e-6 * v * v + gm_test_uniform(seed, -3e-7, 3e-7);
+        }
+        GM_ASSERT_INT(gm_flanks_set_table(&flanks, GM_DRIVE, tooth, values, 1.0), GM_OK);
+        const double pitch = 8e-6 * sin(0.2 + 6.283185307179586 * tooth / teeth);
+        GM_ASSERT_INT(gm_flanks_set_pitch(&flanks, GM_DRIVE, tooth,
+                                          pitch + gm_test_uniform(seed, -2e-6, 2e-6)),
+                      GM_OK);
+    }
+    return flanks;
+}
+
+/* Evaluations of a curve of 1000 positions over one turn: in all, and at most for one of them. */
+static void count_along_a_curve(const gm_pair *pair, const gm_flanks *pinion,
+                                const gm_flanks *wheel, double torque, int guessing, long *all,
+                                long *most) {
+    enum { POSITIONS = 1000 };
+    const double step = 6.283185307179586 / POSITIONS;
+    double guess = NAN;
+    *all = *most = 0;
+    for (int k = 0; k < POSITIONS; k++) {
+        double x = NAN;
+        gm_penetration r;
+        evaluations = 0;
+        GM_ASSERT_INT(gm_static_equilibrium_near(pair, pinion, wheel, k * step, REFERENCE_STIFFNESS,
+                                                 torque, guessing ? guess : (double)NAN, &x, &r),
+                      GM_OK);
+        guess = x + step * (pair->pinion.base_radius +
+                            pair->wheel.base_radius * r.d_pinion_angle / r.d_wheel_angle);
+        *all += evaluations;
+        *most = evaluations > *most ? evaluations : *most;
+    }
+}
+
+static void few_evaluations_are_enough(void) {
+    uint64_t seed = UINT64_C(56);
+    const gm_pair pair = reference_pair(REFERENCE_FACE_WIDTH);
+    void *memory[2];
+    const gm_flanks pinion = measured_flanks(45, &seed, &memory[0]);
+    const gm_flanks wheel = measured_flanks(41, &seed, &memory[1]);
+    static const double torques[] = {2.0, 20.0, 200.0};
+    for (size_t k = 0; k < sizeof torques / sizeof torques[0]; k++) {
+        gm_test_context("torque %g", torques[k]);
+        long all, most;
+        count_along_a_curve(&pair, &pinion, &wheel, torques[k], 0, &all, &most);
+        GM_ASSERT(all <= 7500 && most <= 9);
+        count_along_a_curve(&pair, &pinion, &wheel, torques[k], 1, &all, &most);
+        GM_ASSERT(all <= 3800 && most <= 7);
+        count_along_a_curve(&pair, NULL, NULL, -torques[k], 0, &all, &most);
+        GM_ASSERT(all <= 4000 && most <= 4);
+        count_along_a_curve(&pair, NULL, NULL, -torques[k], 1, &all, &most);
+        GM_ASSERT(all <= 1700 && most <= 4);
+    }
+    free(memory[0]);
+    free(memory[1]);
+}
+
+/* Bounded work, whatever the flanks, the torque and the guess. */
+static void no_case_takes_many_evaluations(void) {
+    uint64_t seed = UINT64_C(57);
+    for (int i = 0; i < 1000; i++) {
+        random_case c;
+        GM_ASSERT_INT(random_case_make(&c, &seed, i % 4 != 0), GM_OK);
+        gm_test_context("case %d, helix %g", i, c.params.helix_angle);
+        const double pitch = c.pair.transverse_base_pitch;
+        double x;
+        evaluations = 0;
+        (void)gm_static_equilibrium_near(&c.pair, c.use[0], c.use[1], c.pinion_angle, 1e8,
+                                         random_torque(&c, &seed) * (i % 5 == 0 ? 1e3 : 1.0),
+                                         gm_test_uniform(&seed, -0.5, 0.5) * pitch, &x, NULL);
+        GM_ASSERT(evaluations <= 120);
+        random_case_free(&c);
+    }
+}
+
 int main(int argc, char **argv) {
     static const gm_test tests[] = {
         GM_TEST(equilibrium_inverts_the_sum),
@@ -286,6 +650,13 @@ int main(int argc, char **argv) {
         GM_TEST(negative_backlash_has_an_equilibrium_without_torque),
         GM_TEST(too_much_torque_has_no_equilibrium),
         GM_TEST(equilibrium_refuses_what_it_must),
+        GM_TEST(bisection_of_the_sum_gives_the_same),
+        GM_TEST(no_torque_is_carried_where_both_sides_touch),
+        GM_TEST(a_guess_does_not_change_the_answer),
+        GM_TEST(a_step_of_the_sum_is_the_answer_from_any_guess),
+        GM_TEST(a_guess_beyond_the_largest_sum_finds_back),
+        GM_TEST(few_evaluations_are_enough),
+        GM_TEST(no_case_takes_many_evaluations),
     };
     return gm_test_main("unit.equilibrium", tests, GM_TEST_COUNT(tests), argc, argv);
 }

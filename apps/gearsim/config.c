@@ -474,7 +474,7 @@ static char *default_output_file(const char *path) {
 static const char *effective_text(const config *conf, int index) {
     if (conf->entries[index].text != NULL)
         return conf->entries[index].text;
-    if (&keys[index] == &keys[find_full_name("output.file")])
+    if (strcmp(keys[index].full_name, "output.file") == 0)
         return conf->output_file;
     return keys[index].standard;
 }

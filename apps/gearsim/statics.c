@@ -46,16 +46,29 @@ static double pinion_angle(const config *conf, int position) {
            ((double)conf->positions * conf->gears.pinion_teeth);
 }
 
-static int write_position(const config *conf, const gearbox *gears, double angle,
+/* Where the position before was in equilibrium, and how it goes on from there. */
+typedef struct course {
+    double angle;  /* (rad) */
+    double offset; /* (m), NaN = not known yet */
+    double slope;  /* its derivative by the pinion angle (m/rad) */
+} course;
+
+static int write_position(const config *conf, const gearbox *gears, double angle, course *before,
                           output_file *output, int *status) {
+    const gm_pair *pair = &gears->pair;
+    const double guess = before->offset + before->slope * (angle - before->angle);
     gm_penetration mesh;
     double offset;
 
-    *status = gm_static_equilibrium(&gears->pair, gears->pinion_flanks, gears->wheel_flanks, angle,
-                                    conf->stiffness, conf->mean_load, &offset, &mesh);
+    *status = gm_static_equilibrium_near(pair, gears->pinion_flanks, gears->wheel_flanks, angle,
+                                         conf->stiffness, conf->mean_load, guess, &offset, &mesh);
     if (*status != GM_OK) {
         return EXIT_RUN_FAILED;
     }
+    before->angle = angle;
+    before->offset = offset;
+    before->slope = pair->pinion.base_radius +
+                    pair->wheel.base_radius * mesh.d_pinion_angle / mesh.d_wheel_angle;
 
     /* Of the face width, summed over the pairs and both flanks. */
     const double touching = mesh.drive_contact + mesh.coast_contact;
@@ -63,8 +76,7 @@ static int write_position(const config *conf, const gearbox *gears, double angle
         [PINION_ANGLE] = angle,
         [TE] = -offset * 1e6,
         [MESH_STIFFNESS] = conf->stiffness * touching * 1e-6,
-        [CONTACT_LENGTH] =
-            touching * gears->pair.face_width / cos(gears->pair.base_helix_angle) * 1e3,
+        [CONTACT_LENGTH] = touching * pair->face_width / cos(pair->base_helix_angle) * 1e3,
         [PAIRS] = mesh.drive_pairs + mesh.coast_pairs,
     };
     return output_row(output, values);
@@ -95,6 +107,8 @@ static int interrupted(output_file *output, double angle) {
 }
 
 static int write_all(const config *conf, const gearbox *gears, output_file *output) {
+    course before = {0.0, NAN, 0.0};
+
     for (int position = 0; position < conf->positions; ++position) {
         const double angle = pinion_angle(conf, position);
         int status;
@@ -102,7 +116,7 @@ static int write_all(const config *conf, const gearbox *gears, output_file *outp
         if (interrupt_requested()) {
             return interrupted(output, angle);
         }
-        if (write_position(conf, gears, angle, output, &status) != 0) {
+        if (write_position(conf, gears, angle, &before, output, &status) != 0) {
             return fail(output, angle, status);
         }
     }

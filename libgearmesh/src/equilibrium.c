@@ -3,32 +3,43 @@
 
 /*
  * Quasi-static equilibrium at one pinion angle: the x at which stiffness * r_bw * net sum = torque. The net
- * sum grows with x (a spur pair may step where a pair enters or leaves), so the x is bracketed from the
- * clearance outwards and then found by Newton's method, kept inside the bracket by bisection. Where the sum steps
- * over the torque the bracket closes on the step: there the edge of the entering pair carries the rest.
+ * sum grows with x (but see "departure" below) and its slope is exact, so Newton's method finds x, kept within
+ * a bracket that bisection closes where Newton's method does not. Where the sum of a spur pair steps over the
+ * torque the bracket closes on the step: there the edge of the entering pair carries the rest.
+ *
+ * Negative torque loads the coast flanks. What follows knows only a load that grows with "travel" = direction * x.
  */
 #include "internal.h"
 
 #include <float.h>
 #include <math.h>
 
-#define BRACKET_STEPS 200
-#define NEWTON_STEPS  200
+#define NEWTON_STEPS  20  /* then every step halves the bracket, or doubles the reach */
+#define LARGEST_STEPS 200 /* never needed: p_bt / 2 is halved to a rounding in 50 */
 
 typedef struct problem {
     const gm_pair *pair;
     const gm_flanks *pinion_flanks;
     const gm_flanks *wheel_flanks;
     gm_position position; /* phase and teeth; offset is the unknown */
-    double target;        /* net sum that carries the torque (m) */
+    double direction;     /* +1: x grows with the load, -1: it falls */
+    double target;        /* net sum that carries the torque, >= 0 in that direction (m) */
+    double
+        resolution; /* of x: the rounding of the lengths that the lines of contact are clipped to (m) */
 } problem;
 
-/* Net sum less target at x, and the full result. Callers keep |x| below half a base pitch. */
-static double residual(const problem *p, double offset, gm_penetration *result) {
+/* Between `lower`, where the load is below the target, and `upper`, where it has reached it if that is known. */
+typedef struct bracket {
+    double lower, upper;
+    int closed; /* upper is known to carry the load */
+} bracket;
+
+/* Load less target at a travel, and the full result. Callers keep it below half a base pitch. */
+static double residual(const problem *p, double travel, gm_penetration *result) {
     gm_position position = p->position;
-    position.offset = offset;
+    position.offset = p->direction * travel;
     (void)gm_penetration_3d_at(p->pair, p->pinion_flanks, p->wheel_flanks, &position, result);
-    return result->penetration - p->target;
+    return p->direction * result->penetration - p->target;
 }
 
 static double peak_of(const gm_flanks *flanks, int side) {
@@ -41,6 +52,10 @@ static double sum_peak(const problem *p, int side) {
     return peak_of(p->pinion_flanks, side) + peak_of(p->wheel_flanks, side);
 }
 
+static int loaded_side(const problem *p) {
+    return p->direction > 0.0 ? GM_DRIVE : GM_COAST;
+}
+
 /* Just inside |x| < p_bt / 2. */
 static double largest_offset(const problem *p) {
     return 0.4999999 * p->pair->transverse_base_pitch;
@@ -51,90 +66,111 @@ static double clamp(double value, double limit) {
 }
 
 /*
- * From `start` on in the direction of `direction` until the residual has that sign. *inner is the last x before.
- * Returns 0 if x leaves its range first.
+ * From `travel` on: Newton's method within the bracket; as long as it is open, outwards by `reach` at most, which
+ * doubles. Returns 0 if the travel leaves its range before the load is reached.
  */
-static int bracket(const problem *p, double start, double first_step, double direction,
-                   double *inner, double *outer) {
-    const double limit = largest_offset(p);
-    gm_penetration result;
-    /* A step shorter than the rounding of x would never leave it. */
-    double step = fmax(first_step, DBL_EPSILON * p->pair->center_distance);
-    *inner = *outer = start;
-    for (int k = 0; k < BRACKET_STEPS; ++k) {
-        if (direction * residual(p, *outer, &result) >= 0.0)
+static int solve(const problem *p, bracket within, double travel, double reach, double *found,
+                 gm_penetration *result) {
+    for (int k = 0; k < LARGEST_STEPS; ++k) {
+        const double value = residual(p, travel, result);
+        const double slope = -result->d_wheel_angle / p->pair->wheel.base_radius;
+        *found = travel;
+        if (fabs(value) <= p->resolution * slope)
             return 1;
-        if (*outer == direction * limit)
-            return 0;
-        *inner = *outer;
-        *outer = clamp(*outer + direction * step, limit);
-        step *= 2.0;
+        if (value >= 0.0) {
+            within.upper = travel;
+            within.closed = 1;
+        } else if (travel >= within.upper) {
+            return within.closed;
+        } else {
+            within.lower = travel;
+        }
+
+        if (within.closed && within.upper - within.lower <= p->resolution)
+            return 1; /* a step of the sum */
+        const double newton = k < NEWTON_STEPS && slope > 0.0 ? travel - value / slope : gmi_nan();
+        if (within.closed) {
+            travel = newton > within.lower && newton < within.upper
+                         ? newton
+                         : within.lower + 0.5 * (within.upper - within.lower);
+        } else {
+            travel = fmin(fmin(newton, travel + reach), within.upper);
+            reach *= 2.0;
+        }
     }
     return 0;
 }
 
-/* Newton within [lower, upper], residual < 0 at lower and >= 0 at upper. */
-static double solve(const problem *p, double lower, double upper, gm_penetration *result) {
-    /* Shorter steps are below the rounding of the lengths that the lines of contact are clipped to. */
-    const double resolution = DBL_EPSILON * p->pair->line_of_action;
-    double offset = upper;
-    for (int k = 0; k < NEWTON_STEPS; ++k) {
-        const double value = residual(p, offset, result);
-        if (value == 0.0)
-            return offset;
-        if (value < 0.0)
-            lower = offset;
-        else
-            upper = offset;
-        const double slope = -result->d_wheel_angle / p->pair->wheel.base_radius;
-        double next = offset - value / slope;
-        if (!(next > lower && next < upper))
-            next = lower + 0.5 * (upper - lower);
-        if (fabs(next - offset) <= resolution || next == lower || next == upper)
-            break;
-        offset = next;
-    }
-    return offset;
+/*
+ * Departure: the sum falls with x only where a line leaves the wheel's tip faster than the others press harder, on
+ * spur pairs and next to spur. The travel at which the first line beyond `lower` begins to leave.
+ */
+static double departure(const problem *p, double lower) {
+    const gm_pair *pair = p->pair;
+    gmi_lines lines;
+    gmi_lines_find(pair, loaded_side(p), &p->position, &lines);
+    /* Line 0 begins to leave where T0 + delta - rho_w(tip) passes its lowest rho_p. */
+    const double delta =
+        lines.origin + fmin(lines.twist, 0.0) + pair->wheel.tip_roll_length - pair->line_of_action;
+    const double travel = delta + 0.5 * pair->backlash;
+    const double pitch = pair->transverse_base_pitch;
+    return travel + pitch * ceil((lower - travel) / pitch);
+}
+
+/* If the load was carried before a line left: there, and not where the others have taken its share. */
+static int solve_before_departure(const problem *p, double lower, double reached, double *found,
+                                  gm_penetration *result) {
+    const double before = departure(p, lower) - 8.0 * p->resolution;
+    const int can_fall = fabs(p->pair->twist) < reached - lower;
+    gm_penetration there;
+    if (!can_fall || !(before > lower && before < reached) || residual(p, before, &there) < 0.0)
+        return 0;
+    const bracket within = {lower, before, 1};
+    return solve(p, within, before, 0.0, found, result);
+}
+
+static int find_loaded(const problem *p, double guess, double *found, gm_penetration *result) {
+    const double limit = largest_offset(p);
+    const double peak = sum_peak(p, loaded_side(p));
+    const double lower = clamp(0.5 * p->pair->backlash - peak, limit); /* nothing touches */
+    /* Beyond all deviations the sum is next to linear: from there Newton's method comes close at once. */
+    const double reach = fmax(p->target + 3.0 * fmax(peak, 0.0), p->resolution);
+    const double start = fmin(lower + reach, limit);
+    const int guessed = guess > lower && guess < limit;
+    const bracket within = {lower, limit, 0};
+
+    int carried = guessed && solve(p, within, guess, reach, found, result);
+    if (!carried)
+        carried = solve(p, within, start, reach, found, result);
+    const double reached = carried ? *found : limit;
+    if (solve_before_departure(p, lower, reached, found, result))
+        carried = 1;
+    return carried ? GM_OK : GM_NO_EQUILIBRIUM;
 }
 
 /* No torque: equilibrium only where both sides press against each other (negative backlash). */
-static int bracket_unloaded(const problem *p, double *lower, double *upper) {
+static int find_unloaded(const problem *p, double guess, double *found, gm_penetration *result) {
     const double half_backlash = 0.5 * p->pair->backlash;
     const double limit = largest_offset(p);
-    *lower = clamp(half_backlash - sum_peak(p, GM_DRIVE), limit);  /* below: no drive contact */
-    *upper = clamp(-half_backlash + sum_peak(p, GM_COAST), limit); /* above: no coast contact */
-    return *lower < *upper;
-}
-
-/* From where nothing touches; the first step leads to where ideal flanks of one pair carry the torque. */
-static int bracket_loaded(const problem *p, double *lower, double *upper) {
-    const double half_backlash = 0.5 * p->pair->backlash;
-    const double limit = largest_offset(p);
-    const double peak = sum_peak(p, p->target > 0.0 ? GM_DRIVE : GM_COAST);
-    const double first_step = fmax(peak, 0.0) + fabs(p->target);
-    if (p->target > 0.0)
-        return bracket(p, clamp(half_backlash - peak, limit), first_step, 1.0, lower, upper);
-    return bracket(p, clamp(peak - half_backlash, limit), first_step, -1.0, upper, lower);
-}
-
-static int find(const problem *p, double *offset, gm_penetration *result) {
-    double lower, upper;
-    if (p->target == 0.0) {
-        if (!bracket_unloaded(p, &lower, &upper))
-            return GM_UNDETERMINED;
-    } else if (!bracket_loaded(p, &lower, &upper)) {
-        return GM_NO_EQUILIBRIUM;
-    }
-    const double found = solve(p, lower, upper, result);
-    if (p->target == 0.0 && result->drive_contact == 0.0 && result->coast_contact == 0.0)
+    const bracket within = {
+        clamp(half_backlash - sum_peak(p, GM_DRIVE), limit),  /* below: no drive contact */
+        clamp(-half_backlash + sum_peak(p, GM_COAST), limit), /* above: no coast contact */
+        1,
+    };
+    if (!(within.lower < within.upper))
         return GM_UNDETERMINED;
-    *offset = found;
+    const int guessed = guess > within.lower && guess < within.upper;
+    const double middle = within.lower + 0.5 * (within.upper - within.lower);
+    if (!solve(p, within, guessed ? guess : middle, 0.0, found, result) ||
+        !(result->drive_contact > 0.0 && result->coast_contact > 0.0))
+        return GM_UNDETERMINED;
     return GM_OK;
 }
 
-int gm_static_equilibrium(const gm_pair *pair, const gm_flanks *pinion_flanks,
-                          const gm_flanks *wheel_flanks, double pinion_angle, double stiffness,
-                          double wheel_torque, double *offset, gm_penetration *result) {
+int gm_static_equilibrium_near(const gm_pair *pair, const gm_flanks *pinion_flanks,
+                               const gm_flanks *wheel_flanks, double pinion_angle, double stiffness,
+                               double wheel_torque, double guess, double *offset,
+                               gm_penetration *result) {
     gm_penetration found;
     if (result == NULL)
         result = &found;
@@ -147,17 +183,30 @@ int gm_static_equilibrium(const gm_pair *pair, const gm_flanks *pinion_flanks,
     if (!(stiffness > 0.0) || !gmi_is_finite(stiffness) || !gmi_is_finite(wheel_torque))
         return GM_ERR_PARAMETER;
 
-    problem p = {pair, pinion_flanks, wheel_flanks, {0, 0, 0.0, 0.0, 0.0}, 0.0};
+    problem p = {pair, pinion_flanks, wheel_flanks, {0, 0, 0.0, 0.0, 0.0}, 1.0, 0.0, 0.0};
     int status = gm_position_from_pinion_angle(pair, pinion_angle, 0.0, 0.0, &p.position);
     if (status == GM_OK)
         status = gmi_check_evaluation(pair, pinion_flanks, wheel_flanks, &p.position);
     if (status != GM_OK)
         return status;
 
-    p.target = wheel_torque / (stiffness * pair->wheel.base_radius);
+    p.direction = wheel_torque < 0.0 ? -1.0 : 1.0;
+    p.target = p.direction * wheel_torque / (stiffness * pair->wheel.base_radius);
+    p.resolution = DBL_EPSILON * pair->center_distance;
+    double travel;
     gm_penetration at_equilibrium;
-    status = find(&p, offset, &at_equilibrium);
-    if (status == GM_OK)
+    status = p.target > 0.0 ? find_loaded(&p, p.direction * guess, &travel, &at_equilibrium)
+                            : find_unloaded(&p, p.direction * guess, &travel, &at_equilibrium);
+    if (status == GM_OK) {
+        *offset = p.direction * travel;
         *result = at_equilibrium;
+    }
     return status;
+}
+
+int gm_static_equilibrium(const gm_pair *pair, const gm_flanks *pinion_flanks,
+                          const gm_flanks *wheel_flanks, double pinion_angle, double stiffness,
+                          double wheel_torque, double *offset, gm_penetration *result) {
+    return gm_static_equilibrium_near(pair, pinion_flanks, wheel_flanks, pinion_angle, stiffness,
+                                      wheel_torque, gmi_nan(), offset, result);
 }

@@ -91,15 +91,20 @@ static void run_equilibrium(const bench *b, long count) {
     sink = sum;
 }
 
-/* A curve of 1000 positions over one turn of the pinion. */
+/* A curve of 1000 positions over one turn of the pinion, each begun from the one before. */
 static void run_curve(const bench *b, long count) {
     enum { POSITIONS = 1000 };
     const bench_gears *g = b->gears;
-    double offset, sum = 0.0;
+    const double step = 6.283185307179586 / POSITIONS;
+    double guess = 0.0, offset, sum = 0.0;
+    gm_penetration result;
     for (long k = 0; k < count * POSITIONS; ++k) {
-        const double angle = 6.283185307179586 * (double)(k % POSITIONS) / POSITIONS;
-        (void)gm_static_equilibrium(&g->pair, g->pinion, g->wheel, angle, BENCH_STIFFNESS,
-                                    BENCH_TORQUE, &offset, NULL);
+        (void)gm_static_equilibrium_near(
+            &g->pair, g->pinion, g->wheel, step * (double)(k % POSITIONS), BENCH_STIFFNESS,
+            BENCH_TORQUE, k % POSITIONS == 0 ? (double)NAN : guess, &offset, &result);
+        guess = offset +
+                step * (g->pair.pinion.base_radius +
+                        g->pair.wheel.base_radius * result.d_pinion_angle / result.d_wheel_angle);
         sum += offset;
     }
     sink = sum;

@@ -207,6 +207,11 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size) {
                                                 torque, &offset, &result);
         claim_numbers(found, &offset, 1);
         claim_penetration(found, &result);
+        FUZZ_CLAIM(found == gm_static_equilibrium_near(&pair, pinion, wheel, state.pinion_angle,
+                                                       stiffness, torque, fuzz_any(&bytes), &offset,
+                                                       &result));
+        claim_numbers(found, &offset, 1);
+        claim_penetration(found, &result);
     }
     free(pinion_memory);
     free(wheel_memory);
