@@ -28,7 +28,7 @@ static config case_of(const char *columns, int digits) {
     static struct key_entry *entries;
 
     if (entries == NULL) {
-        entries = calloc((size_t)key_count, sizeof *entries);
+        entries = calloc((size_t)gearsim_keys.count, sizeof *entries);
     }
     const config conf = {
         .path = "test.ini",

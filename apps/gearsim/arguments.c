@@ -160,5 +160,5 @@ void arguments_free(arguments *args) {
 void arguments_print_help(FILE *stream) {
     fputs(usage, stream);
     fputs(options_help, stream);
-    keys_print(stream);
+    key_table_print(&gearsim_keys, stream);
 }

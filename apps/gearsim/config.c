@@ -2,12 +2,12 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 
 /*
- * From INI file and command line to a checked config: each value by itself as it is met (keys.c knows
- * how), then what is missing, then what must fit together. All faults of a stage are told before the run
- * is refused, so that a user need not find them one by one.
+ * From INI file and command line to a checked config: each value by itself as it is met (key_reader.c),
+ * then what is missing, then what must fit together. All faults of a stage are told before the run is refused, so
+ * that a user need not find them one by one.
  */
 #include "config.h"
-#include "ini_file.h"
+#include "key_reader.h"
 #include "keys.h"
 #include "modification_keys.h"
 
@@ -17,55 +17,22 @@
 #include <string.h>
 #include <sys/stat.h>
 
-enum {
-    FAULT_LIMIT = 20, /* of faults told: the wrong kind of file would give thousands */
-    NAME_SIZE = 128   /* "section.key" of any key */
-};
+enum { NAME_SIZE = 128 }; /* "section.key" of any key */
 
 /* More rows than anybody can read, and noise values beyond which a double cannot count them. */
 static const double row_limit = 1e9;
 static const double noise_limit = 1e15;
-
-typedef struct loading {
-    config *conf;
-    int faults;
-    const char *section;  /* of the lines that follow, NULL = unknown or none yet */
-    int in_section;       /* after the first section line */
-    int *section_lines;   /* [key_count] where the section that begins with this key was met */
-    enum key_origin from; /* where values come from now */
-    int line;
-} loading;
 
 /* ---------------------------------------------------------------------------------------------
  * Messages
  * ------------------------------------------------------------------------------------------- */
 
 static void print_place(const config *conf, enum key_origin origin, int line) {
-    if (origin == ORIGIN_SET)
-        fputs("--set ", stderr);
-    else if (origin == ORIGIN_OUTPUT_OPTION)
-        fputs("--output: ", stderr);
-    else if (line > 0)
-        fprintf(stderr, "%s:%d: ", conf->path, line);
-    else
-        fprintf(stderr, "%s: ", conf->path);
+    key_print_place(conf->path, origin, line);
 }
 
-/* Tells a fault in what is being read: place, name (may be empty), text. */
-static void fault(loading *load, const char *name, const char *format, ...) {
-    va_list arguments;
-
-    if (++load->faults > FAULT_LIMIT)
-        return;
-    print_place(load->conf, load->from, load->line);
-    if (*name != '\0')
-        fprintf(stderr, "%s: ", name);
-    va_start(arguments, format);
-    vfprintf(stderr, format, arguments);
-    va_end(arguments);
-    fputc('\n', stderr);
-    if (load->faults == FAULT_LIMIT)
-        fprintf(stderr, "%s: further faults are not told\n", load->conf->path);
+static const key_spec *key_at(int index) {
+    return &gearsim_keys.keys[index];
 }
 
 /* Index of "section.key", or -1. */
@@ -78,7 +45,7 @@ static int find_full_name(const char *section_and_key) {
         return -1;
     memcpy(section, section_and_key, length);
     section[length] = '\0';
-    return key_find(section, dot + 1);
+    return key_find(&gearsim_keys, section, dot + 1);
 }
 
 static void tell(const config *conf, const char *section_and_key, const char *kind,
@@ -115,9 +82,9 @@ void config_warn(const config *conf, const char *section_and_key, const char *fo
 const char *config_key_of_field(const char *field) {
     static const char *const unknown = "gears";
 
-    for (int i = 0; i < key_count; ++i)
-        if (keys[i].field != NULL && strcmp(keys[i].field, field) == 0)
-            return keys[i].full_name;
+    for (int i = 0; i < gearsim_keys.count; ++i)
+        if (key_at(i)->field != NULL && strcmp(key_at(i)->field, field) == 0)
+            return key_at(i)->full_name;
     return unknown;
 }
 
@@ -125,139 +92,6 @@ const char *config_text(const config *conf, const char *section_and_key) {
     const int index = find_full_name(section_and_key);
 
     return index < 0 ? NULL : conf->entries[index].text;
-}
-
-/* ---------------------------------------------------------------------------------------------
- * Values
- * ------------------------------------------------------------------------------------------- */
-
-/* `name` as seen from the folder of `path`. */
-static char *path_beside(const char *path, const char *name) {
-    const char *slash = strrchr(path, '/');
-    const size_t folder = slash == NULL || *name == '/' ? 0 : (size_t)(slash - path) + 1;
-    char *joined = allocate(folder + strlen(name) + 1);
-
-    memcpy(joined, path, folder);
-    memcpy(joined + folder, name, strlen(name) + 1);
-    return joined;
-}
-
-static int assign(loading *load, const key_spec *key, const char *value, char *text) {
-    int result;
-    char *path;
-
-    if (key->kind != KEY_PATH || load->from != ORIGIN_FILE)
-        return key_assign(key, load->conf, value, text);
-    path = path_beside(load->conf->path, value);
-    result = key_assign(key, load->conf, path, text);
-    free(path);
-    return result;
-}
-
-static void set_value(loading *load, int index, const char *value) {
-    key_entry *entry = &load->conf->entries[index];
-    char text[KEY_FAULT_SIZE];
-
-    free(entry->text);
-    entry->text = copy_text(value);
-    entry->origin = load->from;
-    entry->line = load->line;
-    if (*value == '\0')
-        fault(load, keys[index].full_name,
-              "no value, expected one behind the `=`, or leave the key out");
-    else if (assign(load, &keys[index], value, text))
-        fault(load, keys[index].full_name, "%s", text);
-}
-
-/* ---------------------------------------------------------------------------------------------
- * The INI file
- * ------------------------------------------------------------------------------------------- */
-
-static void unknown_section(loading *load, const char *section) {
-    const char *near = key_section_near(section);
-
-    if (near != NULL)
-        fault(load, "", "[%.80s]: unknown section, did you mean [%s]?", section, near);
-    else
-        fault(load, "", "[%.80s]: unknown section, `gearsim --help` lists all", section);
-}
-
-static void unknown_key(loading *load, const char *section, const char *name) {
-    const int near = key_near(section, name);
-    char full_name[NAME_SIZE];
-
-    snprintf(full_name, sizeof full_name, "%.40s.%.80s", section, name);
-    if (near < 0)
-        fault(load, full_name, "unknown key, `gearsim --help` lists all");
-    else if (strcmp(keys[near].section, section) == 0)
-        fault(load, full_name, "unknown key, did you mean %s?", keys[near].name);
-    else
-        fault(load, full_name, "unknown key of [%s], did you mean %s of [%s]?", section,
-              keys[near].name, keys[near].section);
-}
-
-static int first_key_of(const char *section) {
-    int index = 0;
-
-    while (strcmp(keys[index].section, section) != 0)
-        ++index;
-    return index;
-}
-
-static void meet_section(void *user, int line, const char *section) {
-    loading *load = user;
-    int index;
-
-    load->line = line;
-    load->in_section = 1;
-    load->section = NULL;
-    if (!key_section_exists(section)) {
-        unknown_section(load, section);
-        return;
-    }
-    index = first_key_of(section);
-    if (load->section_lines[index] > 0)
-        fault(load, "", "[%s]: repeated section, first in line %d: put all its keys there", section,
-              load->section_lines[index]);
-    else
-        load->section_lines[index] = line;
-    load->section = keys[index].section;
-}
-
-static void meet_value(void *user, int line, const char *name, const char *value) {
-    loading *load = user;
-    int index;
-
-    load->line = line;
-    if (load->section == NULL) {
-        /* The keys of an unknown section are passed over: the section is the fault. */
-        if (!load->in_section)
-            fault(load, "", "%.80s: a key without a section, expected `[section]` before it", name);
-        return;
-    }
-    index = key_find(load->section, name);
-    if (index < 0)
-        unknown_key(load, load->section, name);
-    else if (load->conf->entries[index].text != NULL)
-        fault(load, keys[index].full_name, "repeated key, first in line %d: give it once",
-              load->conf->entries[index].line);
-    else
-        set_value(load, index, value);
-}
-
-static void meet_fault(void *user, int line, const char *text) {
-    loading *load = user;
-
-    load->line = line;
-    fault(load, "", "%s", text);
-}
-
-static void read_file(loading *load) {
-    const ini_events events = {load, meet_section, meet_value, meet_fault};
-
-    load->from = ORIGIN_FILE;
-    ini_file_read(load->conf->path, &events);
-    load->line = 0;
 }
 
 /* ---------------------------------------------------------------------------------------------
@@ -281,47 +115,37 @@ static int has_control_character(const char *text) {
     return 0;
 }
 
-static void set_override(loading *load, char *section, char *name, char *value) {
-    const int index = key_find(section, name);
-
-    if (index >= 0)
-        set_value(load, index, value);
-    else if (key_section_exists(section))
-        unknown_key(load, section, name);
-    else
-        unknown_section(load, section);
-}
-
-static void read_override(loading *load, const char *override) {
+static void read_override(key_reader *reader, const char *override) {
     char *text = copy_text(override);
     char *equals = strchr(text, '=');
     char *dot = strchr(text, '.');
 
     if (has_control_character(text)) {
-        fault(load, "", "a control character, expected plain text");
+        key_reader_fault(reader, "", "a control character, expected plain text");
     } else if (equals == NULL || dot == NULL || dot > equals) {
-        fault(load, "", "%.80s: not understood, expected section.key=value", override);
+        key_reader_fault(reader, "", "%.80s: not understood, expected section.key=value", override);
     } else {
         *equals = '\0';
         *dot = '\0';
-        set_override(load, trim(text), trim(dot + 1), trim(equals + 1));
+        key_reader_set(reader, trim(text), trim(dot + 1), trim(equals + 1));
     }
     free(text);
 }
 
-static void read_command_line(loading *load, const config_request *request) {
-    load->line = 0;
-    load->from = ORIGIN_SET;
+static void read_command_line(key_reader *reader, const config_request *request) {
+    reader->line = 0;
+    reader->from = ORIGIN_SET;
     for (int i = 0; i < request->override_count; ++i)
-        read_override(load, request->overrides[i]);
+        read_override(reader, request->overrides[i]);
 
-    load->from = ORIGIN_OUTPUT_OPTION;
+    reader->from = ORIGIN_OUTPUT_OPTION;
     if (request->output_file == NULL)
         return;
     if (has_control_character(request->output_file))
-        fault(load, "", "a control character in the name of the output file, expected plain text");
+        key_reader_fault(reader, "",
+                         "a control character in the name of the output file, expected plain text");
     else
-        set_value(load, find_full_name("output.file"), request->output_file);
+        key_reader_set(reader, "output", "file", request->output_file);
 }
 
 /* ---------------------------------------------------------------------------------------------
@@ -339,11 +163,11 @@ static const char *condition_of(const key_spec *key, const config *conf) {
 static int check_missing(const config *conf) {
     int faults = 0;
 
-    for (int i = 0; i < key_count; ++i) {
-        if (conf->entries[i].text != NULL || !key_is_required(&keys[i], conf))
+    for (int i = 0; i < gearsim_keys.count; ++i) {
+        if (conf->entries[i].text != NULL || !key_is_required(key_at(i), conf))
             continue;
-        config_complain(conf, keys[i].full_name, "missing, but required%s: add %s to [%s]",
-                        condition_of(&keys[i], conf), keys[i].name, keys[i].section);
+        config_complain(conf, key_at(i)->full_name, "missing, but required%s: add %s to [%s]",
+                        condition_of(key_at(i), conf), key_at(i)->name, key_at(i)->section);
         ++faults;
     }
     return faults;
@@ -446,9 +270,9 @@ static int check_together(const config *conf) {
 static void warn_of_unused(const config *conf) {
     const char *reason;
 
-    for (int i = 0; i < key_count; ++i)
-        if (conf->entries[i].text != NULL && !key_is_used(&keys[i], conf, &reason))
-            config_warn(conf, keys[i].full_name, "not used with %s", reason);
+    for (int i = 0; i < gearsim_keys.count; ++i)
+        if (conf->entries[i].text != NULL && !key_is_used(key_at(i), conf, &reason))
+            config_warn(conf, key_at(i)->full_name, "not used with %s", reason);
     if (conf->model == MODEL_3D)
         modification_keys_warn(conf);
 }
@@ -474,9 +298,9 @@ static char *default_output_file(const char *path) {
 static const char *effective_text(const config *conf, int index) {
     if (conf->entries[index].text != NULL)
         return conf->entries[index].text;
-    if (strcmp(keys[index].full_name, "output.file") == 0)
+    if (strcmp(key_at(index)->full_name, "output.file") == 0)
         return conf->output_file;
-    return keys[index].standard;
+    return key_at(index)->standard;
 }
 
 static void add_provenance(config *conf, const char *name, const char *text) {
@@ -489,12 +313,13 @@ static void add_provenance(config *conf, const char *name, const char *text) {
 static void record_provenance(config *conf) {
     const char *reason;
 
-    conf->provenance = allocate((size_t)(key_count + PROVENANCE_NOTES) * sizeof *conf->provenance);
-    for (int i = 0; i < key_count; ++i) {
+    conf->provenance =
+        allocate((size_t)(gearsim_keys.count + PROVENANCE_NOTES) * sizeof *conf->provenance);
+    for (int i = 0; i < gearsim_keys.count; ++i) {
         const char *text = effective_text(conf, i);
 
-        if (text != NULL && key_is_used(&keys[i], conf, &reason))
-            add_provenance(conf, keys[i].full_name, text);
+        if (text != NULL && key_is_used(key_at(i), conf, &reason))
+            add_provenance(conf, key_at(i)->full_name, text);
     }
 }
 
@@ -510,27 +335,29 @@ static void start(config *conf, const config_request *request) {
     conf->path = copy_text(request->path);
     conf->quiet = request->quiet;
     conf->purpose = request->purpose;
-    conf->entries = allocate((size_t)key_count * sizeof *conf->entries);
+    conf->entries = allocate((size_t)gearsim_keys.count * sizeof *conf->entries);
     modification_keys_clear(conf);
-    key_assign_defaults(conf);
+    gm_pair_params_default(&conf->gears);
+    key_assign_defaults(&gearsim_keys, conf);
 }
 
 int config_load(config *conf, const config_request *request) {
-    loading load = {.conf = conf};
+    key_reader reader = {.table = &gearsim_keys, .filled = conf, .path = request->path};
+    int faults;
 
     start(conf, request);
-    load.section_lines = allocate((size_t)key_count * sizeof *load.section_lines);
-    read_file(&load);
-    read_command_line(&load, request);
-    free(load.section_lines);
+    reader.entries = conf->entries;
+    key_reader_read(&reader);
+    read_command_line(&reader, request);
+    faults = reader.faults;
 
     if (conf->output_file == NULL)
         conf->output_file = default_output_file(conf->path);
-    if (load.faults == 0)
-        load.faults = check_missing(conf);
-    if (load.faults == 0)
-        load.faults = check_together(conf);
-    if (load.faults > 0) {
+    if (faults == 0)
+        faults = check_missing(conf);
+    if (faults == 0)
+        faults = check_together(conf);
+    if (faults > 0) {
         config_free(conf);
         return EXIT_BAD_INPUT;
     }
@@ -548,9 +375,7 @@ void config_free(config *conf) {
     for (int i = 0; i < conf->provenance_count; ++i)
         free(conf->provenance[i]);
     free(conf->provenance);
-    for (int i = 0; conf->entries != NULL && i < key_count; ++i)
-        free(conf->entries[i].text);
-    free(conf->entries);
+    key_entries_free(conf->entries, gearsim_keys.count);
     free_flank_files(&conf->pinion_flanks);
     free_flank_files(&conf->wheel_flanks);
     free(conf->output_file);

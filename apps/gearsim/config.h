@@ -102,7 +102,7 @@ typedef struct config {
     char **provenance;
     int provenance_count;
 
-    struct key_entry *entries; /* [key_count] what was given, and where: see keys.h */
+    struct key_entry *entries; /* [gearsim_keys.count] what was given, and where: see key_table.h */
 } config;
 
 /* Room for config_note(). */

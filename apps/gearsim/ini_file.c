@@ -129,7 +129,7 @@ static char *next_line(char *line, int size, void *stream) {
     if (source->stopped || !read_line(source))
         return NULL;
     if (source->line > LINE_LIMIT) {
-        stop(source, "too many lines: this is no INI file of gearsim");
+        stop(source, "too many lines: this is no INI file of parameters");
         return NULL;
     }
     text = significant_part(source);

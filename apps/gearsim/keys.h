@@ -1,103 +1,17 @@
 /* SPDX-FileCopyrightText: The gearmesh authors */
 /* SPDX-License-Identifier: BSD-3-Clause */
 
-/*
- * The keys of an INI file, each stated once. One table says how a value reads, its range, unit and
- * default, which kind of run uses it, and where it goes in a config; reading, checks, defaults,
- * provenance and --help all follow it.
- */
+/* The keys of gearsim's INI file, and which of them a configuration uses. */
 #ifndef GEARSIM_KEYS_H
 #define GEARSIM_KEYS_H
 
-#include "config.h"
+#include "key_table.h"
 
-enum key_kind {
-    KEY_NUMBER, /* double */
-    KEY_COUNT,  /* int */
-    KEY_SEED,   /* uint64_t */
-    KEY_CHOICE, /* enum, one of the names in `choices` */
-    KEY_TEXT,   /* char * */
-    KEY_PATH    /* char *, relative to the folder of the INI file */
-};
-
-/* SI value = value in the file / divisor * factor: mm have an exact divisor, but no exact factor. */
-enum key_unit { UNIT_SI, UNIT_MM, UNIT_MM_DIAMETER, UNIT_UM, UNIT_DEG, UNIT_RPM };
-
-typedef struct key_range {
-    double low, high;        /* in the unit of the file */
-    int open_low, open_high; /* the bound itself is excluded */
-} key_range;
-
-/* Situations that use or require a key. A mask with bits of several pairs means all of these pairs. */
-enum key_situation {
-    FOR_SIMPLE = 1 << 0,
-    FOR_3D = 1 << 1,
-    FOR_SPEED = 1 << 2,
-    FOR_TORQUE = 1 << 3,
-    FOR_DYNAMIC = 1 << 4,
-    FOR_STATIC = 1 << 5,
-    FOR_RUN = 1 << 6, /* only in `required`: not for --geometry */
-    FOR_ALL = 1 << 7  /* only in `required`: for --geometry as well */
-};
-
-typedef struct key_spec {
-    const char *section;
-    const char *name;
-    const char *full_name; /* "section.name" */
-    enum key_kind kind;
-    enum key_unit unit;
-    key_range range;
-    size_t target;        /* offset in config */
-    const char *field;    /* field of gm_pair_params, NULL = none */
-    const char *choices;  /* names separated by one blank, in the order of the enum */
-    const char *standard; /* default, as it would be written in the file; NULL = none */
-    const char *derived;  /* what happens without the key, in words, where there is no `standard` */
-    unsigned used;        /* situations that use the key, 0 = all */
-    unsigned required;    /* situations that require it, 0 = none */
-    const char *help;
-    const char *family; /* how --help names a key that exists in many places; NULL = by its name */
-    int family_member;  /* 0 = the one that --help shows */
-} key_spec;
-
-extern const key_spec keys[];
-extern const int key_count;
-
-/* What was given for a key. */
-enum key_origin { ORIGIN_DEFAULT, ORIGIN_FILE, ORIGIN_SET, ORIGIN_OUTPUT_OPTION };
-
-typedef struct key_entry {
-    char *text; /* as given, NULL = not given */
-    enum key_origin origin;
-    int line; /* in the INI file */
-} key_entry;
-
-/* Index of a key, or -1. Names are case-sensitive. */
-int key_find(const char *section, const char *name);
-
-/* Is there such a section? */
-int key_section_exists(const char *section);
-
-/* What an unknown name was perhaps meant to be: a section (or NULL), the index of a key (or -1), which
- * may be one of another section. */
-const char *key_section_near(const char *section);
-int key_near(const char *section, const char *name);
-
-/* Puts a value into a config. On success 0; else 1 and `fault` says what is wrong and would be right. */
-enum { KEY_FAULT_SIZE = 512 };
-int key_assign(const key_spec *key, config *conf, const char *text, char fault[KEY_FAULT_SIZE]);
-
-/* Fills a config with the defaults of all keys, and NaN for numbers that have none. */
-void key_assign_defaults(config *conf);
+/* Fills a config. */
+extern const key_table gearsim_keys;
 
 /* Does the configuration use the key? If not, `reason` is the choice that makes it unused. */
 int key_is_used(const key_spec *key, const config *conf, const char **reason);
 int key_is_required(const key_spec *key, const config *conf);
-
-/* Zeroed memory, and a copy on the heap; end the program if there is no memory left. */
-void *allocate(size_t size);
-char *copy_text(const char *text);
-
-/* The part of --help that lists all keys. */
-void keys_print(FILE *stream);
 
 #endif

@@ -2,8 +2,9 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 
 /*
- * The rows of [modifications] for the table in keys.c, which includes this behind its own macros. Every key exists
- * for each gear with and without a flank; a row is written once and --help shows it once, as a family of keys.
+ * The rows of [modifications] for the table in keys.c, which includes this behind key_macros.h and macros of its own.
+ * Every key exists for each gear with and without a flank; a row is written once and --help shows it once, as a family
+ * of keys.
  */
 #ifndef GEARSIM_MODIFICATION_ROWS_H
 #define GEARSIM_MODIFICATION_ROWS_H

@@ -1,0 +1,387 @@
+/* SPDX-FileCopyrightText: The gearmesh authors */
+/* SPDX-License-Identifier: BSD-3-Clause */
+
+#include "key_table.h"
+
+#include <ctype.h>
+#include <errno.h>
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* ---------------------------------------------------------------------------------------------
+ * Names
+ * ------------------------------------------------------------------------------------------- */
+
+int key_find(const key_table *table, const char *section, const char *name) {
+    for (int i = 0; i < table->count; ++i)
+        if (strcmp(table->keys[i].section, section) == 0 && strcmp(table->keys[i].name, name) == 0)
+            return i;
+    return -1;
+}
+
+int key_section_find(const key_table *table, const char *section) {
+    for (int i = 0; i < table->count; ++i)
+        if (strcmp(table->keys[i].section, section) == 0)
+            return i;
+    return -1;
+}
+
+enum { NAME_SIZE = 64, UNLIKE = 1000 };
+
+static int lower(char c) {
+    return tolower((unsigned char)c);
+}
+
+static size_t smaller(size_t a, size_t b) {
+    return a < b ? a : b;
+}
+
+/* Levenshtein distance without regard to case: letters to change, add or drop. */
+static size_t edit_distance(const char *a, const char *b) {
+    const size_t width = strlen(b);
+    size_t row[NAME_SIZE];
+
+    for (size_t j = 0; j <= width; ++j)
+        row[j] = j;
+    for (size_t i = 0; a[i] != '\0'; ++i) {
+        size_t diagonal = row[0];
+        row[0] = i + 1;
+        for (size_t j = 0; j < width; ++j) {
+            const size_t changed = diagonal + (lower(a[i]) != lower(b[j]));
+            diagonal = row[j + 1];
+            row[j + 1] = smaller(changed, 1 + smaller(row[j], row[j + 1]));
+        }
+    }
+    return row[width];
+}
+
+/* How unlike two names are: UNLIKE = too much to guess one from the other. */
+static size_t unlikeness(const char *given, const char *known) {
+    const size_t length = strlen(given);
+    size_t distance;
+
+    if (length == 0 || length >= NAME_SIZE)
+        return UNLIKE;
+    distance = edit_distance(given, known);
+    if (distance <= 1 + length / 4)
+        return distance;
+    return length >= 4 && strstr(known, given) != NULL ? distance : UNLIKE;
+}
+
+const char *key_section_near(const key_table *table, const char *section) {
+    const char *near = NULL;
+    size_t least = UNLIKE;
+
+    for (int i = 0; i < table->count; ++i) {
+        const size_t distance = unlikeness(section, table->keys[i].section);
+        if (distance < least) {
+            least = distance;
+            near = table->keys[i].section;
+        }
+    }
+    return near;
+}
+
+int key_near(const key_table *table, const char *section, const char *name) {
+    int near = -1;
+    size_t least = UNLIKE;
+
+    for (int i = 0; i < table->count; ++i) {
+        /* A key of another section is the better guess only if its name is more alike. */
+        const int elsewhere = strcmp(table->keys[i].section, section) != 0;
+        const size_t distance = 2 * unlikeness(name, table->keys[i].name) + (elsewhere ? 1 : 0);
+        if (distance < least) {
+            least = distance;
+            near = i;
+        }
+    }
+    return near;
+}
+
+/* ---------------------------------------------------------------------------------------------
+ * Values
+ * ------------------------------------------------------------------------------------------- */
+
+static const struct {
+    double divisor, factor;
+} units[] = {
+    [UNIT_SI] = {1, 1},
+    [UNIT_MM] = {1e3, 1},
+    [UNIT_MM_DIAMETER] = {2e3, 1},
+    [UNIT_UM] = {1e6, 1},
+    [UNIT_DEG] = {180, 3.14159265358979323846},
+    [UNIT_RPM] = {30, 3.14159265358979323846},
+};
+
+void *allocate(size_t size) {
+    void *memory = calloc(1, size);
+
+    if (memory == NULL) {
+        fputs("gearsim: out of memory\n", stderr);
+        exit(EXIT_RUN_FAILED);
+    }
+    return memory;
+}
+
+char *copy_text(const char *text) {
+    const size_t size = strlen(text) + 1;
+
+    return memcpy(allocate(size), text, size);
+}
+
+static const char *skip_digits(const char *text) {
+    while (*text >= '0' && *text <= '9')
+        ++text;
+    return text;
+}
+
+/* [+-] digits [. digits] [e [+-] digits]: what strtod() takes beyond that (hex, nan, inf) is refused. */
+static int is_plain_number(const char *text) {
+    const char *start = text + (*text == '+' || *text == '-');
+    const char *end = skip_digits(start);
+    long digits = end - start;
+
+    if (*end == '.') {
+        const char *fraction = end + 1;
+        end = skip_digits(fraction);
+        digits += end - fraction;
+    }
+    if (digits == 0)
+        return 0;
+    if (*end == 'e' || *end == 'E') {
+        const char *exponent = end + 1;
+        exponent += *exponent == '+' || *exponent == '-';
+        end = skip_digits(exponent);
+        if (end == exponent)
+            return 0;
+    }
+    return *end == '\0';
+}
+
+static int not_a_number(const char *text, char *fault) {
+    const char *advice = strchr(text, ',') != NULL
+                             ? "write it with a decimal point and without separators"
+                             : "write it as in 12, -0.5 or 1e-4, nothing behind it";
+    snprintf(fault, KEY_FAULT_SIZE, "not a number (got %.80s), %s", text, advice);
+    return 1;
+}
+
+static int read_number(const char *text, double *value, char *fault) {
+    if (!is_plain_number(text))
+        return not_a_number(text, fault);
+    *value = strtod(text, NULL);
+    if (isfinite(*value))
+        return 0;
+    snprintf(fault, KEY_FAULT_SIZE, "too large for a number (got %.80s), must be below 1.8e308",
+             text);
+    return 1;
+}
+
+/* "> 0", ">= 0", "between 0 and 45 (both excluded)", "from 0 to 1" */
+static void describe_range(const key_range *range, char *text, size_t size) {
+    if (isfinite(range->low) && isfinite(range->high))
+        snprintf(text, size,
+                 range->open_low ? "between %.9g and %.9g, both excluded" : "from %.9g to %.9g",
+                 range->low, range->high);
+    else if (isfinite(range->low))
+        snprintf(text, size, "%s %.9g", range->open_low ? ">" : ">=", range->low);
+    else
+        snprintf(text, size, "finite");
+}
+
+static int check_range(const key_range *range, double value, const char *text, char *fault) {
+    const int low = range->open_low ? value <= range->low : value < range->low;
+    const int high = range->open_high ? value >= range->high : value > range->high;
+    char requirement[80];
+
+    if (!low && !high)
+        return 0;
+    describe_range(range, requirement, sizeof requirement);
+    snprintf(fault, KEY_FAULT_SIZE, "out of range (got %.80s), must be %s", text, requirement);
+    return 1;
+}
+
+static int assign_number(const key_spec *key, double *target, const char *text, char *fault) {
+    double value;
+
+    if (read_number(text, &value, fault) || check_range(&key->range, value, text, fault))
+        return 1;
+    *target = value / units[key->unit].divisor * units[key->unit].factor;
+    return 0;
+}
+
+static int assign_count(const key_spec *key, int *target, const char *text, char *fault) {
+    double value;
+
+    if (read_number(text, &value, fault))
+        return 1;
+    if (check_range(&key->range, value, text, fault))
+        return 1;
+    if (value != floor(value)) {
+        snprintf(fault, KEY_FAULT_SIZE, "not a whole number (got %.80s), must be one", text);
+        return 1;
+    }
+    *target = (int)value;
+    return 0;
+}
+
+static int assign_seed(uint64_t *target, const char *text, char *fault) {
+    unsigned long long value = 0;
+    int too_large = 0;
+
+    if (*text != '\0' && *skip_digits(text) == '\0') {
+        errno = 0;
+        value = strtoull(text, NULL, 10);
+        too_large = errno == ERANGE || value > UINT64_MAX;
+        if (!too_large) {
+            *target = (uint64_t)value;
+            return 0;
+        }
+    }
+    snprintf(fault, KEY_FAULT_SIZE,
+             "%s (got %.80s), must be a whole number from 0 to 18446744073709551615",
+             too_large ? "too large" : "not a seed", text);
+    return 1;
+}
+
+/* Position of a name in a list separated by blanks, or -1. */
+static int position_in(const char *names, const char *name) {
+    const size_t length = strlen(name);
+
+    for (int position = 0;; ++position) {
+        const size_t span = strcspn(names, " ");
+        if (span == length && strncmp(names, name, span) == 0)
+            return position;
+        if (names[span] == '\0')
+            return -1;
+        names += span + 1;
+    }
+}
+
+/* "iso | paper" from "iso paper" */
+static void print_choices(const char *names, char *text, size_t size) {
+    size_t length = 0;
+
+    for (; *names != '\0' && length + 4 < size; ++names) {
+        if (*names == ' ') {
+            memcpy(text + length, " | ", 3);
+            length += 3;
+        } else {
+            text[length++] = *names;
+        }
+    }
+    text[length] = '\0';
+}
+
+/* Enumerations of config are as wide as an int on every platform with POSIX. */
+static int assign_choice(const key_spec *key, void *target, const char *text, char *fault) {
+    const int position = position_in(key->choices, text);
+    char choices[80];
+
+    if (position >= 0) {
+        memcpy(target, &position, sizeof position);
+        return 0;
+    }
+    print_choices(key->choices, choices, sizeof choices);
+    snprintf(fault, KEY_FAULT_SIZE, "unknown choice (got %.80s), must be %s", text, choices);
+    return 1;
+}
+
+/* NULL where all that exists is meant. */
+static int assign_text(char **target, const char *text) {
+    free(*target);
+    *target = strcmp(text, "all") == 0 ? NULL : copy_text(text);
+    return 0;
+}
+
+int key_assign(const key_spec *key, void *filled, const char *text, char fault[KEY_FAULT_SIZE]) {
+    void *target = (char *)filled + key->target;
+
+    switch (key->kind) {
+    case KEY_NUMBER:
+        return assign_number(key, target, text, fault);
+    case KEY_COUNT:
+        return assign_count(key, target, text, fault);
+    case KEY_SEED:
+        return assign_seed(target, text, fault);
+    case KEY_CHOICE:
+        return assign_choice(key, target, text, fault);
+    case KEY_TEXT:
+        return assign_text(target, text);
+    case KEY_PATH:
+        break;
+    }
+    free(*(char **)target);
+    *(char **)target = copy_text(text);
+    return 0;
+}
+
+void key_assign_defaults(const key_table *table, void *filled) {
+    char fault[KEY_FAULT_SIZE];
+
+    for (int i = 0; i < table->count; ++i) {
+        if (table->keys[i].standard != NULL)
+            (void)key_assign(&table->keys[i], filled, table->keys[i].standard, fault);
+        else if (table->keys[i].kind == KEY_NUMBER)
+            *(double *)(void *)((char *)filled + table->keys[i].target) = (double)NAN;
+        else if (table->keys[i].kind == KEY_CHOICE)
+            *(int *)(void *)((char *)filled + table->keys[i].target) = -1;
+    }
+}
+
+/* ---------------------------------------------------------------------------------------------
+ * Help
+ * ------------------------------------------------------------------------------------------- */
+
+/* "= a | b", "> 0", "from 3 to 17": what may stand behind the key. */
+static void describe_values(const key_spec *key, char *text, size_t size) {
+    *text = '\0';
+    if (key->kind == KEY_CHOICE)
+        print_choices(key->choices, text, size);
+    else if (key->kind == KEY_SEED)
+        snprintf(text, size, "whole number");
+    else if (key->kind == KEY_COUNT || (key->kind == KEY_NUMBER && isfinite(key->range.low)))
+        describe_range(&key->range, text, size);
+}
+
+/* When the file must have the key, or NULL. */
+static const char *describe_need(const key_spec *key) {
+    if (key->required & FOR_SPEED)
+        return "required for kind = speed";
+    if (key->required & FOR_TORQUE)
+        return "required for kind = torque";
+    if (key->required & FOR_DYNAMIC)
+        return "required for a dynamic run";
+    if (key->required & FOR_RUN)
+        return "required for a run";
+    return key->required ? "required" : NULL;
+}
+
+static void print_key(const key_spec *key, FILE *stream) {
+    const char *standard = key->standard != NULL ? key->standard : key->derived;
+    const char *need = describe_need(key);
+    char values[80];
+
+    describe_values(key, values, sizeof values);
+    fprintf(stream, "  %-25s ", key->family != NULL ? key->family : key->name);
+    if (standard != NULL)
+        fprintf(stream, "[%s] ", standard);
+    fputs(key->help, stream);
+    if (*values != '\0')
+        fprintf(stream, "; %s", values);
+    if (need != NULL)
+        fprintf(stream, "; %s", need);
+    fputc('\n', stream);
+}
+
+void key_table_print(const key_table *table, FILE *stream) {
+    for (int i = 0; i < table->count; ++i) {
+        if (i == 0 || strcmp(table->keys[i].section, table->keys[i - 1].section) != 0)
+            fprintf(stream, "[%s]\n", table->keys[i].section);
+        if (table->keys[i].family != NULL && table->keys[i - 1].family == NULL)
+            fputs(table->legend, stream);
+        if (table->keys[i].family_member == 0)
+            print_key(&table->keys[i], stream);
+    }
+}
