@@ -5,6 +5,8 @@
 #include "io_test.h"
 #include "reference_gear.h"
 
+#define PAPER "../data/paper/"
+
 static const double pi = 3.14159265358979323846;
 static const double micro = 1e-6;
 
@@ -406,7 +408,7 @@ static void places_of_spaces_scatter_about_their_mean(void) {
 }
 
 /* ---------------------------------------------------------------------------------------------
- * Seeds, ghost orders
+ * The paper's flanks, ghost orders, seeds
  * ------------------------------------------------------------------------------------------- */
 
 static int same_values(const double *a, const double *b, int count) {
@@ -416,6 +418,34 @@ static int same_values(const double *a, const double *b, int count) {
         }
     }
     return 1;
+}
+
+static void the_flanks_of_the_paper_are_one_call(void) {
+    static const char *const files[2][2] = {{PAPER "pinion_flanks.csv", PAPER "pinion_pitch.csv"},
+                                            {PAPER "wheel_flanks.csv", PAPER "wheel_pitch.csv"}};
+    begin();
+    gm_flank_scatter_paper(&scatter);
+    for (int wheel = 0; wheel < 2; wheel++) {
+        gm_deviations read_deviations;
+        gm_pitch read_pitch;
+        GM_ASSERT_INT(generate(wheel), GM_IO_OK);
+        const int teeth = pitch.teeth;
+        GM_ASSERT_INT(gm_deviations_read(&read_deviations, files[wheel][0], teeth, &error),
+                      GM_IO_OK);
+        GM_ASSERT_INT(gm_pitch_read(&read_pitch, files[wheel][1], teeth, &error), GM_IO_OK);
+        GM_ASSERT_INT(read_deviations.set_count, 2 * teeth);
+        int different = 0;
+        for (int i = 0; i < read_deviations.set_count; i++) {
+            different +=
+                !same_values(read_deviations.sets[i].values, deviations.sets[i].values, 21 * 31);
+        }
+        GM_ASSERT_INT(different, 0);
+        GM_ASSERT(same_values(read_pitch.drive, pitch.drive, teeth));
+        GM_ASSERT(same_values(read_pitch.coast, pitch.coast, teeth));
+        gm_deviations_free(&read_deviations);
+        gm_pitch_free(&read_pitch);
+        end();
+    }
 }
 
 static void a_ghost_order_leaves_all_else_as_it_is(void) {
@@ -520,6 +550,7 @@ int main(int argc, char **argv) {
         GM_TEST(eccentricity_is_a_pure_first_order_and_half_the_run_out),
         GM_TEST(both_flanks_of_a_tooth_see_the_same_displacement),
         GM_TEST(places_of_spaces_scatter_about_their_mean),
+        GM_TEST(the_flanks_of_the_paper_are_one_call),
         GM_TEST(a_ghost_order_leaves_all_else_as_it_is),
         GM_TEST(another_seed_gives_other_flanks),
         GM_TEST(what_cannot_be_is_refused),

@@ -74,8 +74,11 @@ class Case(unittest.TestCase):
 
 class Make(Case):
     def make(self, gear, *more):
-        self.accepted(PARAMS, "--gear", gear, "--flanks", "f.csv", "--pitch", "p.csv", *more)
-        return self.accepted(PARAMS, "--gear", gear, "--evaluate", "--flanks", "f.csv", "--pitch=p.csv")
+        """What is printed then is what the files measure to."""
+        said = self.accepted(PARAMS, "--gear", gear, "--flanks", "f.csv", "--pitch", "p.csv", *more)
+        text = self.accepted(PARAMS, "--gear", gear, "--evaluate", "--flanks", "f.csv", "--pitch=p.csv")
+        self.assertEqual(said, text)
+        return text
 
     def test_every_kind_measures_to_the_class(self):
         for gear, quality_class, seed in (("pinion", "3", "1"), ("wheel", "8", "2"), ("wheel", "11", "77")):
@@ -114,6 +117,103 @@ class Make(Case):
     def test_a_file_that_cannot_be_written_is_a_failure(self):
         self.refused("no/f.csv: ", PARAMS, "--gear", "pinion", "--class", "6", "--flanks", "no/f.csv",
                      "--pitch", "p.csv", code=1)
+
+
+class Scatter(Case):
+    """Amounts in an INI file."""
+
+    def make(self, text, *more, gear="pinion"):
+        path = self.write("scatter.ini", text)
+        self.accepted(PARAMS, "--gear", gear, "--scatter", path, "--flanks", "f.csv", "--pitch", "p.csv", *more)
+        flanks, head = {}, []
+        with open(self.path("f.csv"), encoding="ascii") as file:
+            for line in file:
+                if line.startswith("#"):
+                    head.append(line.strip())
+                elif line[0].isdigit():
+                    tooth, flank, t1, t2, value = line.strip().split(",")
+                    flanks.setdefault((int(tooth), flank), {})[round(float(t1), 4), round(float(t2), 4)] = float(value)
+        with open(self.path("p.csv"), encoding="ascii") as file:
+            pitch = [float(line.split(",")[2]) for line in file if line[0].isdigit()]
+        return flanks, pitch, head
+
+    def test_each_key_does_what_it_says(self):
+        """One key at a time, without scatter: (t1, t2) and the value there, on every flank."""
+        for key, values in (
+            ("[profile]\nslope_um = 4", {(0, 0): -2, (1, 1): 2, (0.5, 0.5): 0}),
+            ("[profile]\ncrowning_um = 4", {(0, 0): -4, (1, 1): -4, (1, 0.5): 0}),
+            ("[helix]\nslope_um = 4", {(0, 0): -2, (1, 1): 2, (0.5, 0.5): 0}),
+            ("[helix]\ncrowning_um = 4", {(0, 0): -4, (1, 1): -4, (0.5, 1): 0}),
+            ("[foot]\nmaterial_um = 5", {(0, 0): 5, (1, 0): 5, (0, 0.3667): 0, (0, 1): 0}),
+            ("[foot]\nmaterial_um = 5\nend_t2 = 1", {(0, 0): 5, (0, 0.5): 2.5, (0, 1): 0}),
+            ("[tip]\nrelief_um = 8", {(0, 0): 0, (0, 0.8): 0, (0, 0.9): -2, (1, 1): -8}),
+            ("[tip]\nrelief_um = 8\nstart_t2 = 0", {(0, 0): 0, (0, 0.5): -2, (1, 1): -8}),
+        ):
+            flanks, pitch, head = self.make(key)
+            for flank in ((0, "drive"), (17, "coast")):
+                for place, value in values.items():
+                    self.assertAlmostEqual(flanks[flank][place], value, delta=1e-4, msg=(key, place))
+            self.assertEqual(set(pitch), {0.0})
+            section, name, *_ = key.replace("[", "").split("]\n") + [""]
+            self.assertIn(f"# {section}.{name.splitlines()[0]}", head)
+
+    def test_scatter_differs_from_flank_to_flank(self):
+        for key in ("[profile]\nslope_scatter_um = 1", "[profile]\ncrowning_scatter_um = 1",
+                    "[helix]\nslope_scatter_um = 1", "[helix]\ncrowning_scatter_um = 1",
+                    "[foot]\nmaterial_scatter_um = 1", "[tip]\nrelief_scatter_um = 1",
+                    "[surface]\nroughness_um = 1", "[profile]\nwave_most_um = 1", "[helix]\nwave_most_um = 1"):
+            flanks, pitch, _ = self.make(key, "--nodes", "13x13", gear="wheel")
+            corners = {flank[0.0, 0.0] if "tip" not in key else flank[1.0, 1.0] for flank in flanks.values()}
+            self.assertGreater(len(corners), 70, key)
+            self.assertLess(max(map(abs, corners)), 6.0)
+            self.assertEqual(set(pitch), {0.0}, key)
+        for key in ("scatter_um = 1", "eccentricity_um = 2"):
+            flanks, pitch, _ = self.make("[pitch]\n" + key, "--nodes", "9x9")
+            self.assertGreater(len(set(pitch)), 70, key)
+            self.assertEqual({value for flank in flanks.values() for value in flank.values()}, {0.0})
+
+    def test_number_of_waves(self):
+        flanks, _, head = self.make(
+            "[profile]\nwave_least_um = 2\nwave_most_um = 2\nwaves_least = 3\nwaves_most = 3\n", "--seed", "5")
+        for flank in flanks.values():
+            trace = [flank[0.5, round(k / 30, 4)] for k in range(31)]
+            for k in range(21):
+                self.assertAlmostEqual(trace[k], trace[k + 10], delta=2e-4)
+            self.assertAlmostEqual(math.fsum(value * value for value in trace[:10]) / 10, 2.0, delta=1e-3)
+        self.assertIn("# profile.waves_most = 3", head)
+        self.assertIn("# seed 5, nodes 21x31", head)
+
+    def test_an_empty_file_makes_ideal_flanks(self):
+        flanks, pitch, _ = self.make("; nothing\n", "--nodes", "9x9")
+        self.assertEqual({value for flank in flanks.values() for value in flank.values()} | set(pitch), {0.0})
+
+    def test_a_bad_file_is_refused_with_its_line(self):
+        for text, line, said in (
+            ("[profile]\nslope_um = x\n", 2, "profile.slope_um: not a number (got x)"),
+            ("[profile]\nslope_scatter_um = -1\n", 2, "out of range (got -1), must be from 0 to 10000"),
+            ("[profile]\nslop_um = 1\n", 2, "unknown key, did you mean slope_um?"),
+            ("[profil]\nslope_um = 1\n", 1, "[profil]: unknown section, did you mean [profile]?"),
+            ("[xyz]\n", 1, "unknown section, `gearflanks --help` lists all"),
+            ("[foot]\nend_t2 = 0\n", 2, "must be above 0, up to 1"),
+            ("[tip]\n\nstart_t2 = 1\n", 3, "must be from 0 to below 1"),
+            ("[tip]\nrelief_um = 1\nrelief_um = 1\n", 3, "repeated key, first in line 2"),
+            ("[helix]\nwave_least_um = 3\nwave_most_um = 2\n", 3, "helix.wave_most_um: is below wave_least_um (got 2)"),
+            ("[profile]\nwaves_most = 0.5\n", 2, "profile.waves_most: is below waves_least (got 0.5)"),
+            ("[pitch\n", 1, "not understood"),
+        ):
+            path = self.write("scatter.ini", text)
+            self.refused(f"{path}:{line}: ", PARAMS, "--gear", "wheel", "--scatter", path, "--flanks", "f.csv",
+                         "--pitch", "p.csv")
+            self.refused(said, PARAMS, "--gear", "wheel", "--scatter", path, "--flanks", "f.csv", "--pitch", "p.csv")
+        path = self.write("scatter.ini", "[helix]\nwave_most_um = 1\nwaves_most = 6\n")
+        self.refused("helix: too many waves for 21 nodes", PARAMS, "--gear", "wheel", "--scatter", path, "--flanks",
+                     "f.csv", "--pitch", "p.csv")
+        path = self.write("scatter.ini", "[helix]\nwave_least_um = 1\n")
+        self.refused("helix.wave_most_um: is below wave_least_um (got 0)", PARAMS, "--gear", "wheel", "--scatter", path,
+                     "--flanks", "f.csv", "--pitch", "p.csv")
+        self.refused("no.ini: ", PARAMS, "--gear", "wheel", "--scatter", "no.ini", "--flanks", "f.csv", "--pitch",
+                     "p.csv")
+        self.assertEqual(os.listdir(self.folder), ["scatter.ini"])
 
 
 class Evaluate(Case):
@@ -217,7 +317,12 @@ class Refusals(Case):
     def test_options(self):
         self.refused("an INI file is missing")
         self.refused("--gear is missing", PARAMS, "--evaluate")
-        self.refused("--class is missing", PARAMS, "--gear", "pinion")
+        self.refused("--class or --scatter is missing", PARAMS, "--gear", "pinion")
+        self.refused("exclude each other", *self.make, "--scatter", "s.ini")
+        scatter = (PARAMS, "--gear", "pinion", "--scatter", "s.ini", "--flanks", "f.csv")
+        self.refused("not together with --scatter: --share", *scatter, "--pitch", "p.csv", "--share", "0.9")
+        self.refused("would be overwritten: s.ini", *scatter, "--pitch", "s.ini")
+        self.refused("not together with --evaluate: --scatter", *scatter, "--evaluate")
         self.refused("both needed", PARAMS, "--gear", "pinion", "--class", "6", "--flanks", "f.csv")
         self.refused("unknown option --what", *self.make, "--what")
         self.refused("a value is missing behind --seed", *self.make, "--seed")
@@ -233,6 +338,7 @@ class Refusals(Case):
             ("--class", "6.5", "1 to 11"),
             ("--class", "12", "1 to 11"),
             ("--class", "4294967302", "1 to 11"),
+            ("--scatter", "", "a file name"),
             ("--seed", "-1", "0 to 18446744073709551615"),
             ("--seed", "18446744073709551616", "0 to 18446744073709551615"),
             ("--share", "0x1", "0.8 to 0.99"),
@@ -259,8 +365,8 @@ class Refusals(Case):
 class Informative(Case):
     def test_help_and_version(self):
         text = self.accepted("--help")
-        for option in ("--gear", "--flanks", "--pitch", "--class", "--seed", "--share", "--nodes", "--wave",
-                       "--evaluate", "--teeth", "--help", "--version"):
+        for option in ("--gear", "--flanks", "--pitch", "--class", "--scatter", "--seed", "--share", "--nodes", "--wave",
+                       "--evaluate", "--teeth", "--help", "--version", "[profile]", "eccentricity_um"):
             self.assertIn(option, text)
         self.assertRegex(self.accepted("--version"), r"^gearflanks \d+\.\d+\.\d+\n$")
 

@@ -2,8 +2,8 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 
 /*
- * gearflanks: makes the flank and pitch files of a gear of a class of ISO 1328-1, and says which class
- * such files measure to. `gearflanks --help` says all of its use.
+ * gearflanks: makes the flank and pitch files of a gear, of a class of ISO 1328-1 or with amounts that scatter, and
+ * says which class such files measure to. `gearflanks --help` says all of its use.
  */
 #include "gearbox.h"
 #include "make.h"

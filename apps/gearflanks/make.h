@@ -1,7 +1,7 @@
 /* SPDX-FileCopyrightText: The gearmesh authors */
 /* SPDX-License-Identifier: BSD-3-Clause */
 
-/* Makes flanks and writes them. */
+/* Makes flanks, writes them, and prints what they measure to. */
 #ifndef GEARFLANKS_MAKE_H
 #define GEARFLANKS_MAKE_H
 

@@ -2,6 +2,7 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 
 #include "options.h"
+#include "scatter.h"
 
 #include <errno.h>
 #include <math.h>
@@ -9,24 +10,30 @@
 #include <string.h>
 
 static const char usage[] =
-    "usage: gearflanks PARAMS.ini --gear pinion|wheel --class N --flanks FILE --pitch FILE\n"
-    "                  [--seed N] [--share X] [--nodes FACExPROFILE] [--wave ORDER:UM]...\n"
+    "usage: gearflanks PARAMS.ini --gear pinion|wheel --class N [--share X]\n"
+    "                  --flanks FILE --pitch FILE [--seed N] [--nodes FACExPROFILE] [--wave "
+    "ORDER:UM]...\n"
+    "       gearflanks PARAMS.ini --gear pinion|wheel --scatter SCATTER.ini ... as above\n"
     "       gearflanks PARAMS.ini --gear pinion|wheel --evaluate [--flanks FILE] [--pitch FILE] "
     "[--teeth]\n"
     "       gearflanks --help | --version\n";
 
 static const char help[] =
     "\n"
-    "Makes flank and pitch files of a gear that measures to a flank tolerance class of ISO 1328-1, "
-    "or\n"
-    "evaluates such files. PARAMS.ini is that of gearsim; only [gears] is needed.\n"
+    "Makes flank and pitch files of a gear: of a flank tolerance class of ISO 1328-1, or with "
+    "amounts "
+    "that\n"
+    "scatter from tooth to tooth; and prints what they measure to. Or evaluates such files. "
+    "PARAMS.ini is\n"
+    "that of gearsim; only [gears] is needed.\n"
     "\n"
     "  --gear pinion|wheel    which gear\n"
     "  --flanks FILE          deviation file: written, or with --evaluate read\n"
     "  --pitch FILE           pitch file: likewise\n"
-    "  --class N              the class, 1 to 11\n"
-    "  --seed N               same seed, same flanks [1]\n"
-    "  --share X              worst value / tolerance, 0.8 to 0.99 [0.95]\n"
+    "  --class N              flanks of this class, 1 to 11\n"
+    "  --share X              with --class: worst value / tolerance, 0.8 to 0.99 [0.95]\n"
+    "  --scatter FILE         flanks that scatter as this INI file says\n"
+    "  --seed N               same seed, same flanks; pinion and wheel have nothing in common [1]\n"
     "  --nodes FACExPROFILE   grid, 9 to 1000 each way [21x31]\n"
     "  --wave ORDER:UM        a wave (ghost order): per revolution, amplitude along the normal\n"
     "  --evaluate             prints worst values, their classes and tolerances; without --flanks "
@@ -41,11 +48,16 @@ static const char help[] =
     "working\n"
     "folder. A file is written as FILE.part and renamed when it is whole.\n"
     "Exit codes: 0 done; 1 a file cannot be written; 2 usage or input.\n"
-    "What is evaluated and made: libgearmesh/docs/flank-quality.md.\n";
+    "What is evaluated and made: libgearmesh/docs/flank-quality.md.\n"
+    "\n"
+    "All keys of SCATTER.ini, with [default], meaning and range; amounts are along the surface "
+    "normal:\n"
+    "\n";
 
 void options_print_help(FILE *stream) {
     fputs(usage, stream);
     fputs(help, stream);
+    key_table_print(&scatter_keys, stream);
 }
 
 static int refuse(const char *text, const char *what) {
@@ -106,6 +118,7 @@ static int split(const char *text, char mark, char parts[2][32]) {
 typedef struct parsing {
     flanks_options *options;
     int has_gear;
+    int has_share;
     const char *made_with;      /* an option that --evaluate has no use for, NULL = none */
     const char *evaluated_with; /* the other way round */
 } parsing;
@@ -146,7 +159,13 @@ static int take_seed(parsing *state, const char *value) {
 }
 
 static int take_share(parsing *state, const char *value) {
+    state->has_share = 1;
     return parse_number(value, &state->options->generate.share);
+}
+
+static int take_scatter(parsing *state, const char *value) {
+    state->options->scatter = value;
+    return *value != '\0';
 }
 
 static int take_deviations(parsing *state, const char *value) {
@@ -171,6 +190,7 @@ static const struct {
     {"--flanks", take_deviations, FOR_BOTH, "a file name"},
     {"--pitch", take_pitch, FOR_BOTH, "a file name"},
     {"--class", take_class, FOR_MAKING, "1 to 11"},
+    {"--scatter", take_scatter, FOR_MAKING, "a file name"},
     {"--seed", take_seed, FOR_MAKING, "0 to 18446744073709551615"},
     {"--share", take_share, FOR_MAKING, "0.8 to 0.99"},
     {"--nodes", take_nodes, FOR_MAKING, "such as 21x31"},
@@ -229,17 +249,36 @@ static int take_parameters(parsing *state, const char *path) {
     return *path != '\0' ? 0 : refuse("the name of the INI file is empty", "");
 }
 
-static int check_making(const flanks_options *options) {
-    if (options->generate.quality_class == 0)
-        return refuse("--class is missing", "");
+static int check_way(const parsing *state) {
+    const flanks_options *options = state->options;
+
+    if (options->generate.quality_class == 0 && options->scatter == NULL)
+        return refuse("--class or --scatter is missing", "");
+    if (options->generate.quality_class != 0 && options->scatter != NULL)
+        return refuse("--class and --scatter exclude each other", "");
+    if (state->has_share && options->scatter != NULL)
+        return refuse("not together with --scatter: ", "--share");
+    return 0;
+}
+
+static int check_outputs(const flanks_options *options) {
+    const char *const inputs[] = {options->parameters, options->scatter};
+
     if (options->deviations == NULL || options->pitch == NULL)
         return refuse("--flanks and --pitch are both needed to make flanks", "");
     if (strcmp(options->deviations, options->pitch) == 0)
         return refuse("--flanks and --pitch are the same file: ", options->pitch);
-    if (strcmp(options->deviations, options->parameters) == 0 ||
-        strcmp(options->pitch, options->parameters) == 0)
-        return refuse("the INI file would be overwritten: ", options->parameters);
+    for (int i = 0; i < 2; ++i)
+        if (inputs[i] != NULL &&
+            (strcmp(options->deviations, inputs[i]) == 0 || strcmp(options->pitch, inputs[i]) == 0))
+            return refuse("the INI file would be overwritten: ", inputs[i]);
     return 0;
+}
+
+static int check_making(const parsing *state) {
+    const int status = check_way(state);
+
+    return status == 0 ? check_outputs(state->options) : status;
 }
 
 static int check(const parsing *state) {
@@ -253,7 +292,7 @@ static int check(const parsing *state) {
         return refuse("not together with --evaluate: ", state->made_with);
     if (options->task == FLANKS_MAKE && state->evaluated_with != NULL)
         return refuse("only together with --evaluate: ", state->evaluated_with);
-    return options->task == FLANKS_MAKE ? check_making(options) : 0;
+    return options->task == FLANKS_MAKE ? check_making(state) : 0;
 }
 
 int options_parse(flanks_options *options, int count, char *const texts[]) {

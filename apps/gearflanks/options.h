@@ -19,7 +19,8 @@ typedef struct flanks_options {
     int wheel;              /* 0 = pinion, 1 = wheel */
     const char *deviations; /* file names, NULL = not given */
     const char *pitch;
-    int teeth; /* --teeth: the values of every flank */
+    const char *scatter; /* INI file of amounts, NULL = of a class */
+    int teeth;           /* --teeth: the values of every flank */
     gm_generate_options generate;
     gm_flank_wave waves[FLANKS_MOST_WAVES]; /* what generate.waves points to */
 } flanks_options;

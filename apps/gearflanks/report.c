@@ -2,6 +2,7 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 
 #include "report.h"
+#include "key_table.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -137,29 +138,37 @@ static void print_teeth(const gm_flank_quality *flanks, int teeth) {
     }
 }
 
-int report_flanks(const flanks_options *options, const gm_pair *pair, const flank_files *files) {
+/* ---------------------------------------------------------------------------------------------
+ * The calls
+ * ------------------------------------------------------------------------------------------- */
+
+int report_quality(const flanks_options *options, const gm_pair *pair,
+                   const gm_deviations *deviations, const gm_pitch *pitch) {
     const int teeth = options->wheel ? pair->wheel.teeth : pair->pinion.teeth;
-    gm_flank_quality *flanks = malloc(2 * (size_t)teeth * sizeof *flanks);
+    gm_flank_quality *flanks = allocate(2 * (size_t)teeth * sizeof *flanks);
     gm_quality quality;
     gm_io_error error;
-    measured of;
-    int status = EXIT_RUN_FAILED;
+    int status = EXIT_DONE;
 
-    if (flanks == NULL) {
-        fputs("gearflanks: out of memory\n", stderr);
-        return status;
-    }
-    status = open_files(&of, options, files, teeth);
+    if (gm_quality_evaluate(&quality, flanks, pair, options->wheel, deviations, pitch, NULL,
+                            &error) != GM_IO_OK)
+        status = refuse(&error);
+    else if (options->teeth)
+        print_teeth(flanks, teeth);
+    else
+        print_quality(&quality, pair, options->wheel, teeth);
+    free(flanks);
+    return status;
+}
+
+int report_flanks(const flanks_options *options, const gm_pair *pair, const flank_files *files) {
+    measured of;
+    int status =
+        open_files(&of, options, files, options->wheel ? pair->wheel.teeth : pair->pinion.teeth);
+
     if (status == EXIT_DONE) {
-        if (gm_quality_evaluate(&quality, flanks, pair, options->wheel, of.deviations, of.pitch,
-                                NULL, &error) != GM_IO_OK)
-            status = refuse(&error);
-        else if (options->teeth)
-            print_teeth(flanks, teeth);
-        else
-            print_quality(&quality, pair, options->wheel, teeth);
+        status = report_quality(options, pair, of.deviations, of.pitch);
         close_files(&of);
     }
-    free(flanks);
     return status;
 }

@@ -2,6 +2,7 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 
 #include "key_table.h"
+#include "config.h"
 
 #include <ctype.h>
 #include <errno.h>
@@ -178,12 +179,14 @@ static int read_number(const char *text, double *value, char *fault) {
     return 1;
 }
 
-/* "> 0", ">= 0", "between 0 and 45 (both excluded)", "from 0 to 1" */
+/* "> 0", ">= 0", "between 0 and 45, both excluded", "from 0 to 1", "above 0, up to 1" */
 static void describe_range(const key_range *range, char *text, size_t size) {
+    static const char *const bounded[2][2] = {
+        {"from %.9g to %.9g", "from %.9g to below %.9g"},
+        {"above %.9g, up to %.9g", "between %.9g and %.9g, both excluded"}};
+
     if (isfinite(range->low) && isfinite(range->high))
-        snprintf(text, size,
-                 range->open_low ? "between %.9g and %.9g, both excluded" : "from %.9g to %.9g",
-                 range->low, range->high);
+        snprintf(text, size, bounded[range->open_low][range->open_high], range->low, range->high);
     else if (isfinite(range->low))
         snprintf(text, size, "%s %.9g", range->open_low ? ">" : ">=", range->low);
     else

@@ -9,7 +9,8 @@
 #ifndef GEARSIM_KEY_TABLE_H
 #define GEARSIM_KEY_TABLE_H
 
-#include "config.h"
+#include <stddef.h>
+#include <stdio.h>
 
 enum key_kind {
     KEY_NUMBER, /* double */

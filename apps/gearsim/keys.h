@@ -5,6 +5,7 @@
 #ifndef GEARSIM_KEYS_H
 #define GEARSIM_KEYS_H
 
+#include "config.h"
 #include "key_table.h"
 
 /* Fills a config. */
