@@ -4,18 +4,13 @@
 # The map of scripts/campbell, which sets the variables used here before it loads this file. Lines are marked
 # at the rim only, so that they hide nothing.
 
-# Equal steps of CIELAB lightness, from 5 to 97: equal steps of the amplitude look equal, and their order
-# survives a grey print and any colour vision.
-set palette defined (0 '#090f28', 1 '#181d47', 2 '#342764', 3 '#553179', 4 '#863180', 5 '#b0367d', \
-                     6 '#d44473', 7 '#ec5e61', 8 '#f78052', 9 '#f6a44e', 10 '#fdc15d', 11 '#ffdd85', \
-                     12 '#fff7cf')
+load scripts . '/style.gp'
+set palette @palette_of_steps
 
 set lmargin at screen 0.105
 set rmargin at screen 0.835
 set tmargin at screen 0.855
 set bmargin at screen 0.105
-set border lw 1.2
-set tics out nomirror
 set xrange [0:frequency_high]
 set yrange [speed_low:speed_high]
 set cbrange [colour_low:colour_high]
@@ -63,11 +58,7 @@ if (eigenfrequency > 0 && eigenfrequency < frequency_high) {
 }
 
 do for [format in 'png svg'] {
-    if (format eq 'png') {
-        set terminal pngcairo size 1400,1000 font 'DejaVu Sans,13' fontscale 1.25
-    } else {
-        set terminal svg size 1120,800 font 'DejaVu Sans,13' background '#ffffff' name 'campbell_map'
-    }
+    eval terminal(format, 'campbell_map', 1400, 1000)
     set output stem . '.' . format
     plot stem . '_map.bin' binary array=(columns, rows) format='%float32' endian=little \
         origin=(0, speed_first) dx=frequency_step dy=speed_step with image

@@ -4,6 +4,8 @@
 # Order cuts and order spectrum of scripts/campbell, which sets the variables used here before it loads this
 # file. Colours are told apart with any colour vision (blue, orange, green, purple).
 
+load scripts . '/style.gp'
+
 array colours[4] = ['#0072b2', '#d55e00', '#009e73', '#aa4499']
 # Three times the range of the map's colours at either end.
 amplitude_low = 10.0**colour_low / 3.0
@@ -11,15 +13,10 @@ amplitude_high = 10.0**colour_high * 3.0
 highest = word(harmonics, words(harmonics)) * pinion_teeth + 15
 
 do for [format in 'png svg'] {
-    if (format eq 'png') {
-        set terminal pngcairo size 1400,1100 font 'DejaVu Sans,13' fontscale 1.25
-    } else {
-        set terminal svg size 1120,880 font 'DejaVu Sans,13' background '#ffffff' name 'campbell_orders'
-    }
+    eval terminal(format, 'campbell_orders', 1400, 1100)
     set output stem . '_orders.' . format
     set multiplot
-    set border 3 lw 1.2
-    set tics out nomirror
+    set border 3
     set grid xtics ytics lt 1 lw 0.8 lc rgb '#cccccc'
     set lmargin at screen 0.095
     set rmargin at screen 0.965

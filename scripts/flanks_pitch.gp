@@ -19,7 +19,7 @@ set style fill solid 0.85 noborder
 set boxwidth 0.36
 
 do for [format in 'png svg'] {
-    eval terminal(format, 'pitch', 1400, 1000)
+    eval terminal(format, 'flanks_pitch', 1400, 1000)
     set output folder . '/pitch.' . format
     set multiplot
     set lmargin at screen 0.085

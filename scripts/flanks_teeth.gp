@@ -15,7 +15,7 @@ set cbrange [-range_um:range_um]
 set style fill solid noborder
 
 do for [format in 'png svg'] {
-    eval terminal(format, 'teeth', 1400, height)
+    eval terminal(format, 'flanks_teeth', 1400, height)
     set output folder . '/teeth.' . format
     set multiplot
     set lmargin at screen 0.025

@@ -45,7 +45,7 @@ set palette maxcolors 0
 unset key
 
 do for [format in 'png svg'] {
-    eval terminal(format, 'topography', 1400, height)
+    eval terminal(format, 'flanks_topography', 1400, height)
     set output folder . '/topography.' . format
     set multiplot
     set label 1 title_text at screen 0.025, screen from_top(40) left font ',17' noenhanced

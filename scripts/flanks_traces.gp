@@ -21,7 +21,7 @@ unset key
 half(side, x) = side eq 'drive' ? -x : x
 
 do for [format in 'png svg'] {
-    eval terminal(format, 'traces', 1400, height)
+    eval terminal(format, 'flanks_traces', 1400, height)
     set output folder . '/traces.' . format
     set multiplot
     set lmargin at screen left

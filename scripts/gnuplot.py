@@ -9,7 +9,9 @@ SCRIPTS = os.path.dirname(os.path.abspath(__file__))
 
 
 def literal(value):
-    """A string or a number as gnuplot reads it."""
+    """A string, a number, or a list of numbers (as a string of words) as gnuplot reads it."""
+    if isinstance(value, (list, tuple)):
+        value = " ".join(f"{item:.10g}" for item in value)
     if isinstance(value, str):
         return "'" + value.replace("'", "''") + "'"
     return str(value) if isinstance(value, int) else f"{float(value):.10g}"

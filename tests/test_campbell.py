@@ -430,7 +430,7 @@ class CommandLine(unittest.TestCase):
 
 class Palette(unittest.TestCase):
     def test_lightness_rises_in_equal_steps(self):
-        with open(os.path.join(SCRIPTS, "campbell_map.gp"), encoding="ascii") as file:
+        with open(os.path.join(SCRIPTS, "style.gp"), encoding="utf-8") as file:
             colours = re.findall(r"\d '#([0-9a-f]{6})'", file.read())
         self.assertGreater(len(colours), 8)
         rgb = np.array([[int(c[i : i + 2], 16) / 255 for i in (0, 2, 4)] for c in colours])

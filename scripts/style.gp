@@ -1,0 +1,21 @@
+# SPDX-FileCopyrightText: The gearmesh authors
+# SPDX-License-Identifier: BSD-3-Clause
+#
+# What all pictures share.
+
+# Equal steps of CIELAB lightness, from 5 to 97: equal steps of a value look equal, and their order survives a grey
+# print and any colour vision. Reversed: 'set palette @palette_of_steps negative'.
+palette_of_steps = "defined (0 '#090f28', 1 '#181d47', 2 '#342764', 3 '#553179', 4 '#863180', 5 '#b0367d', \
+    6 '#d44473', 7 '#ec5e61', 8 '#f78052', 9 '#f6a44e', 10 '#fdc15d', 11 '#ffdd85', 12 '#fff7cf')"
+grey = '#606060'
+um = ' / µm'
+
+set encoding utf8
+set border lw 1.2
+set tics out nomirror
+
+# eval terminal(...): png or svg, of so many pixels of the png
+terminal(format, name, width, height) = format eq 'png' \
+    ? sprintf("set terminal pngcairo size %d,%d font 'DejaVu Sans,13' fontscale 1.25", width, height) \
+    : sprintf("set terminal svg size %d,%d font 'DejaVu Sans,13' background '#ffffff' name '%s'", \
+              width * 0.8, height * 0.8, name)
