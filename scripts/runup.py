@@ -96,7 +96,7 @@ def _text(value):
 
 def _read_csv(path):
     """The same of a CSV."""
-    provenance, names, head_lines = _read_head(path)
+    provenance, names, head_lines = read_head(path)
     try:
         table = np.loadtxt(
             path,
@@ -111,7 +111,7 @@ def _read_csv(path):
     return [np.ascontiguousarray(column) for column in table.T], provenance, _incomplete_reason(path)
 
 
-def _read_head(path):
+def read_head(path):
     """Provenance lines `# section.key = value`, the column names, and how many lines both take."""
     provenance = {}
     with open(path, encoding="utf-8", errors="replace") as file:

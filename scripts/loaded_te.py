@@ -1,0 +1,377 @@
+# SPDX-FileCopyrightText: The gearmesh authors
+# SPDX-License-Identifier: BSD-3-Clause
+"""Loaded transmission error from gearsim: one parameter file, many torques, many values of its keys."""
+import concurrent.futures
+import math
+import os
+import re
+import shutil
+import subprocess
+import sys
+import tempfile
+import threading
+
+import numpy as np
+
+import runup
+
+ROOT = os.path.join(os.path.dirname(os.path.abspath(__file__)), os.pardir)
+GEARS = ("pinion", "wheel")
+UNITS = {"um": "µm", "mm": "mm", "deg": "°", "Nm": "N m"}  # by the end of a key
+NO_LOAD = 1e-3  # of the mean load: gearsim needs a load, as without one the gears may stand anywhere in the backlash
+FLANK_FILES = ("pinion", "wheel", "pinion_pitch", "wheel_pitch")
+
+
+class InputError(Exception):
+    """What the user asked for cannot be done; the text says why."""
+
+
+class NoEquilibrium(InputError):
+    """The gears cannot carry the torque."""
+
+
+class RunFailed(Exception):
+    """gearsim could not finish a run; the text says why."""
+
+
+def span(text, default_count=None):
+    """`FROM:TO[:COUNT]` or one number, as COUNT numbers evenly from FROM to TO."""
+    parts = text.split(":")
+    try:
+        low, high = float(parts[0]), float(parts[min(1, len(parts) - 1)])
+        count = int(parts[2]) if len(parts) == 3 else (1 if low == high else default_count)
+    except ValueError:
+        raise InputError(f"'{text}': FROM:TO or FROM:TO:COUNT with numbers is right") from None
+    if len(parts) > 3 or not (math.isfinite(low) and math.isfinite(high)):
+        raise InputError(f"'{text}': FROM:TO or FROM:TO:COUNT with numbers is right")
+    if low > high:
+        raise InputError(f"'{text}': {low:g} is above {high:g}; the lower number comes first")
+    if count is not None and not 1 <= count <= 1000:
+        raise InputError(f"'{text}': 1 to 1000 values are right")
+    return np.array([low, high]) if count is None else np.linspace(low, high, count)
+
+
+def torques(text, count, mean_Nm):
+    """Torques of a range given by the user. They have the direction of the mean load if they are > 0."""
+    values_Nm = span(text, count)
+    if values_Nm[0] < 0:
+        raise InputError(f"torques '{text}': >= 0 is right; the sign of load.mean_Nm chooses the flank")
+    if values_Nm[-1] == 0:
+        raise InputError(f"torques '{text}': without a load the gears may stand anywhere in the backlash")
+    return loads(values_Nm, mean_Nm)
+
+
+def loads(values_Nm, mean_Nm):
+    """Torques with the sign of the mean load, and a small one in the place of 0."""
+    return np.copysign(np.maximum(values_Nm, NO_LOAD * abs(mean_Nm)), mean_Nm)
+
+
+def full_key(key):
+    """`section.key`; without a section it is one of [modifications]."""
+    return key if "." in key else f"modifications.{key}"
+
+
+def short_key(key):
+    return key.removeprefix("modifications.")
+
+
+def unit_of(key):
+    return UNITS.get(key.rpartition("_")[2], "")
+
+
+def gearsim_path(given):
+    """The program: as given, as built by scripts/test, or as installed."""
+    build = os.environ.get("GEARMESH_BUILD_DIR") or os.path.join(ROOT, "build", "release")
+    built = os.path.join(build, "apps", "gearsim", "gearsim")
+    path = given or (built if os.path.exists(built) else shutil.which("gearsim"))
+    if path is None:
+        raise InputError("gearsim is not built: scripts/test builds it, or say where it is (--gearsim FILE)")
+    if not os.path.isfile(path) or not os.access(path, os.X_OK):
+        raise InputError(f"{path}: there is no such program (--gearsim)")
+    return os.path.abspath(path)
+
+
+def add_arguments(parser):
+    """What both scripts take."""
+    add = parser.add_argument
+    add("params", metavar="PARAMS.ini", help="parameter file of gearsim; its mean_Nm is the design load")
+    add("--set", action="append", default=[], metavar="SECTION.KEY=VALUE", help="as for gearsim; may be repeated")
+    add("--output", metavar="STEM", help="beginning of the names written [name of PARAMS.ini without .ini, here]")
+    add("--title", help="headline of the pictures [PARAMS]")
+    add("--gearsim", metavar="FILE", help="the program [$GEARMESH_BUILD_DIR or build/release, else installed]")
+    add("--no-pictures", action="store_true", help="numbers only, gnuplot is not called")
+
+
+class Gears:
+    """A gear pair of a parameter file. Runs go to all cores; close() ends them."""
+
+    def __init__(self, path, settings=(), gearsim=None):
+        self.path = path
+        self.gearsim = gearsim_path(gearsim)
+        if not os.path.isfile(path):
+            raise InputError(f"{path}: there is no such file")
+        self.settings = dict(self._setting(text) for text in settings)
+        self.positions = None  # as the file says
+        self.folder = tempfile.TemporaryDirectory(prefix="gearmesh_")
+        self.pool = concurrent.futures.ThreadPoolExecutor(os.cpu_count() or 1)
+        try:
+            self._read()
+        except BaseException:
+            self.close()
+            raise
+
+    @staticmethod
+    def _setting(text):
+        key, equals, value = text.partition("=")
+        if not equals or "." not in key:
+            raise InputError(f"--set {text}: section.key=value is right")
+        return key.strip(), value.strip()
+
+    def __enter__(self):
+        return self
+
+    def __exit__(self, *_):
+        self.close()
+
+    def close(self):
+        self.pool.shutdown(cancel_futures=True)
+        self.folder.cleanup()
+
+    def _read(self):
+        """What the file says, with all defaults, and what follows from its gears."""
+        text = self._call({}, "--geometry")
+        self.geometry = {key: float(value) for key, _, value in (line.partition(" = ") for line in text.splitlines())}
+        names = "pinion_angle_rad,te_um"
+        self.parameters, table = self._run({"output.columns": names})
+        self.mean_Nm = float(self.parameters["load.mean_Nm"])
+        self.flank = "drive" if self.mean_Nm > 0 else "coast"
+        if self.differs_by_tooth() and self.parameters["analysis.period"] == "mesh":
+            print(
+                f"{self.path}: warning: flanks of files, but one mesh cycle only: what other teeth do is not "
+                "seen; --set analysis.period=pinion or hunting shows it",
+                file=sys.stderr,
+            )
+        self.mesh_cycles = table[:, 0] * int(self.parameters["gears.pinion_teeth"]) / (2 * math.pi)
+
+    # ------------------------------------------------------------------------------------------------
+    # Runs
+    # ------------------------------------------------------------------------------------------------
+
+    def _call(self, values, *options):
+        command = [self.gearsim, self.path, "--quiet", *options]
+        for key, value in {**self.settings, **values}.items():
+            command += ["--set", f"{key}={value:.12g}" if isinstance(value, float) else f"{key}={value}"]
+        result = subprocess.run(command, capture_output=True, text=True, check=False, stdin=subprocess.DEVNULL)
+        if result.returncode == 130:
+            raise KeyboardInterrupt
+        if result.returncode == 2:
+            raise InputError(result.stderr.strip())
+        if result.returncode != 0:
+            raise RunFailed(result.stderr.strip() or f"gearsim ended with {result.returncode}")
+        return result.stdout
+
+    def _run(self, values):
+        """Head lines and rows of a static run."""
+        path = os.path.join(self.folder.name, f"{threading.get_ident()}.csv")
+        forced = {"analysis.type": "static", "output.columns": "te_um", "output.digits": 12}
+        if self.positions is not None:
+            forced["analysis.positions"] = self.positions
+        self._call({**forced, **values}, "--output", path)
+        head, _, head_lines = runup.read_head(path)
+        return head, np.loadtxt(path, delimiter=",", skiprows=head_lines, ndmin=2)
+
+    def te_um(self, torque_Nm, values):
+        """Transmission error at all positions under a torque on the wheel, with {key: value} in place of the file's."""
+        try:
+            return self._run({**values, "load.mean_Nm": float(torque_Nm)})[1][:, 0]
+        except RunFailed as error:
+            given = "".join(f", {short_key(key)} = {value:.6g}" for key, value in values.items())
+            kind = NoEquilibrium if "no equilibrium" in str(error) else RunFailed
+            raise kind(f"torque {torque_Nm:.6g} N m{given}: {error}") from error
+
+    def each(self, jobs):
+        """te_um() of (torque_Nm, values), in this order, several at a time."""
+        futures = [self.pool.submit(self.te_um, *job) for job in jobs]
+        try:
+            for future in futures:
+                yield future.result()
+        finally:
+            for future in futures:
+                future.cancel()
+
+    def curves_um(self, designs, torques_Nm):
+        """te_um() as [design, torque, position] for a list of {key: value}."""
+        jobs = [(torque_Nm, values) for values in designs for torque_Nm in torques_Nm]
+        return np.reshape(list(self.each(jobs)), (len(designs), len(torques_Nm), -1))
+
+    def touching_um(self):
+        """What added to a transmission error makes it 0 where ideal flanks just touch."""
+        return math.copysign(self.geometry["backlash_um"] / 2, self.mean_Nm)
+
+    def periods(self, te_um):
+        """Mesh cycles and curves [torque, position] to draw: two periods, so that one is seen whole wherever it begins.
+
+        One cycle of teeth that differ is no period, it is drawn as it is.
+        """
+        cycles = self.mesh_cycles
+        if self.differs_by_tooth() and self.parameters["analysis.period"] == "mesh":
+            return cycles, te_um
+        period = cycles[-1] + cycles[1] if len(cycles) > 1 else 1.0
+        return np.concatenate([cycles, cycles + period, [2 * period]]), np.hstack([te_um, te_um, te_um[:, :1]])
+
+    # ------------------------------------------------------------------------------------------------
+    # What the file says
+    # ------------------------------------------------------------------------------------------------
+
+    def key_that_counts(self, gear, name):
+        """Key of a modification for the loaded flank: the one with the flank if the file has it."""
+        own = f"modifications.{gear}_{self.flank}_{name}"
+        return own if own in self.parameters else f"modifications.{gear}_{name}"
+
+    def value(self, key):
+        """Number of a key, None if the file does not say."""
+        text = self.parameters.get(key)
+        try:
+            return None if text is None else float(text)
+        except ValueError:
+            raise InputError(f"{key}: its value '{text}' is not a number, which could be varied") from None
+
+    def differs_by_tooth(self):
+        return any(self.parameters.get(f"flanks.{name}") for name in FLANK_FILES)
+
+    def tip_relief_keys(self):
+        """Amounts of the tip reliefs that the file gives to the loaded flanks."""
+        keys = [self.key_that_counts(gear, "tip_relief_um") for gear in GEARS]
+        return [key for key in keys if self.value(key)]
+
+    def pairs_without_relief(self):
+        """Pairs of teeth that always touch in the transverse section."""
+        return max(1, math.floor(self.geometry["transverse_contact_ratio"]))
+
+    def deflection_um(self):
+        """Of the pairs that always touch, under the mean load."""
+        force_N = abs(self.mean_Nm) / (self.geometry["wheel_base_radius_mm"] * 1e-3)
+        return force_N / (self.pairs_without_relief() * float(self.parameters["mesh.stiffness_N_per_m"])) * 1e6
+
+    def long_tip_relief(self):
+        """Amount (um) and length (mm) of the long linear tip relief for the mean load."""
+        amount_um = self.deflection_um()
+        path_mm = self.geometry["path_end_mm"] - self.geometry["path_start_mm"]
+        length_mm = path_mm - amount_um * 1e-3 - self.pairs_without_relief() * self.geometry["transverse_base_pitch_mm"]
+        if length_mm < 0.02 * path_mm:
+            raise InputError(
+                f"{self.path}: has no tip relief, and with a transverse contact ratio of "
+                f"{self.geometry['transverse_contact_ratio']:.4g} a long one has no room; give --vary, "
+                "and with --set what the modification needs beside its amount"
+            )
+        return amount_um, length_mm
+
+
+# ----------------------------------------------------------------------------------------------------
+# Files and terminal
+# ----------------------------------------------------------------------------------------------------
+
+
+def with_values(text, values):
+    """The text of an INI file with {section.key: text} in place of its values, or added to their section."""
+    lines = text.removeprefix("\ufeff").splitlines()
+    for key, value in values.items():
+        section, _, name = key.partition(".")
+        at, end = None, None  # line of the key, end of the section
+        inside = False
+        for number, line in enumerate(lines):
+            if found := re.match(r"\s*\[([^]]*)\]", line):
+                inside = found[1].strip() == section
+            if inside and line.strip():
+                end = number + 1
+            if inside and re.match(rf"\s*{re.escape(name)}\s*[=:]", line):
+                at = number
+        if at is not None:
+            lines[at] = re.sub(r"([=:]\s*)(.*?)(\s+[;#].*|\s*)$", lambda m: m[1] + value + m[3], lines[at], count=1)
+        elif end is not None:
+            lines.insert(end, f"{name} = {value}")
+        else:
+            lines += ["", f"[{section}]", f"{name} = {value}"]
+    return "\n".join(lines) + "\n"
+
+
+def write_params(gears, path, values):
+    """The parameter file with other values, at another place: flank files are named from there."""
+    moved = {}
+    for name in FLANK_FILES:
+        key = f"flanks.{name}"
+        if gears.parameters.get(key):
+            beside = os.path.dirname(os.path.abspath(gears.path))
+            target = os.path.join(beside, gears.parameters[key])
+            moved[key] = os.path.relpath(target, os.path.dirname(os.path.abspath(path)))
+    with open(gears.path, encoding="utf-8") as file:
+        text = file.read()
+    with open(path, "w", encoding="utf-8") as file:
+        file.write(with_values(text, {**gears.settings, **moved, **values}))
+
+
+def stem_of(options):
+    stem = options.output or os.path.splitext(os.path.basename(options.params))[0]
+    folder = os.path.dirname(stem)
+    if folder and not os.path.isdir(folder):
+        raise InputError(f"{folder}: there is no such folder (--output)")
+    return stem
+
+
+def title_of(options):
+    return options.title or options.params.removesuffix(".ini")
+
+
+def progress(text):
+    """A line that the next one replaces, on a terminal only."""
+    if sys.stderr.isatty():
+        print(f"\r\033[K{text}", end="", file=sys.stderr, flush=True)
+
+
+def round_step(range_, steps):
+    """The next of 1, 2, 5, 10, 20 .. that divides a range into at most so many steps."""
+    raw = max(range_, 1e-9) / steps
+    power = 10.0 ** math.floor(math.log10(raw) + 1e-9)
+    return next(power * digit for digit in (1, 2, 5, 10) if power * digit >= raw * (1 - 1e-9))
+
+
+def apart(positions, distance):
+    """Where labels stand that should be at the given positions, in their order and a distance apart."""
+    order = np.argsort(positions, kind="stable")
+    groups = []  # [first rank, count, middle]
+    for rank, index in enumerate(order):
+        groups.append([rank, 1, positions[index]])
+        while len(groups) > 1:
+            (first, count, middle), (_, more, other) = groups[-2:]
+            if other - middle >= distance * (count + more) / 2:
+                break
+            groups[-2:] = [[first, count + more, (middle * count + other * more) / (count + more)]]
+    placed = np.empty(len(positions))
+    for first, count, middle in groups:
+        placed[order[first : first + count]] = middle + distance * (np.arange(count) - (count - 1) / 2)
+    return placed
+
+
+def write_blocks(path, blocks):
+    """Columns as blocks of lines for gnuplot (`index` 0, 1 ..)."""
+    with open(path, "w", encoding="ascii") as file:
+        for columns in blocks:
+            np.savetxt(file, np.column_stack(columns), "%.9g")
+            file.write("\n\n")
+
+
+def run_script(name, work, parse):
+    """main() of a script: its errors as messages, and the exit status."""
+    options = parse()
+    try:
+        work(options)
+    except InputError as error:
+        print(f"{name}: {error}", file=sys.stderr)
+        return 2
+    except (RunFailed, OSError) as error:
+        print(f"{name}: {error}", file=sys.stderr)
+        return 1
+    except KeyboardInterrupt:
+        print(f"\n{name}: interrupted", file=sys.stderr)
+        return 130
+    return 0

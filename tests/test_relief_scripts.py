@@ -1,0 +1,412 @@
+#!/usr/bin/python3
+# SPDX-FileCopyrightText: The gearmesh authors
+# SPDX-License-Identifier: BSD-3-Clause
+"""
+scripts/harris and scripts/relief against the closed form of the long tip relief, and what they say and leave behind.
+
+    test_relief_scripts.py GEARSIM [-v] [name of a test]...
+"""
+import csv
+import math
+import os
+import re
+import signal
+import subprocess
+import sys
+import tempfile
+import time
+import unittest
+
+import numpy as np
+
+sys.dont_write_bytecode = True
+ROOT = os.path.join(os.path.dirname(os.path.abspath(__file__)), os.pardir)
+SCRIPTS = os.path.join(ROOT, "scripts")
+SPUR = os.path.join(ROOT, "data", "relief", "params.ini")
+HELICAL = os.path.join(ROOT, "data", "paper", "fig13.ini")
+REAL_FLANKS = os.path.join(ROOT, "data", "paper", "fig15.ini")
+sys.path.insert(0, SCRIPTS)
+import loaded_te  # noqa: E402
+
+GEARSIM = None
+
+# The spur example, from its drawing: one pair of teeth carries F = K delta.
+DEFLECTION_UM = 20.0
+STIFFNESS_N_PER_M = 1.05e8
+WHEEL_BASE_RADIUS_M = 37 * 2e-3 / 2 * math.cos(math.radians(20))
+DESIGN_NM = DEFLECTION_UM * 1e-6 * STIFFNESS_N_PER_M * WHEEL_BASE_RADIUS_M
+LENGTH_UM = 3694.959
+BOTH_RELIEFS = "pinion_tip_relief_um,wheel_tip_relief_um"
+
+
+def long_relief_um(amount_um, torque_Nm):
+    """
+    Peak-to-peak error with a relief C on both tips over the whole way that two pairs share, d = F / K.
+
+    One pair: delta = d. Two, with what they lack adding up to C: delta = (d + C) / 2; if d < C that holds in the middle
+    of the way only, and at its ends one pair goes on alone, from d.
+    """
+    deflection_um = torque_Nm / WHEEL_BASE_RADIUS_M / STIFFNESS_N_PER_M * 1e6
+    return abs(deflection_um - amount_um) / 2
+
+
+def length_error_um(amount_um, torque_Nm):
+    """The way that two pairs share depends on the deflection, the length fits 20 um: what the misfit can do."""
+    return 0.02 + amount_um * abs(torque_Nm / DESIGN_NM - 1) * DEFLECTION_UM / LENGTH_UM
+
+
+class Case(unittest.TestCase):
+    def setUp(self):
+        folder = tempfile.TemporaryDirectory()
+        self.addCleanup(folder.cleanup)
+        self.folder = folder.name
+
+    def run_script(self, script, *arguments):
+        return subprocess.run(
+            [os.path.join(SCRIPTS, script), *arguments, "--gearsim", GEARSIM],
+            cwd=self.folder,
+            env={**os.environ, "PYTHONDONTWRITEBYTECODE": "1"},
+            capture_output=True,
+            text=True,
+        )
+
+    def accepted(self, script, *arguments):
+        result = self.run_script(script, *arguments)
+        self.assertEqual(result.returncode, 0, result.stderr)
+        self.assertNotIn("Traceback", result.stderr)
+        return result
+
+    def path(self, name):
+        return os.path.join(self.folder, name)
+
+    def read(self, name):
+        with open(self.path(name), encoding="utf-8") as file:
+            return file.read()
+
+    def write(self, name, text):
+        with open(self.path(name), "w", encoding="utf-8") as file:
+            file.write(text)
+        return self.path(name)
+
+    def table(self, name):
+        """Rows of a CSV as {column: number}; empty cells are left out."""
+        lines = [line for line in self.read(name).splitlines() if not line.startswith("#")]
+        return [{key: float(value) for key, value in row.items() if value} for row in csv.DictReader(lines)]
+
+    def svg_text(self, name):
+        """All texts of a picture, blanks between them."""
+        found = re.findall(r"<text[^>]*>(.*?)</text>", self.read(name), re.DOTALL)
+        return " ".join(re.sub(r"<[^>]*>|\s+", " ", text).strip() for text in found)
+
+    def refused(self, script, *arguments, fragments):
+        result = self.run_script(script, *arguments)
+        self.assertEqual(result.returncode, 2, result.stderr)
+        self.assertNotIn("Traceback", result.stderr)
+        for fragment in fragments:
+            self.assertIn(fragment, result.stderr)
+        return result
+
+    def interrupted(self, script, *arguments, runs):
+        """Ctrl-C of a terminal, which goes to the whole group, after so many runs of gearsim."""
+        counted = self.write("counted", f'#!/bin/sh\necho >>"{self.folder}/count"\nexec "{GEARSIM}" "$@"\n')
+        os.chmod(counted, 0o755)
+        process = subprocess.Popen(
+            [os.path.join(SCRIPTS, script), *arguments, "--gearsim", counted],
+            cwd=self.folder, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, start_new_session=True,
+        )
+        while process.poll() is None and (not os.path.exists(self.path("count")) or len(self.read("count")) < runs):
+            time.sleep(0.05)
+        os.killpg(process.pid, signal.SIGINT)
+        stdout, stderr = process.communicate(timeout=60)
+        self.assertEqual(process.returncode, 130, stderr)
+        self.assertNotIn("Traceback", stderr)
+        return stdout, stderr, sorted(set(os.listdir(self.folder)) - {"count", "counted"})
+
+
+class Harris(Case):
+    def test_map_of_the_spur_pair_is_the_closed_form(self):
+        self.accepted("harris", SPUR, "--vary", f"{BOTH_RELIEFS}=0:30:4", "--torques", "15:110:6", "--output", "h",
+                      "--no-pictures")
+        rows = self.table("h_harris.csv")
+        self.assertEqual(len(rows), 24)
+        for row in rows:
+            self.assertEqual(row["pinion_tip_relief_um"], row["wheel_tip_relief_um"])
+            amount_um, torque_Nm = row["pinion_tip_relief_um"], row["torque_Nm"]
+            self.assertAlmostEqual(row["te_peak_to_peak_um"], long_relief_um(amount_um, torque_Nm),
+                                   delta=length_error_um(amount_um, torque_Nm))
+
+    def test_by_itself_it_scales_the_reliefs_of_the_file_and_draws(self):
+        result = self.accepted("harris", SPUR, "--torques", f"0:{1.5 * DESIGN_NM}:4", "--title", "a \"title\" 50 %")
+        self.assertEqual(result.stderr, "")
+        names = [f"params_{name}.{suffix}" for name in ("harris", "map", "te") for suffix in ("png", "svg")]
+        self.assertEqual(sorted(os.listdir(self.folder)), sorted(names + ["params_harris.csv", "params_te.csv"]))
+        amounts_um = sorted({row["wheel_tip_relief_um"] for row in self.table("params_harris.csv")})
+        np.testing.assert_allclose(amounts_um, np.linspace(0, 30, 25))
+        labels = {
+            "harris": ["0 µm", "20 µm", "30 µm", "tip relief of both gears", f"design load {DESIGN_NM:.4g} N m",
+                       "torque on the wheel / N m", "peak-to-peak transmission error / µm"],
+            "map": ["tip relief of both gears / µm", "peak-to-peak transmission error / µm", "design load"],
+            "te": ["almost no load", "36.51 N m", "73.01 N m", "109.5 N m", "p-p 0.01 µm", "p-p 4.99 µm",
+                   "as in the file"],
+        }
+        for name, texts in labels.items():
+            shown = self.svg_text(f"params_{name}.svg")
+            for text in texts + ["50 %"]:
+                self.assertIn(text, shown)
+
+    def test_mesh_cycles_at_several_loads(self):
+        self.accepted("harris", SPUR, "--vary", f"{BOTH_RELIEFS}=20", "--torques", "10", "--output", "h",
+                      "--no-pictures")
+        table = np.array([list(row.values()) for row in self.table("h_te.csv")])
+        self.assertEqual(table.shape, (400, 5))
+        np.testing.assert_allclose(table[:, 0], np.arange(400) / 400, atol=1e-8)
+        # Nearly without load only the pair touches that lacks less: C / 2 where both lack as much.
+        expected = [(0, 10, 0), (0.5, 5, -10), (1, 0, -20), (1.5, 5, -25)]
+        for curve_um, (load, spread_um, highest_um) in zip(table[:, 1:].T, expected):
+            delta = length_error_um(DEFLECTION_UM, load * DESIGN_NM)
+            self.assertAlmostEqual(np.ptp(curve_um), spread_um, delta=delta)
+            self.assertAlmostEqual(curve_um.max(), highest_um, delta=delta)
+
+    def test_without_reliefs_the_long_one_for_the_design_load_is_sized(self):
+        none = ["--set", "modifications.pinion_tip_relief_um=0", "--set", "modifications.wheel_tip_relief_um=0"]
+        result = self.accepted("harris", SPUR, *none, "--torques", f"{DESIGN_NM}", "--output", "h", "--no-pictures")
+        self.assertIn(f"20 um over {LENGTH_UM / 1000:.4g} mm", result.stdout)
+        best = min(self.table("h_harris.csv"), key=lambda row: row["te_peak_to_peak_um"])
+        self.assertAlmostEqual(best["pinion_tip_relief_um"], DEFLECTION_UM, delta=0.01)
+        self.assertLess(best["te_peak_to_peak_um"], 0.02)
+
+    def test_negative_load_is_that_of_the_coast_flanks(self):
+        maps_um = []
+        for load in (DESIGN_NM, -DESIGN_NM):
+            self.accepted("harris", SPUR, "--set", f"load.mean_Nm={load}", "--torques", "30:90:3", "--output", "h",
+                          "--no-pictures", "--vary", "pinion_drive_tip_relief_um=5:20:2")
+            maps_um.append([row["te_peak_to_peak_um"] for row in self.table("h_harris.csv")])
+            self.assertEqual(math.copysign(1, self.table("h_harris.csv")[0]["torque_Nm"]), math.copysign(1, load))
+        drive_um, coast_um = maps_um
+        self.assertGreater(abs(drive_um[2] - drive_um[5]), 3)  # 5 or 20 um at 90 N m
+        for one, other in zip(coast_um[:3], coast_um[3:]):  # the pinion's drive flank does not touch
+            self.assertEqual(one, other)
+
+    def test_flanks_of_files_are_not_repeated_and_warned_of(self):
+        result = self.accepted("harris", REAL_FLANKS, "--vary", "pinion_crowning_um=0:5:2", "--torques", "10:20:2",
+                               "--set", "analysis.positions=20")
+        self.assertIn("--set analysis.period=pinion", result.stderr)
+        self.assertNotIn("1.5", self.svg_text("fig15_te.svg").split("mesh cycles")[0])
+
+    def test_an_interruption_leaves_what_is_known(self):
+        _, stderr, files = self.interrupted("harris", SPUR, "--output", "h", "--vary", f"{BOTH_RELIEFS}=0:30:400",
+                                            runs=50)
+        self.assertIn("harris: interrupted", stderr)
+        self.assertEqual(files, ["h_harris.csv"])
+        self.assertTrue(self.read("h_harris.csv").endswith("\n# incomplete: interrupted\n"))
+        for row in self.table("h_harris.csv"):
+            self.assertEqual(len(row), 4)
+
+    def test_bad_input(self):
+        for arguments, fragments in [
+            (["nowhere.ini"], ["nowhere.ini: there is no such file"]),
+            ([SPUR, "--output", "nowhere/h"], ["nowhere: there is no such folder"]),
+            ([SPUR, "--torques", "80:40"], ["80 is above 40"]),
+            ([SPUR, "--torques", "a:40"], ["'a:40'", "FROM:TO"]),
+            ([SPUR, "--torques", "1:2:3:4"], ["FROM:TO"]),
+            ([SPUR, "--torques", "0:inf"], ["FROM:TO"]),
+            ([SPUR, "--torques", "0:40:0"], ["1 to 1000 values"]),
+            ([SPUR, "--torques=-5:40"], [">= 0 is right"]),
+            ([SPUR, "--torques", "0"], ["without a load"]),
+            ([SPUR, "--torques", "1e6"], ["torque 1e+06 N m", "no equilibrium"]),
+            ([SPUR, "--vary", "pinion_tip_relief_um"], ["KEY=FROM:TO"]),
+            ([SPUR, "--vary", "pinion_tip_releif_um=0:3"], ["modifications.pinion_tip_releif_um: unknown key"]),
+            ([SPUR, "--vary", "pinion_root_relief_um=1:3"], ["has no range"]),
+            ([SPUR, "--set", "load.mean_Nm"], ["section.key=value"]),
+            ([SPUR, "--set", "load.mean_Nm=0"], ["mean_Nm: no load"]),
+            ([SPUR, "--set", "mesh.model=simple"], ["model"]),
+        ]:
+            with self.subTest(" ".join(arguments[1:])):
+                self.refused("harris", *arguments, fragments=fragments)
+                self.assertLessEqual(set(os.listdir(self.folder)), {"params_harris.csv"})
+        result = subprocess.run([os.path.join(SCRIPTS, "harris"), SPUR, "--gearsim", "nowhere"], cwd=self.folder,
+                                capture_output=True, text=True)
+        self.assertEqual(result.returncode, 2)
+        self.assertIn("nowhere: there is no such program", result.stderr)
+
+
+class Relief(Case):
+    ELSEWHERE = ["--set", "modifications.pinion_tip_relief_um=5", "--set", "modifications.wheel_tip_relief_um=33"]
+    AMOUNTS = ["--vary", "pinion_tip_relief_um=0:40", "--vary", "wheel_tip_relief_um=0:40"]
+
+    def found(self, file=None):
+        """Numbers of [modifications] in the file that was written."""
+        text = self.read(file or "r_relief.ini").split("[modifications]")[1].split("\n[")[0]
+        return {key: float(value) for key, value in re.findall(r"(?m)^(\w+)\s*=\s*([-+.\de]+)", text)}
+
+    def worst_um(self, text):
+        """Last line of the table: before, after, after within the tolerance."""
+        return [float(value) for value in re.search(r"\n +worst +(\S+) +(\S+) +(\S+)\n", text).groups()]
+
+    def search(self, params, *arguments):
+        result = self.accepted("relief", params, "--output", "r", "--no-pictures", *arguments)
+        return result.stdout, self.found()
+
+    def test_designed_relief_is_found_from_elsewhere(self):
+        text, found = self.search(SPUR, *self.ELSEWHERE, *self.AMOUNTS, "--torques", f"{DESIGN_NM}", "--starts", "1")
+        self.assertAlmostEqual(found["pinion_tip_relief_um"], DEFLECTION_UM, delta=0.11)
+        self.assertAlmostEqual(found["wheel_tip_relief_um"], DEFLECTION_UM, delta=0.11)
+        before, after, corners = self.worst_um(text)
+        self.assertGreater(before, 9)
+        self.assertLess(after, 0.06)  # 0.01 of the table, and 0.05 for a tenth of a micrometre
+        # Worst within +-2 um: one tip lacks 22 um, the other 18. Where two pairs begin to touch, the leaving one lacks
+        # 22 (1 - s) and joins at 20 + 18 s; at the other end both carry 20 + 18: 20.9 against 19.
+        self.assertAlmostEqual(corners, 1.9, delta=0.06)
+        for half, expected_um in ((0.5, DEFLECTION_UM / 4), (2, DEFLECTION_UM / 2)):
+            self.accepted("harris", "r_relief.ini", "--torques", f"{half * DESIGN_NM}", "--output", "h", "--no-pictures",
+                          "--vary", f"{BOTH_RELIEFS}={DEFLECTION_UM}")
+            self.assertAlmostEqual(self.table("h_harris.csv")[0]["te_peak_to_peak_um"], expected_um, delta=0.12)
+
+    def test_over_a_range_the_middle_is_best(self):
+        # |d - C| / 2 with d from 10 to 20 um: least at the worst for C = 15 um, 2.5 um.
+        _, found = self.search(SPUR, *self.ELSEWHERE, *self.AMOUNTS, "--torques", f"{DESIGN_NM / 2}:{DESIGN_NM}:3")
+        for gear in ("pinion", "wheel"):
+            self.assertAlmostEqual(found[f"{gear}_tip_relief_um"], 15, delta=0.15)
+        rows = self.table("r_relief.csv")
+        worst_um = max(row["after_um"] for row in rows if DESIGN_NM / 2 - 1e-6 <= row["torque_Nm"] <= DESIGN_NM + 1e-6)
+        self.assertAlmostEqual(worst_um, 2.5, delta=0.08)
+
+    def test_bounds_are_kept_and_told(self):
+        text, found = self.search(SPUR, *self.ELSEWHERE, "--vary", "pinion_tip_relief_um=0:12", "--vary",
+                                  "wheel_tip_relief_um=0:12", "--torques", f"{DESIGN_NM}", "--starts", "1")
+        self.assertEqual((found["pinion_tip_relief_um"], found["wheel_tip_relief_um"]), (12, 12))
+        self.assertEqual(text.count("at its upper bound"), 2)
+        self.assertAlmostEqual(self.worst_um(text)[1], (20 - 12) / 2, delta=0.05)
+
+    def test_misalignment_of_helical_gears_is_taken_out(self):
+        # Both helix slopes add up along the lines of contact; ideal flanks are left if they cancel.
+        misaligned = ["--set", "modifications.wheel_helix_slope_um=12"]
+        _, found = self.search(HELICAL, *misaligned, "--vary", "pinion_drive_helix_slope_um=-25:25", "--starts", "2",
+                               "--torques", "10:20:2")
+        self.assertAlmostEqual(found["pinion_drive_helix_slope_um"], -12, delta=0.4)
+
+    def test_same_input_same_result_and_it_is_that_of_the_file_written(self):
+        arguments = [*self.AMOUNTS, "--set", "modifications.pinion_tip_relief_share=0.3", "--vary",
+                     "pinion_crowning_um=0:4", "--set", "modifications.wheel_tip_relief_share=0.3", "--starts", "2",
+                     "--torques", "10:20:2", "--tolerance", "0"]
+        results = [self.search(HELICAL, *arguments) for _ in range(2)]
+        self.assertEqual(results[0], results[1])
+        text, found = results[0]
+        before, after, _ = self.worst_um(text)
+        self.assertLess(after, 0.6 * before)
+        for key, high in (("pinion_tip_relief_um", 40), ("wheel_tip_relief_um", 40), ("pinion_crowning_um", 4)):
+            self.assertTrue(0 <= found[key] <= high)
+        section = re.search(r"\[modifications\]\n(.*?)\n\n", text, re.DOTALL)[1]
+        for line in section.splitlines():
+            self.assertIn(line + "\n", self.read("r_relief.ini") + "\n")
+        spread_um = []
+        for torque_Nm in (10, 20):
+            subprocess.run([GEARSIM, "r_relief.ini", "--quiet", "--set", "analysis.type=static", "--set",
+                            "output.columns=te_um", "--set", f"load.mean_Nm={torque_Nm}", "--output", "te.csv"],
+                           cwd=self.folder, check=True)
+            te_um = [row["te_um"] for row in self.table("te.csv")]
+            spread_um.append(max(te_um) - min(te_um))
+        self.assertAlmostEqual(max(spread_um), after, delta=1e-3)
+
+    def test_the_own_design_is_kept_if_nothing_is_better(self):
+        text, found = self.search(SPUR, *self.AMOUNTS, "--torques", f"{DESIGN_NM}", "--starts", "2")
+        self.assertIn("the file's own is kept", text)
+        self.assertEqual(found["pinion_tip_relief_um"], 20)
+
+    def test_mean_objective_is_lower_in_the_mean_and_higher_at_the_worst(self):
+        numbers = {}
+        for objective in ("worst", "mean"):
+            self.search(SPUR, *self.ELSEWHERE, *self.AMOUNTS, "--torques", "20:80:4", "--objective", objective,
+                        "--tolerance", "0", "--starts", "3")
+            rows = self.table("r_relief.csv")
+            searched = [row["after_um"] for row in rows if round(row["torque_Nm"], 6) in (20, 40, 60, 80)]
+            self.assertEqual(len(searched), 4)
+            numbers[objective] = max(searched), sum(searched) / 4
+        self.assertLess(numbers["worst"][0], numbers["mean"][0] + 0.03)
+        self.assertLess(numbers["mean"][1], numbers["worst"][1] + 0.03)
+        # The mean of |d - C| is least for any C between the middle two: that of 4 torques 20 apart.
+        step_um = 20 / DESIGN_NM * DEFLECTION_UM
+        self.assertAlmostEqual(numbers["mean"][1], step_um / 2, delta=0.1)
+
+    def test_variables_by_itself_and_pictures(self):
+        result = self.accepted("relief", SPUR, "--output", "r", "--torques", "36:73:2", "--starts", "1", "--tolerance",
+                               "0.5", "--set", "analysis.positions=40")
+        names = [f"r_relief{name}" for name in (".csv", ".ini", ".png", ".svg", "_te.png", "_te.svg")]
+        self.assertEqual(sorted(os.listdir(self.folder)), names)
+        for key in ("pinion_tip_relief_um", "pinion_tip_relief_length_mm", "wheel_tip_relief_um",
+                    "wheel_tip_relief_length_mm", "pinion_crowning_um", "pinion_drive_helix_slope_um"):
+            self.assertIn(f"  {key} ", result.stdout)
+        for text in ("before", "after", "amounts within ±0.5 µm", "peak-to-peak transmission error / µm"):
+            self.assertIn(text, self.svg_text("r_relief.svg"))
+        for text in ("before", "after", "36 N m", "73 N m", "mesh cycles of the pinion"):
+            self.assertIn(text, self.svg_text("r_relief_te.svg"))
+
+    def test_an_interrupted_search_reports_its_best_design(self):
+        stdout, stderr, files = self.interrupted("relief", SPUR, "--output", "r", "--no-pictures", *self.ELSEWHERE,
+                                                 *self.AMOUNTS, "--starts", "500", runs=200)
+        self.assertIn("interrupted; the best design so far", stderr)
+        before, after, _ = self.worst_um(stdout)
+        self.assertLess(after, before)
+        self.assertEqual(files, ["r_relief.csv", "r_relief.ini"])
+
+    def test_bad_input(self):
+        for arguments, fragments in [
+            (["--vary", "pinion_tip_relief_um=30:0"], ["30 is above 0"]),
+            (["--vary", "pinion_tip_relief_um=3:3"], ["bounds must differ"]),
+            (["--vary", "pinion_tip_relief_um=3"], ["KEY=FROM:TO"]),
+            (["--vary", "pinion_tip_relief_um=0:9:3"], ["KEY=FROM:TO"]),
+            (["--vary", "pinion_tip_relief_um=0:9", "--vary", "pinion_tip_relief_um=0:9"], ["twice"]),
+            (["--vary", "pinion_tip_releif_um=0:9"], ["modifications.pinion_tip_releif_um: unknown key"]),
+            (["--vary", "pinion_tip_relief_um=-9:9"], ["pinion_tip_relief_um", "must be >= 0"]),
+            (["--vary", "pinion_tip_relief_shape=0:9"], ["pinion_tip_relief_shape", "not a number"]),
+            (["--torques", "80:40"], ["80 is above 40"]),
+            (["--torques", "1e6"], ["torque 1e+06 N m", "no equilibrium"]),
+            (["--tolerance", "-1"], ["--tolerance"]),
+            (["--starts", "0"], ["--starts"]),
+            ([word for i in range(9) for word in ("--vary", f"gears.x{i}=0:9")], ["at most 8"]),
+        ]:
+            with self.subTest(" ".join(arguments)):
+                self.refused("relief", SPUR, *arguments, fragments=fragments)
+                self.assertEqual(os.listdir(self.folder), [])
+
+
+class Parts(unittest.TestCase):
+    def test_values_of_an_ini_file_are_replaced_and_added(self):
+        text = "; a = 1\n[one]\na = 1 ; why\nb=2\n\n[two]\na : 3 # x\n"
+        changed = loaded_te.with_values(text, {"one.a": "5", "two.a": "7", "one.c": "8", "three.d": "9"})
+        self.assertEqual(changed, "; a = 1\n[one]\na = 5 ; why\nb=2\nc = 8\n\n[two]\na : 7 # x\n\n[three]\nd = 9\n")
+        self.assertEqual(loaded_te.with_values("[one]\na =\n", {"one.a": "5"}), "[one]\na =5\n")
+
+    def test_flank_files_are_named_from_the_new_place(self):
+        with tempfile.TemporaryDirectory() as folder:
+            with loaded_te.Gears(REAL_FLANKS, ["analysis.positions=1"], GEARSIM) as gears:
+                loaded_te.write_params(gears, os.path.join(folder, "x.ini"), {"load.mean_Nm": "7"})
+            with open(os.path.join(folder, "x.ini"), encoding="utf-8") as file:
+                text = file.read()
+            self.assertIn("type = dynamic", text)  # what the file is for stays
+            self.assertIn("mean_Nm = 7 ", text)
+            path = re.search(r"(?m)^pinion = (\S+)", text)[1]
+            beside = os.path.join(os.path.dirname(REAL_FLANKS), "pinion_flanks.csv")
+            self.assertTrue(os.path.samefile(os.path.join(folder, path), beside))
+            check = subprocess.run([GEARSIM, os.path.join(folder, "x.ini"), "--check"], capture_output=True, text=True)
+            self.assertEqual(check.returncode, 0, check.stderr)
+
+    def test_labels_stand_apart_in_their_order_and_near_their_place(self):
+        np.testing.assert_allclose(loaded_te.apart(np.array([0.0, 5, 10]), 2), [0, 5, 10])
+        np.testing.assert_allclose(loaded_te.apart(np.array([5.0, 5, 1]), 2), [4, 6, 1])
+        placed = loaded_te.apart(np.array([0.0, 1.0, 1.5, 9]), 2)
+        np.testing.assert_allclose(placed, [-7 / 6, 5 / 6, 17 / 6, 9])
+
+    def test_ranges(self):
+        np.testing.assert_allclose(loaded_te.span("1:3:5"), [1, 1.5, 2, 2.5, 3])
+        np.testing.assert_allclose(loaded_te.span("2", 5), [2])
+        np.testing.assert_allclose(loaded_te.span("2:4", 3), [2, 3, 4])
+        np.testing.assert_allclose(loaded_te.torques("0:4:2", 9, -10), [-0.01, -4])
+        self.assertEqual(loaded_te.round_step(15, 12), 2)
+        self.assertEqual(loaded_te.round_step(0.12, 12), 0.01)
+
+
+if __name__ == "__main__":
+    if len(sys.argv) > 1 and not sys.argv[1].startswith("-"):
+        GEARSIM = os.path.abspath(sys.argv.pop(1))
+    unittest.main()
