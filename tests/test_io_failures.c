@@ -183,6 +183,35 @@ static int evaluate(void) {
     return gm_quality_evaluate(&quality, NULL, &gears, 1, &deviations, &pitch, NULL, &error);
 }
 
+static gm_traces traces;
+static gm_measured_pitch measured;
+
+static gm_measurement measurement(void) {
+    gm_measurement how;
+    gm_measurement_default(&how);
+    how.datum_face = GM_FACE_II;
+    how.counting = GM_CLOCKWISE;
+    return how;
+}
+
+static int read_traces(void) {
+    return gm_traces_read(&traces, path, &gears, 0, &error);
+}
+
+static int read_measured_pitch(void) {
+    return gm_measured_pitch_read(&measured, path, &error);
+}
+
+static int build_traces(void) {
+    const gm_measurement how = measurement();
+    return gm_traces_build(&deviations, NULL, &traces, &how, &gears, 0, NULL, &error);
+}
+
+static int build_measured_pitch(void) {
+    const gm_measurement how = measurement();
+    return gm_measured_pitch_build(&pitch, NULL, &measured, &how, &gears, 0, &error);
+}
+
 static int write_deviations(void) {
     return gm_deviations_write(&deviations, IO_TEST_PATH("out.csv"), &error);
 }
@@ -273,6 +302,32 @@ static void flank_quality_survives_any_failed_allocation(void) {
     GM_ASSERT_INT(alive, 0);
 }
 
+#define TRACE_HEADER "tooth,flank,trace,face_mm,roll_length_mm,deviation_um\n"
+
+static void measured_flanks_survive_any_failed_allocation(void) {
+    gears = reference_pair(REFERENCE_FACE_WIDTH);
+    path = file_of(TRACE_HEADER "1,left,profile,8,9,0\n1,left,profile,8,21,1\n"
+                                "1,left,helix,0,15,0\n1,left,helix,17.5,15,1\n"
+                                "9,left,profile,8,9,0\n9,left,profile,8,21,1\n");
+    survives_any_failed_allocation(read_traces, 2 + 3 * 3); /* traces, points; the arrays of each */
+    GM_ASSERT_INT(traces.count, 3);
+    /* Traces, points, work; sets and their tables; parts, their list, a surface each. */
+    survives_any_failed_allocation(build_traces, 3 + 1 + 45 + 2 + 2);
+    GM_ASSERT_INT(deviations.set_count, 45);
+
+    char text[2000] = "tooth,flank,single_pitch_um\n";
+    for (int tooth = 1; tooth <= 45; tooth++) {
+        sprintf(text + strlen(text), "%d,left,%d\n", tooth, tooth == 1 ? 1 : tooth == 9 ? -1 : 0);
+    }
+    path = file_of(text);
+    survives_any_failed_allocation(read_measured_pitch, 1);
+    survives_any_failed_allocation(build_measured_pitch, 4 + 2); /* the result; flanks, places */
+    gm_traces_free(&traces);
+    gm_measured_pitch_free(&measured);
+    free_all();
+    GM_ASSERT_INT(alive, 0);
+}
+
 static void writing_survives_any_failed_allocation(void) {
     path = file_of(deviation_text);
     GM_ASSERT_INT(read_deviations(), GM_IO_OK);
@@ -294,12 +349,17 @@ static void refusing_a_file_leaves_nothing_behind(void) {
         DEVIATION_HEADER "*,*,0,0,1\n*,*,0,1,1\n*,*,1,0,1\n*,*,1,0.5,1\n",
         PITCH_HEADER "1,drive,1\n1,drive,1\n",
         PITCH_HEADER "1,drive,x\n",
+        TRACE_HEADER "1,left,profile,8,9,0\n1,left,profile,8,9,0\n",
+        TRACE_HEADER "1,left,helix,8,9,0\n1,left,profile,8,9,x\n",
+        "tooth,flank,single_pitch_um\n1,left,1\n1,left,x\n",
     };
     for (size_t i = 0; i < GM_TEST_COUNT(texts); i++) {
         path = file_of(texts[i]);
         gm_test_context("text %d", (int)i);
         GM_ASSERT_INT(read_deviations(), GM_IO_ERR_FORMAT);
         GM_ASSERT_INT(read_pitch(), GM_IO_ERR_FORMAT);
+        GM_ASSERT_INT(read_traces(), GM_IO_ERR_FORMAT);
+        GM_ASSERT_INT(read_measured_pitch(), GM_IO_ERR_FORMAT);
         GM_ASSERT_INT(alive, 0);
         GM_ASSERT_INT(open_files, 0);
     }
@@ -388,6 +448,7 @@ int main(int argc, char **argv) {
         GM_TEST(reading_pitch_survives_any_failed_allocation),
         GM_TEST(building_flanks_survives_any_failed_allocation),
         GM_TEST(flank_quality_survives_any_failed_allocation),
+        GM_TEST(measured_flanks_survive_any_failed_allocation),
         GM_TEST(writing_survives_any_failed_allocation),
         GM_TEST(refusing_a_file_leaves_nothing_behind),
         GM_TEST(refusing_to_write_or_to_build_leaves_nothing_behind),

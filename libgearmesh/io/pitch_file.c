@@ -94,7 +94,7 @@ static int read_file(const char *path, int teeth, entry *entries, gm_io_error *e
     return status;
 }
 
-static int allocate_pitch(gm_pitch *pitch, int teeth, gm_io_error *error) {
+int gmi_pitch_allocate(gm_pitch *pitch, int teeth, gm_io_error *error) {
     const size_t count = (size_t)teeth;
     pitch->teeth = teeth;
     pitch->drive = calloc(count, sizeof *pitch->drive);
@@ -121,7 +121,7 @@ static void resolve_flank(const entry *entries, int tooth, int side, double *dev
 }
 
 static int make_pitch(gm_pitch *pitch, int teeth, const entry *entries, gm_io_error *error) {
-    const int status = allocate_pitch(pitch, teeth, error);
+    const int status = gmi_pitch_allocate(pitch, teeth, error);
     if (status != GM_IO_OK) {
         return status;
     }

@@ -3,12 +3,15 @@
 
 /**
  * @file pitch_file.h
- * What the builder of flanks needs of pitch deviations that may come from a file or a user's program.
+ * What others need of pitch deviations that may come from a file or a user's program.
  */
 #ifndef GEARMESH_PITCH_FILE_H
 #define GEARMESH_PITCH_FILE_H
 
 #include "gearmesh/gearmesh_io.h"
+
+/** Allocates the arrays, all zero; on an error nothing is left. */
+int gmi_pitch_allocate(gm_pitch *pitch, int teeth, gm_io_error *error);
 
 /** Checks numbers of teeth, arrays and values. */
 int gmi_pitch_check(const gm_pitch *pitch, gm_io_error *error);

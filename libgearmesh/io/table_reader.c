@@ -135,11 +135,23 @@ static int split_fields(gmi_table *table) {
 }
 
 /* The names of all columns as they stand in a header. */
-static const char *header_text(const gmi_table *table, char text[GMI_LINE_LENGTH]) {
+static const char *columns_text(const gmi_table *table, const char *const *columns,
+                                char text[GMI_LINE_LENGTH]) {
     text[0] = '\0';
     for (int i = 0; i < table->column_count; i++) {
         strcat(text, i > 0 ? "," : "");
-        strcat(text, table->columns[i]);
+        strcat(text, columns[i]);
+    }
+    return text;
+}
+
+/* Every header that would be right; they are few and short. */
+static const char *header_text(const gmi_table *table, char text[GMI_LINE_LENGTH]) {
+    text[0] = '\0';
+    for (int i = 0; i < table->header_count; i++) {
+        char header[GMI_LINE_LENGTH];
+        strcat(text, i > 0 ? " or " : "");
+        strcat(text, columns_text(table, table->headers[i], header));
     }
     return text;
 }
@@ -166,7 +178,8 @@ static int fail_field_count(const gmi_table *table, int count) {
     char header[GMI_LINE_LENGTH];
     return gmi_error_set(
         table->error, GM_IO_ERR_FORMAT, table->line, "the row has %d %s, but %d are right: %s%s",
-        count, count == 1 ? "field" : "fields", table->column_count, header_text(table, header),
+        count, count == 1 ? "field" : "fields", table->column_count,
+        columns_text(table, table->columns, header),
         count > table->column_count ? " (a decimal comma makes two fields of one number: write 1.5)"
                                     : "");
 }
@@ -191,21 +204,75 @@ int gmi_table_next(gmi_table *table) {
  * Header
  * ------------------------------------------------------------------------------------------- */
 
-static int fail_header(const gmi_table *table, const char *line) {
+/* Length of a column's name without its unit; 0 = it has none. */
+static size_t quantity_length(const char *column) {
+    const char *end = strrchr(column, '_');
+    const int has_unit = end != NULL && (strcmp(end, "_um") == 0 || strcmp(end, "_mm") == 0);
+    return has_unit ? (size_t)(end - column) : 0;
+}
+
+/* Whether a field of the header is this column without its unit, or with another one. */
+static int lacks_unit(const char *field, const char *column) {
+    const size_t length = quantity_length(column);
+    return length > 0 && strncmp(field, column, length) == 0 && strcmp(field, column) != 0 &&
+           strchr("_ ([", field[length]) != NULL; /* also at the end of the field */
+}
+
+/* The column that a field of the header should have been, were it not for the unit; or NULL. */
+static const char *column_with_unit(const gmi_table *table, const char *field) {
+    for (int i = 0; i < table->header_count; i++) {
+        for (int k = 0; k < table->column_count; k++) {
+            if (lacks_unit(field, table->headers[i][k])) {
+                return table->headers[i][k];
+            }
+        }
+    }
+    return NULL;
+}
+
+/* Names the first field whose unit is missing or another one; empty if there is none. */
+static const char *unit_hint(const gmi_table *table, int count, char text[GMI_LINE_LENGTH]) {
+    text[0] = '\0';
+    for (int i = 0; i < count && i < table->column_count; i++) {
+        const char *column = column_with_unit(table, table->fields[i]);
+        if (column != NULL) {
+            char quoted[GMI_QUOTE_SIZE];
+            snprintf(text, GMI_LINE_LENGTH,
+                     " (%s has no unit or another one: values and name as in %s)",
+                     gmi_quote(quoted, table->fields[i]), column);
+            break;
+        }
+    }
+    return text;
+}
+
+/* `count`: of the fields in the header. */
+static int fail_header(const gmi_table *table, const char *line, int count) {
     const char *delimiter = other_delimiter(line);
     if (delimiter != NULL) {
         return fail_delimiter(table, delimiter);
     }
     char header[GMI_LINE_LENGTH];
+    char hint[GMI_LINE_LENGTH];
     char quoted[GMI_QUOTE_SIZE];
     const int is_row = strchr("*+-.0123456789", line[0]) != NULL;
     return gmi_error_set(table->error, GM_IO_ERR_FORMAT, table->line,
-                         is_row ? "the header line is missing before %s; %s is right"
-                                : "the header is %s; %s is right",
-                         gmi_quote(quoted, line), header_text(table, header));
+                         is_row ? "the header line is missing before %s; %s is right%s"
+                                : "the header is %s; %s is right%s",
+                         gmi_quote(quoted, line), header_text(table, header),
+                         unit_hint(table, count, hint));
 }
 
-static int read_header(gmi_table *table) {
+static int has_columns(const gmi_table *table, const char *const *columns) {
+    for (int i = 0; i < table->column_count; i++) {
+        if (strcmp(table->fields[i], columns[i]) != 0) {
+            return 0;
+        }
+    }
+    return 1;
+}
+
+static int read_header(gmi_table *table, int *which) {
     const int status = read_content(table);
     if (status < 0) {
         return status;
@@ -219,18 +286,24 @@ static int read_header(gmi_table *table) {
     char line[GMI_LINE_LENGTH + 1]; /* as it was before it is cut into fields */
     strcpy(line, skip_blanks(table->text));
 
-    int same = split_fields(table) == table->column_count;
-    for (int i = 0; same && i < table->column_count; i++) {
-        same = strcmp(table->fields[i], table->columns[i]) == 0;
+    const int count = split_fields(table);
+    for (int i = 0; count == table->column_count && i < table->header_count; i++) {
+        if (has_columns(table, table->headers[i])) {
+            table->columns = table->headers[i];
+            *which = i;
+            return GM_IO_OK;
+        }
     }
-    return same ? GM_IO_OK : fail_header(table, line);
+    return fail_header(table, line, count);
 }
 
-int gmi_table_open(gmi_table *table, const char *path, const char *const *columns, int column_count,
-                   gm_io_error *error) {
+int gmi_table_open_any(gmi_table *table, const char *path, const char *const *const *headers,
+                       int header_count, int column_count, int *which, gm_io_error *error) {
     table->error = error;
-    table->columns = columns;
+    table->columns = headers[0];
     table->column_count = column_count;
+    table->headers = headers;
+    table->header_count = header_count;
     table->line = 0;
     table->text[GMI_LINE_LENGTH] = '\0';
 
@@ -239,7 +312,16 @@ int gmi_table_open(gmi_table *table, const char *path, const char *const *column
     if (table->file == NULL) {
         return gmi_error_file(error, 0, "opened", errno);
     }
-    return read_header(table);
+    const int status = read_header(table, which);
+    table->headers = NULL;
+    table->header_count = 0;
+    return status;
+}
+
+int gmi_table_open(gmi_table *table, const char *path, const char *const *columns, int column_count,
+                   gm_io_error *error) {
+    int which = 0;
+    return gmi_table_open_any(table, path, &columns, 1, column_count, &which, error);
 }
 
 void gmi_table_close(gmi_table *table) {
@@ -282,6 +364,32 @@ int gmi_table_tooth(const gmi_table *table, int column, int teeth, int *tooth) {
     }
     *tooth = value;
     return GM_IO_OK;
+}
+
+int gmi_table_whole(const gmi_table *table, int column, int *value) {
+    if (parse_whole_number(table->fields[column], value)) {
+        return GM_IO_OK;
+    }
+    char quoted[GMI_QUOTE_SIZE];
+    return gmi_error_set(table->error, GM_IO_ERR_FORMAT, table->line,
+                         "%s is %s; a whole number is right", table->columns[column],
+                         gmi_quote(quoted, table->fields[column]));
+}
+
+int gmi_table_word(const gmi_table *table, int column, const char *const *words, int word_count,
+                   int *which) {
+    char right[GMI_LINE_LENGTH] = "";
+    for (int i = 0; i < word_count; i++) {
+        if (strcmp(table->fields[column], words[i]) == 0) {
+            *which = i;
+            return GM_IO_OK;
+        }
+        strcat(right, i == 0 ? "" : i == word_count - 1 ? " or " : ", ");
+        strcat(right, words[i]);
+    }
+    char quoted[GMI_QUOTE_SIZE];
+    return gmi_error_set(table->error, GM_IO_ERR_FORMAT, table->line, "%s is %s; %s is right",
+                         table->columns[column], gmi_quote(quoted, table->fields[column]), right);
 }
 
 int gmi_table_flank(const gmi_table *table, int column, int *side) {

@@ -18,13 +18,15 @@
 /** Longest line that is not a comment; real ones are shorter than 80. */
 #define GMI_LINE_LENGTH 1000
 
-#define GMI_MAX_COLUMNS 5
+#define GMI_MAX_COLUMNS 6
 
 typedef struct gmi_table {
     FILE *file;
     gm_io_error *error;
-    const char *const *columns; /**< [column_count] names in the header */
+    const char *const *columns; /**< [column_count] names in the header, once it is read */
     int column_count;
+    const char *const *const *headers; /**< [header_count] lists of columns; while it is opened */
+    int header_count;
     long line;                     /**< line last read, from 1 */
     char *fields[GMI_MAX_COLUMNS]; /**< [column_count] of the row last read, within text */
     char text[GMI_LINE_LENGTH + 1];
@@ -33,6 +35,10 @@ typedef struct gmi_table {
 /** Opens a file and reads its header. Needs gmi_table_close() whatever it returns. */
 int gmi_table_open(gmi_table *table, const char *path, const char *const *columns, int column_count,
                    gm_io_error *error);
+
+/** The same where there is a choice of headers with as many columns; which = the one that is there. */
+int gmi_table_open_any(gmi_table *table, const char *path, const char *const *const *headers,
+                       int header_count, int column_count, int *which, gm_io_error *error);
 
 /** Reads the next row into fields: 1 = a row, 0 = end of the file, < 0 = gm_io_status. */
 int gmi_table_next(gmi_table *table);
@@ -44,6 +50,13 @@ int gmi_table_tooth(const gmi_table *table, int column, int teeth, int *tooth);
 
 /** A field of the row as GM_DRIVE, GM_COAST or GMI_ALL. */
 int gmi_table_flank(const gmi_table *table, int column, int *side);
+
+/** A field of the row as a whole number >= 0; one beyond int becomes INT_MAX. */
+int gmi_table_whole(const gmi_table *table, int column, int *value);
+
+/** A field of the row as one of some words; which = its index. */
+int gmi_table_word(const gmi_table *table, int column, const char *const *words, int word_count,
+                   int *which);
 
 /** A field of the row as a number times 10^exponent. */
 int gmi_table_number(const gmi_table *table, int column, int exponent, double *value);

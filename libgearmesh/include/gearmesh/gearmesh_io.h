@@ -340,6 +340,196 @@ GM_API void gm_generate_options_default(gm_generate_options *options);
 GM_API int gm_flanks_generate(gm_deviations *deviations, gm_pitch *pitch, const gm_pair *pair,
                               int wheel, const gm_generate_options *options, gm_io_error *error);
 
+/* ---------------------------------------------------------------------------------------------
+ * Measured flanks: traces of some teeth, pitch of all (libgearmesh/docs/measured-flanks.md)
+ * ------------------------------------------------------------------------------------------- */
+
+/**
+ * Which flank, as measuring machines name them: seen from the datum face with the tip of the tooth up
+ * [ISO21771]. Where a flank is asked for, GM_DRIVE and GM_COAST do as well.
+ */
+enum gm_measured_flank { GM_LEFT = 2, GM_RIGHT = 3 };
+
+/** Along what a trace was taken. */
+enum gm_trace_kind {
+    GM_TRACE_PROFILE = 0, /**< from root to tip in one transverse section */
+    GM_TRACE_HELIX = 1    /**< from face to face on one cylinder */
+};
+
+/** One trace as it was measured: teeth, flank and face as the machine names them, no mapping done. */
+typedef struct gm_trace {
+    int tooth; /**< number of the tooth as the machine counts, >= 0 */
+    int flank; /**< GM_LEFT, GM_RIGHT, GM_DRIVE or GM_COAST */
+    int kind;  /**< enum gm_trace_kind */
+    double at; /**< where: a profile's distance from the datum face, a helix's roll length (m) */
+    int count; /**< points, >= 2 */
+    double *
+        position; /**< [count] strictly increasing: roll length along a profile, distance from the datum
+                            face along a helix, not necessarily uniform (m). The roll length is counted
+                            from the base circle: sqrt(d^2 - d_b^2) / 2 at the diameter d */
+    double *
+        deviation; /**< [count] > 0: material added; up to a constant, which is the machine's (m) */
+    long *line;    /**< [count] line of each point in the file, for messages; NULL = unknown */
+} gm_trace;
+
+/** The traces of one gear, in any order. All arrays come from malloc(). */
+typedef struct gm_traces {
+    char file[1024]; /**< where they come from, for messages (cut if longer) */
+    int count;
+    gm_trace *traces; /**< [count] */
+} gm_traces;
+
+/** What was measured of the pitch on one flank. */
+typedef struct gm_pitch_point {
+    int tooth; /**< as in gm_trace */
+    int flank; /**< as in gm_trace */
+    double
+        value; /**< arc at the measuring circle in the transverse section; cumulative: how far the flank
+                       stands ahead of its place in the direction of counting; single: how much too long the
+                       pitch from the flank before (tooth - 1) to this one is (m) */
+    long line; /**< in the file; 0 = unknown */
+} gm_pitch_point;
+
+/** The measured pitch of one gear: every flank of every tooth once, in any order. */
+typedef struct gm_measured_pitch {
+    char file[1024];        /**< as in gm_traces */
+    int single;             /**< 0 = cumulative values, else single ones */
+    int count;              /**< points; 2 per tooth are right */
+    gm_pitch_point *points; /**< [count] from malloc() */
+} gm_measured_pitch;
+
+enum gm_face {
+    GM_FACE_I = 1, /**< t1 = 0; seen from it a driving pinion turns clockwise */
+    GM_FACE_II = 2 /**< t1 = 1; seen from it a driving pinion turns counter-clockwise */
+};
+
+enum gm_counting { GM_CLOCKWISE = 1, GM_COUNTERCLOCKWISE = 2 };
+
+/** How a gear stood on the machine and how the machine counts. */
+typedef struct gm_measurement {
+    int datum_face;        /**< enum gm_face, required [0] */
+    int counting;          /**< enum gm_counting: how tooth numbers grow, seen from the datum face,
+                                required [0] */
+    int first_number;      /**< number of the first tooth, 0 or 1; the last is z - 1 higher [1] */
+    int first_tooth;       /**< which tooth of gearmesh that is, 0 .. z - 1 [0] */
+    int transverse;        /**< deviations of traces are 0 = along the surface normal, 1 = in the
+                                transverse section along the base tangent [0] */
+    double pitch_diameter; /**< measuring circle of the pitch, m [NaN: reference diameter] */
+} gm_measurement;
+
+/** Fills in the defaults; the datum face and the direction of counting are left to be said. */
+GM_API void gm_measurement_default(gm_measurement *measurement);
+
+/** GM_DRIVE or GM_COAST for a measured flank: from face II, left is drive, on both gears; -1 if the flank
+ *  or the datum face is none. */
+GM_API int gm_measurement_side(const gm_measurement *measurement, int flank);
+
+/** Which tooth of gearmesh a number on the machine is, 0 .. teeth - 1; -1 if it is none of this gear. */
+GM_API int gm_measurement_tooth(const gm_measurement *measurement, const gm_pair *pair, int wheel,
+                                int number);
+
+/**
+ * Reads traces: header `tooth,flank,trace,face_mm,roll_length_mm,deviation_um`, or `diameter_mm` in place of
+ * the roll length; the rows of a trace stand together. Strict; time and memory grow linearly with the rows.
+ * Only the text is judged here, all else in gm_traces_build().
+ *
+ * @param[out] traces  free them with gm_traces_free(). All zero on an error
+ * @param[in]  path    the file
+ * @param[in]  pair    the gear pair
+ * @param[in]  wheel   0 = the pinion was measured, else the wheel
+ * @param[out] error   file, line and reason; may be NULL
+ * @return GM_IO_OK or a gm_io_status
+ */
+GM_API int gm_traces_read(gm_traces *traces, const char *path, const gm_pair *pair, int wheel,
+                          gm_io_error *error);
+
+GM_API void gm_traces_free(gm_traces *traces);
+
+/** Reads measured pitch: header `tooth,flank,cumulative_pitch_um` or `tooth,flank,single_pitch_um`. */
+GM_API int gm_measured_pitch_read(gm_measured_pitch *pitch, const char *path, gm_io_error *error);
+
+GM_API void gm_measured_pitch_free(gm_measured_pitch *pitch);
+
+/** What becomes of traces. */
+typedef struct gm_traces_options {
+    int face_nodes;    /**< along t1, 2 .. 1000 [21] */
+    int profile_nodes; /**< along t2, 2 .. 1000 [31] */
+    double
+        held_limit; /**< how much of t1 or t2 may lie behind either end of a trace, where its last
+                            value is held, 0 .. 0.45 [0.2] */
+    int hollow;     /**< 1 = flanks that stand out at their edges are meant so [0] */
+    int remove_spikes; /**< 1 = points far off their neighbours are left out, 0 = an error [0] */
+} gm_traces_options;
+
+GM_API void gm_traces_options_default(gm_traces_options *options);
+
+/** What gm_traces_build() found. */
+typedef struct gm_traces_report {
+    int profile_traces[2]; /**< [side] GM_DRIVE, GM_COAST */
+    int helix_traces[2];
+    int profile_teeth[2]; /**< teeth with a profile trace; the others are interpolated */
+    int helix_teeth[2];   /**< likewise with a helix trace; 0: constant along t1 */
+    double profile_range
+        [2]; /**< t2 from and to where all profile traces reach; held beyond; NaN = none */
+    double face_range[2]; /**< t1 of all helix traces, likewise */
+    double
+        resampling_error; /**< largest distance of a measured point from the polygon between nodes,
+                                  as measured (m) */
+    double
+        crossing_error; /**< largest contradiction of profile and helix traces where they cross, after
+                                constants are taken out; 0 where each flank has one of each (m) */
+    int spikes;         /**< points left out */
+    int hollow_traces; /**< traces whose ends stand out beyond their middle ... */
+    int judged_traces; /**< ... of so many */
+} gm_traces_report;
+
+/**
+ * Makes the tables of all teeth from the traces of some. A flank is profile + helix - common point; with several
+ * traces along one direction it is the surface that interpolates all of them (linear in between, Boolean sum). Each
+ * flank is 0 where the pitch is measured (mid-face, measuring circle), so that the pitch alone says where it stands.
+ * Teeth in between are interpolated linearly around the gear, node by node, each side by itself.
+ *
+ * Refused are traces that leave the gear, miss too much of it, double ones, those of another gear, spikes,
+ * deviations or lengths in other units, and the opposite sign where it shows; see the docs.
+ *
+ * @param[out] deviations   along the surface normal; free them with gm_deviations_free(). All zero on an error
+ * @param[out] report       may be NULL
+ * @param[in]  traces       what was measured
+ * @param[in]  measurement  how
+ * @param[in]  pair         the gear pair
+ * @param[in]  wheel        0 = the pinion was measured, else the wheel
+ * @param[in]  options      NULL = defaults
+ * @param[out] error        file and line of the trace, and reason; may be NULL
+ * @return GM_IO_OK, GM_IO_ERR_NULL, GM_IO_ERR_FORMAT (what was measured), GM_IO_ERR_OPTION (how),
+ *         GM_IO_ERR_MEMORY
+ */
+GM_API int gm_traces_build(gm_deviations *deviations, gm_traces_report *report,
+                           const gm_traces *traces, const gm_measurement *measurement,
+                           const gm_pair *pair, int wheel, const gm_traces_options *options,
+                           gm_io_error *error);
+
+/** What gm_measured_pitch_build() found, for each flank side; arcs at the measuring circle. */
+typedef struct gm_measured_pitch_report {
+    double
+        sum[2]; /**< of the single pitches, spread evenly over them; 0 for cumulative values (m) */
+    double level
+        [2]; /**< mean of the cumulative values, taken out: no pitch says how thick teeth are (m) */
+} gm_measured_pitch_report;
+
+/**
+ * Makes the pitch list of all teeth: transverse along the line of action, > 0 material added.
+ *
+ * Refused are missing and double teeth, those of another gear, values in other units, and single pitches
+ * that do not add up to zero.
+ *
+ * @param[out] pitch  free it with gm_pitch_free(). All zero on an error
+ * @return as gm_traces_build(), as all other arguments
+ */
+GM_API int gm_measured_pitch_build(gm_pitch *pitch, gm_measured_pitch_report *report,
+                                   const gm_measured_pitch *measured,
+                                   const gm_measurement *measurement, const gm_pair *pair,
+                                   int wheel, gm_io_error *error);
+
 #ifdef __cplusplus
 }
 #endif
