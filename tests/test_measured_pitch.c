@@ -326,6 +326,7 @@ static void wrong_values_are_refused(void) {
     begin();
     refused(pitch_file("cumulative_pitch_um", 45, mm_for_um), 0, 12, "0.006 um", "millimetres");
     refused(pitch_file("cumulative_pitch_um", 45, nm_for_um), 0, 12, "6000 um", "nanometres");
+    refused(file_of(HEADER "1,left,-1e300\n"), 0, 2, "tooth 1", "of some um, are right");
     refused(pitch_file("single_pitch_um", 45, open_um), 0, 2, "12.5 um", "0 is right");
 }
 

@@ -724,6 +724,8 @@ static void bad_calls_are_refused(void) {
     traces.traces[0].kind = GM_TRACE_PROFILE;
     traces.traces[0].deviation[3] = (double)NAN;
     refused(0, "not finite", "rise");
+    traces.traces[0].deviation[3] = -1e308;
+    refused(0, "beyond 1 km", "those of a gear are right");
     traces.traces[0].deviation[3] = 0.0;
     traces.traces[0].position[3] = traces.traces[0].position[2];
     refused(0, "not finite", "rise");

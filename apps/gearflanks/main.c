@@ -2,15 +2,28 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 
 /*
- * gearflanks: makes the flank and pitch files of a gear, of a class of ISO 1328-1 or with amounts that scatter, and
- * says which class such files measure to. `gearflanks --help` says all of its use.
+ * gearflanks: makes the flank and pitch files of a gear, of a class of ISO 1328-1, with amounts that scatter, or from
+ * measured traces, and says which class such files measure to. `gearflanks --help` says all of its use.
  */
 #include "gearbox.h"
 #include "make.h"
+#include "measured.h"
 #include "report.h"
 
 #include <errno.h>
 #include <string.h>
+
+static int do_with_gears(const flanks_options *options, const gm_pair *pair, const config *conf) {
+    switch (options->task) {
+    case FLANKS_MAKE:
+        return make_flanks(options, pair);
+    case FLANKS_MEASURED:
+        return build_measured(options, pair);
+    default:
+        return report_flanks(options, pair,
+                             options->wheel ? &conf->wheel_flanks : &conf->pinion_flanks);
+    }
+}
 
 static int load_and_do(const flanks_options *options) {
     const config_request request = {.path = options->parameters,
@@ -24,10 +37,7 @@ static int load_and_do(const flanks_options *options) {
         return status;
     status = gearbox_open(&box, &conf);
     if (status == 0) {
-        const flank_files *files = options->wheel ? &conf.wheel_flanks : &conf.pinion_flanks;
-
-        status = options->task == FLANKS_MAKE ? make_flanks(options, &box.pair)
-                                              : report_flanks(options, &box.pair, files);
+        status = do_with_gears(options, &box.pair, &conf);
         gearbox_close(&box);
     }
     config_free(&conf);

@@ -4,27 +4,7 @@
 #include "make.h"
 #include "report.h"
 #include "scatter.h"
-
-#include <errno.h>
-#include <stdlib.h>
-#include <string.h>
-
-static int complain(const char *path, const char *action) {
-    fprintf(stderr, "%s: cannot be %s: %s\n", path, action, strerror(errno));
-    return EXIT_RUN_FAILED;
-}
-
-/* `path` with an ending; NULL = out of memory. */
-static char *with_ending(const char *path, const char *ending) {
-    char *name = malloc(strlen(path) + strlen(ending) + 1);
-
-    if (name == NULL) {
-        fputs("gearflanks: out of memory\n", stderr);
-        return NULL;
-    }
-    strcpy(name, path);
-    return strcat(name, ending);
-}
+#include "write.h"
 
 /* What is made, and from what. */
 typedef struct making {
@@ -36,7 +16,8 @@ typedef struct making {
 } making;
 
 /* How the flanks were made, so that a file says where it comes from. */
-static void print_head(FILE *file, const making *of) {
+static void print_head(FILE *file, const void *context) {
+    const making *of = context;
     const gm_generate_options *generate = &of->generate;
 
     fprintf(file, "# Made, not measured: gearflanks %s, %s of %d teeth, ", gm_version(),
@@ -54,84 +35,24 @@ static void print_head(FILE *file, const making *of) {
                 1e6 * generate->waves[i].amplitude);
 }
 
-static int copy_rows(FILE *out, FILE *in) {
-    char block[16384];
-    size_t size;
-
-    while ((size = fread(block, 1, sizeof block, in)) > 0)
-        if (fwrite(block, 1, size, out) != size)
-            return 0;
-    return !ferror(in);
-}
-
-/* The head and what the library has written to `rows`, in `part`. */
-static int join(const char *part, const char *rows, const making *of) {
-    FILE *in = fopen(rows, "rb");
-    FILE *out = in != NULL ? fopen(part, "wb") : NULL;
-    int whole = out != NULL;
-
-    if (whole) {
-        print_head(out, of);
-        whole = copy_rows(out, in);
-    }
-    if (out != NULL && fclose(out) != 0)
-        whole = 0;
-    if (in != NULL)
-        fclose(in);
-    return whole ? EXIT_DONE : complain(part, "written");
-}
-
-/* Rows -> FILE.rows -> FILE.part with a head -> FILE, which is not touched before it is whole. */
-static int finish(const char *path, const char *rows, const making *of) {
-    char *part = with_ending(path, ".part");
-    int status = part != NULL ? join(part, rows, of) : EXIT_RUN_FAILED;
-
-    if (status == EXIT_DONE && rename(part, path) != 0)
-        status = complain(path, "written");
-    if (status != EXIT_DONE && part != NULL)
-        remove(part);
-    free(part);
-    return status;
-}
-
-enum content { DEVIATIONS, PITCH };
-
-static int write_file(const char *path, const making *of, enum content content) {
-    char *rows = with_ending(path, ".rows");
-    gm_io_error error;
-    int status = EXIT_RUN_FAILED;
-
-    if (rows == NULL)
-        return status;
-    if ((content == DEVIATIONS ? gm_deviations_write(&of->deviations, rows, &error)
-                               : gm_pitch_write(&of->pitch, rows, &error)) == GM_IO_OK)
-        status = finish(path, rows, of);
-    else
-        fprintf(stderr, "%s: %s\n", path, error.text);
-    remove(rows);
-    free(rows);
-    return status;
-}
-
 static int generate(making *of, const gm_pair *pair) {
     gm_io_error error;
     const int status = gm_flanks_generate(&of->deviations, &of->pitch, pair, of->options->wheel,
                                           &of->generate, &error);
 
-    if (status == GM_IO_OK)
-        return EXIT_DONE;
-    fprintf(stderr, "gearflanks: %s\n", error.text);
-    return status == GM_IO_ERR_MEMORY ? EXIT_RUN_FAILED : EXIT_BAD_INPUT;
+    return status == GM_IO_OK ? EXIT_DONE : refuse_input(status, &error);
 }
 
 static int make_and_write(making *of, const gm_pair *pair) {
+    const written deviations = {&of->deviations, NULL, print_head, of};
+    const written pitch = {NULL, &of->pitch, print_head, of};
     int status = generate(of, pair);
 
     if (status != EXIT_DONE)
         return status;
-    status = write_file(of->options->deviations, of, DEVIATIONS);
+    status = write_file(of->options->deviations, &deviations);
     if (status == EXIT_DONE)
-        status = write_file(of->options->pitch, of, PITCH);
+        status = write_file(of->options->pitch, &pitch);
     if (status == EXIT_DONE)
         status = report_quality(of->options, pair, &of->deviations, &of->pitch);
     gm_deviations_free(&of->deviations);

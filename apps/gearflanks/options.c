@@ -16,6 +16,11 @@ static const char usage[] =
     "       gearflanks PARAMS.ini --gear pinion|wheel --scatter SCATTER.ini ... as above\n"
     "       gearflanks PARAMS.ini --gear pinion|wheel --evaluate [--flanks FILE] [--pitch FILE] "
     "[--teeth]\n"
+    "       gearflanks PARAMS.ini --gear pinion|wheel --traces FILE --flanks FILE\n"
+    "                  --measured-pitch FILE --pitch FILE --datum-face I|II\n"
+    "                  --count clockwise|counterclockwise [--first-number 0|1] [--first-tooth N]\n"
+    "                  [--nodes FACExPROFILE] [--pitch-diameter MM] [--transverse] [--held X]\n"
+    "                  [--hollow] [--remove-spikes]\n"
     "       gearflanks --help | --version\n";
 
 static const char help[] =
@@ -23,9 +28,9 @@ static const char help[] =
     "Makes flank and pitch files of a gear: of a flank tolerance class of ISO 1328-1, or with "
     "amounts "
     "that\n"
-    "scatter from tooth to tooth; and prints what they measure to. Or evaluates such files. "
-    "PARAMS.ini is\n"
-    "that of gearsim; only [gears] is needed.\n"
+    "scatter from tooth to tooth; and prints what they measure to. Or makes them from what was "
+    "measured.\n"
+    "Or evaluates such files. PARAMS.ini is that of gearsim; only [gears] is needed.\n"
     "\n"
     "  --gear pinion|wheel    which gear\n"
     "  --flanks FILE          deviation file: written, or with --evaluate read\n"
@@ -34,7 +39,7 @@ static const char help[] =
     "  --share X              with --class: worst value / tolerance, 0.8 to 0.99 [0.95]\n"
     "  --scatter FILE         flanks that scatter as this INI file says\n"
     "  --seed N               same seed, same flanks; pinion and wheel have nothing in common [1]\n"
-    "  --nodes FACExPROFILE   grid, 9 to 1000 each way [21x31]\n"
+    "  --nodes FACExPROFILE   grid, 9 to 1000 each way, from measurements 2 to 1000 [21x31]\n"
     "  --wave ORDER:UM        a wave (ghost order): per revolution, amplitude along the normal\n"
     "  --evaluate             prints worst values, their classes and tolerances; without --flanks "
     "and\n"
@@ -42,13 +47,34 @@ static const char help[] =
     "they\n"
     "                         are: scale, profile window and [modifications] play no part\n"
     "  --teeth                with --evaluate: the values of every flank as CSV instead\n"
+    "\n"
+    "From measurements, of traces and pitch or of one of them:\n"
+    "  --traces FILE          profile and helix traces of some teeth; --flanks is written\n"
+    "  --measured-pitch FILE  pitch of all teeth; --pitch is written\n"
+    "  --datum-face I|II      from where the gear was looked at and face_mm counts: seen from face "
+    "I\n"
+    "                         a driving pinion turns clockwise, from face II counter-clockwise\n"
+    "  --count WAY            how tooth numbers grow, seen from there: clockwise or "
+    "counterclockwise\n"
+    "  --first-number 0|1     number of the first tooth [1]\n"
+    "  --first-tooth N        which tooth of the model that is [0]\n"
+    "  --pitch-diameter MM    measuring circle of the pitch [reference circle]\n"
+    "  --transverse           deviations of traces are in the transverse section [along the "
+    "normal]\n"
+    "  --held X               how much of profile or face traces may leave out at an end, 0 to "
+    "0.45 "
+    "[0.2]\n"
+    "  --hollow               flanks that stand out at their edges are meant so\n"
+    "  --remove-spikes        leaves out points far off their neighbours [they are errors]\n"
+    "\n"
     "  --help, --version\n"
     "\n"
     "Options may be written `--option value` or `--option=value`. Paths are relative to the "
     "working\n"
     "folder. A file is written as FILE.part and renamed when it is whole.\n"
     "Exit codes: 0 done; 1 a file cannot be written; 2 usage or input.\n"
-    "What is evaluated and made: libgearmesh/docs/flank-quality.md.\n"
+    "What is evaluated and made: libgearmesh/docs/flank-quality.md. Files of measurements: "
+    "measured-flanks.md.\n"
     "\n"
     "All keys of SCATTER.ini, with [default], meaning and range; amounts are along the surface "
     "normal:\n"
@@ -119,8 +145,7 @@ typedef struct parsing {
     flanks_options *options;
     int has_gear;
     int has_share;
-    const char *made_with;      /* an option that --evaluate has no use for, NULL = none */
-    const char *evaluated_with; /* the other way round */
+    const char *odd[FLANKS_TASKS]; /* an option that a task has no use for, NULL = none */
 } parsing;
 
 static int take_gear(parsing *state, const char *value) {
@@ -132,9 +157,14 @@ static int take_gear(parsing *state, const char *value) {
 static int take_nodes(parsing *state, const char *value) {
     char parts[2][32];
     gm_generate_options *generate = &state->options->generate;
+    gm_traces_options *from_traces = &state->options->from_traces;
 
-    return split(value, 'x', parts) && parse_count(parts[0], &generate->face_nodes) &&
-           parse_count(parts[1], &generate->profile_nodes);
+    if (!split(value, 'x', parts) || !parse_count(parts[0], &generate->face_nodes) ||
+        !parse_count(parts[1], &generate->profile_nodes))
+        return 0;
+    from_traces->face_nodes = generate->face_nodes;
+    from_traces->profile_nodes = generate->profile_nodes;
+    return 1;
 }
 
 static int take_wave(parsing *state, const char *value) {
@@ -178,26 +208,125 @@ static int take_pitch(parsing *state, const char *value) {
     return *value != '\0';
 }
 
-enum use { FOR_BOTH, FOR_MAKING };
+static int take_traces(parsing *state, const char *value) {
+    state->options->traces = value;
+    return *value != '\0';
+}
+
+static int take_measured_pitch(parsing *state, const char *value) {
+    state->options->measured_pitch = value;
+    return *value != '\0';
+}
+
+/* One of two words as 1 or 2; 0 = neither. */
+static int take_word(const char *value, const char *one, const char *two, int *which) {
+    *which = strcmp(value, one) == 0 ? 1 : strcmp(value, two) == 0 ? 2 : 0;
+    return *which != 0;
+}
+
+static int take_datum_face(parsing *state, const char *value) {
+    return take_word(value, "I", "II", &state->options->measurement.datum_face);
+}
+
+static int take_count(parsing *state, const char *value) {
+    return take_word(value, "clockwise", "counterclockwise", &state->options->measurement.counting);
+}
+
+static int take_first_number(parsing *state, const char *value) {
+    return parse_count(value, &state->options->measurement.first_number) &&
+           state->options->measurement.first_number <= 1;
+}
+
+static int take_first_tooth(parsing *state, const char *value) {
+    return parse_count(value, &state->options->measurement.first_tooth);
+}
+
+static int take_pitch_diameter(parsing *state, const char *value) {
+    double *diameter = &state->options->measurement.pitch_diameter;
+
+    if (!parse_number(value, diameter))
+        return 0;
+    *diameter *= 1e-3;
+    return 1;
+}
+
+static int take_held(parsing *state, const char *value) {
+    return parse_number(value, &state->options->from_traces.held_limit);
+}
+
+static void take_evaluate(parsing *state) {
+    state->options->task = FLANKS_EVALUATE;
+}
+
+static void take_teeth(parsing *state) {
+    state->options->teeth = 1;
+}
+
+static void take_transverse(parsing *state) {
+    state->options->measurement.transverse = 1;
+}
+
+static void take_hollow(parsing *state) {
+    state->options->from_traces.hollow = 1;
+}
+
+static void take_remove_spikes(parsing *state) {
+    state->options->from_traces.remove_spikes = 1;
+}
+
+/* Tasks that have a use for an option. */
+enum use {
+    FOR_MAKING = 1 << FLANKS_MAKE,
+    FOR_EVALUATING = 1 << FLANKS_EVALUATE,
+    FOR_MEASURED = 1 << FLANKS_MEASURED,
+    FOR_EACH = FOR_MAKING | FOR_EVALUATING | FOR_MEASURED
+};
 
 static const struct {
     const char *name;
     int (*take)(parsing *state, const char *value);
-    enum use use;
+    int use;
     const char *right; /* what would be right */
 } valued[] = {
-    {"--gear", take_gear, FOR_BOTH, "pinion or wheel"},
-    {"--flanks", take_deviations, FOR_BOTH, "a file name"},
-    {"--pitch", take_pitch, FOR_BOTH, "a file name"},
+    {"--gear", take_gear, FOR_EACH, "pinion or wheel"},
+    {"--flanks", take_deviations, FOR_EACH, "a file name"},
+    {"--pitch", take_pitch, FOR_EACH, "a file name"},
     {"--class", take_class, FOR_MAKING, "1 to 11"},
     {"--scatter", take_scatter, FOR_MAKING, "a file name"},
     {"--seed", take_seed, FOR_MAKING, "0 to 18446744073709551615"},
     {"--share", take_share, FOR_MAKING, "0.8 to 0.99"},
-    {"--nodes", take_nodes, FOR_MAKING, "such as 21x31"},
+    {"--nodes", take_nodes, FOR_MAKING | FOR_MEASURED, "such as 21x31"},
     {"--wave", take_wave, FOR_MAKING, "ORDER:UM such as 67:0.5, at most 100 times"},
+    {"--traces", take_traces, FOR_MEASURED, "a file name"},
+    {"--measured-pitch", take_measured_pitch, FOR_MEASURED, "a file name"},
+    {"--datum-face", take_datum_face, FOR_MEASURED, "I or II"},
+    {"--count", take_count, FOR_MEASURED, "clockwise or counterclockwise"},
+    {"--first-number", take_first_number, FOR_MEASURED, "0 or 1"},
+    {"--first-tooth", take_first_tooth, FOR_MEASURED, "a tooth of the gear, 0 or more"},
+    {"--pitch-diameter", take_pitch_diameter, FOR_MEASURED, "a diameter in mm"},
+    {"--held", take_held, FOR_MEASURED, "0 to 0.45"},
 };
 
 enum { VALUED_COUNT = sizeof valued / sizeof valued[0] };
+
+static const struct {
+    const char *name;
+    void (*take)(parsing *state);
+    int use;
+} flags[] = {
+    {"--evaluate", take_evaluate, FOR_EVALUATING},         {"--teeth", take_teeth, FOR_EVALUATING},
+    {"--transverse", take_transverse, FOR_MEASURED},       {"--hollow", take_hollow, FOR_MEASURED},
+    {"--remove-spikes", take_remove_spikes, FOR_MEASURED},
+};
+
+enum { FLAG_COUNT = sizeof flags / sizeof flags[0] };
+
+/* Notes for which tasks an option is odd. */
+static void note_use(parsing *state, const char *name, int use) {
+    for (int task = 0; task < FLANKS_TASKS; ++task)
+        if ((use >> task & 1) == 0)
+            state->odd[task] = name;
+}
 
 static int find_valued(const char *text) {
     const size_t length = strcspn(text, "=");
@@ -210,15 +339,13 @@ static int find_valued(const char *text) {
 
 /* Takes a flag; 0 = there is none of this name. */
 static int take_flag(parsing *state, const char *text) {
-    if (strcmp(text, "--evaluate") == 0)
-        state->options->task = FLANKS_EVALUATE;
-    else if (strcmp(text, "--teeth") == 0)
-        state->options->teeth = 1;
-    else
-        return 0;
-    if (state->options->teeth)
-        state->evaluated_with = "--teeth";
-    return 1;
+    for (int i = 0; i < FLAG_COUNT; ++i)
+        if (strcmp(text, flags[i].name) == 0) {
+            flags[i].take(state);
+            note_use(state, flags[i].name, flags[i].use);
+            return 1;
+        }
+    return 0;
 }
 
 /* Takes the option at texts[*index], and its value from there or from the next text. */
@@ -237,8 +364,7 @@ static int take_option(parsing *state, int count, char *const texts[], int *inde
                 valued[which].right);
         return EXIT_BAD_INPUT;
     }
-    if (valued[which].use == FOR_MAKING)
-        state->made_with = valued[which].name;
+    note_use(state, valued[which].name, valued[which].use);
     return 0;
 }
 
@@ -261,24 +387,53 @@ static int check_way(const parsing *state) {
     return 0;
 }
 
+/* Two files are written, and none of those that are read. */
 static int check_outputs(const flanks_options *options) {
-    const char *const inputs[] = {options->parameters, options->scatter};
+    const char *const inputs[] = {options->parameters, options->scatter, options->traces,
+                                  options->measured_pitch};
+    const char *const outputs[] = {options->deviations, options->pitch};
 
-    if (options->deviations == NULL || options->pitch == NULL)
-        return refuse("--flanks and --pitch are both needed to make flanks", "");
-    if (strcmp(options->deviations, options->pitch) == 0)
-        return refuse("--flanks and --pitch are the same file: ", options->pitch);
+    if (outputs[0] != NULL && outputs[1] != NULL && strcmp(outputs[0], outputs[1]) == 0)
+        return refuse("--flanks and --pitch are the same file: ", outputs[0]);
     for (int i = 0; i < 2; ++i)
-        if (inputs[i] != NULL &&
-            (strcmp(options->deviations, inputs[i]) == 0 || strcmp(options->pitch, inputs[i]) == 0))
-            return refuse("the INI file would be overwritten: ", inputs[i]);
+        for (int k = 0; k < 4; ++k)
+            if (outputs[i] != NULL && inputs[k] != NULL && strcmp(outputs[i], inputs[k]) == 0)
+                return refuse("an input would be overwritten: ", inputs[k]);
     return 0;
 }
 
 static int check_making(const parsing *state) {
     const int status = check_way(state);
 
+    if (status == 0 && (state->options->deviations == NULL || state->options->pitch == NULL))
+        return refuse("--flanks and --pitch are both needed to make flanks", "");
     return status == 0 ? check_outputs(state->options) : status;
+}
+
+/* What was measured and what is written belong together. */
+static int check_measured(const flanks_options *options) {
+    if ((options->traces != NULL) != (options->deviations != NULL))
+        return refuse("--traces and --flanks go together: missing is ",
+                      options->traces != NULL ? "--flanks" : "--traces");
+    if ((options->measured_pitch != NULL) != (options->pitch != NULL))
+        return refuse("--measured-pitch and --pitch go together: missing is ",
+                      options->pitch != NULL ? "--measured-pitch" : "--pitch");
+    if (options->measurement.datum_face == 0)
+        return refuse("--datum-face is missing", "");
+    if (options->measurement.counting == 0)
+        return refuse("--count is missing", "");
+    return check_outputs(options);
+}
+
+static int refuse_odd(enum flanks_task task, const char *option) {
+    if (task == FLANKS_EVALUATE)
+        return refuse("not together with --evaluate: ", option);
+    if (task == FLANKS_MEASURED)
+        return refuse("not together with --traces or --measured-pitch: ", option);
+    return refuse(strcmp(option, "--teeth") == 0
+                      ? "only together with --evaluate: "
+                      : "only together with --traces or --measured-pitch: ",
+                  option);
 }
 
 static int check(const parsing *state) {
@@ -288,10 +443,10 @@ static int check(const parsing *state) {
         return refuse("an INI file is missing", "");
     if (!state->has_gear)
         return refuse("--gear is missing", "");
-    if (options->task == FLANKS_EVALUATE && state->made_with != NULL)
-        return refuse("not together with --evaluate: ", state->made_with);
-    if (options->task == FLANKS_MAKE && state->evaluated_with != NULL)
-        return refuse("only together with --evaluate: ", state->evaluated_with);
+    if (state->odd[options->task] != NULL)
+        return refuse_odd(options->task, state->odd[options->task]);
+    if (options->task == FLANKS_MEASURED)
+        return check_measured(options);
     return options->task == FLANKS_MAKE ? check_making(state) : 0;
 }
 
@@ -301,6 +456,8 @@ int options_parse(flanks_options *options, int count, char *const texts[]) {
 
     memset(options, 0, sizeof *options);
     gm_generate_options_default(&options->generate);
+    gm_measurement_default(&options->measurement);
+    gm_traces_options_default(&options->from_traces);
     options->generate.waves = options->waves;
     for (int i = 1; i < count && status == 0; ++i) {
         if (strcmp(texts[i], "--help") == 0 || strcmp(texts[i], "--version") == 0) {
@@ -310,5 +467,8 @@ int options_parse(flanks_options *options, int count, char *const texts[]) {
         status = texts[i][0] == '-' ? take_option(&state, count, texts, &i)
                                     : take_parameters(&state, texts[i]);
     }
+    if (options->task == FLANKS_MAKE &&
+        (options->traces != NULL || options->measured_pitch != NULL))
+        options->task = FLANKS_MEASURED;
     return status == 0 ? check(&state) : status;
 }

@@ -9,7 +9,9 @@
 
 #include <gearmesh/gearmesh_io.h>
 
-enum flanks_task { FLANKS_MAKE, FLANKS_EVALUATE, FLANKS_HELP, FLANKS_VERSION };
+enum flanks_task { FLANKS_MAKE, FLANKS_EVALUATE, FLANKS_MEASURED, FLANKS_HELP, FLANKS_VERSION };
+
+enum { FLANKS_TASKS = FLANKS_HELP }; /* that need gears */
 
 enum { FLANKS_MOST_WAVES = 100 };
 
@@ -21,6 +23,10 @@ typedef struct flanks_options {
     const char *pitch;
     const char *scatter; /* INI file of amounts, NULL = of a class */
     int teeth;           /* --teeth: the values of every flank */
+    const char *traces;  /* what was measured, NULL = nothing */
+    const char *measured_pitch;
+    gm_measurement measurement;
+    gm_traces_options from_traces;
     gm_generate_options generate;
     gm_flank_wave waves[FLANKS_MOST_WAVES]; /* what generate.waves points to */
 } flanks_options;

@@ -3,6 +3,7 @@
 
 #include "report.h"
 #include "key_table.h"
+#include "write.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -14,16 +15,6 @@ typedef struct measured {
     gm_deviations deviation_storage;
     gm_pitch pitch_storage;
 } measured;
-
-static int refuse(const gm_io_error *error) {
-    if (error->file[0] == '\0')
-        fprintf(stderr, "gearflanks: %s\n", error->text);
-    else if (error->line > 0)
-        fprintf(stderr, "%s:%ld: %s\n", error->file, error->line, error->text);
-    else
-        fprintf(stderr, "%s: %s\n", error->file, error->text);
-    return EXIT_BAD_INPUT;
-}
 
 static void close_files(measured *of) {
     gm_deviations_free(&of->deviation_storage);
@@ -37,6 +28,7 @@ static int open_files(measured *of, const flanks_options *options, const flank_f
     const char *deviations = given ? options->deviations : files->deviations;
     const char *pitch = given ? options->pitch : files->pitch;
     gm_io_error error;
+    int status = GM_IO_OK;
 
     memset(of, 0, sizeof *of);
     if (deviations == NULL && pitch == NULL) {
@@ -47,14 +39,16 @@ static int open_files(measured *of, const flanks_options *options, const flank_f
         return EXIT_BAD_INPUT;
     }
     if (deviations != NULL) {
-        if (gm_deviations_read(&of->deviation_storage, deviations, teeth, &error) != GM_IO_OK)
-            return refuse(&error);
+        status = gm_deviations_read(&of->deviation_storage, deviations, teeth, &error);
+        if (status != GM_IO_OK)
+            return refuse_input(status, &error);
         of->deviations = &of->deviation_storage;
     }
     if (pitch != NULL) {
-        if (gm_pitch_read(&of->pitch_storage, pitch, teeth, &error) != GM_IO_OK) {
+        status = gm_pitch_read(&of->pitch_storage, pitch, teeth, &error);
+        if (status != GM_IO_OK) {
             close_files(of);
-            return refuse(&error);
+            return refuse_input(status, &error);
         }
         of->pitch = &of->pitch_storage;
     }
@@ -148,11 +142,11 @@ int report_quality(const flanks_options *options, const gm_pair *pair,
     gm_flank_quality *flanks = allocate(2 * (size_t)teeth * sizeof *flanks);
     gm_quality quality;
     gm_io_error error;
-    int status = EXIT_DONE;
+    int status = gm_quality_evaluate(&quality, flanks, pair, options->wheel, deviations, pitch,
+                                     NULL, &error);
 
-    if (gm_quality_evaluate(&quality, flanks, pair, options->wheel, deviations, pitch, NULL,
-                            &error) != GM_IO_OK)
-        status = refuse(&error);
+    if (status != GM_IO_OK)
+        status = refuse_input(status, &error);
     else if (options->teeth)
         print_teeth(flanks, teeth);
     else

@@ -58,9 +58,11 @@ static int place_point(builder *build, int row) {
                              "is right (are there two teeth with this number?)",
                              point->tooth, gmi_flank_word(point->flank), first->line);
     }
-    if (!isfinite(point->value)) {
+    if (!(fabs(point->value) < 1.0)) { /* no overflow on the way to a message */
         return gmi_error_set(build->error, GM_IO_ERR_FORMAT, point->line,
-                             "the pitch of tooth %d is not finite", point->tooth);
+                             "the pitch of tooth %d is not finite or beyond 1 m; deviations of the "
+                             "pitch, of some um, are right",
+                             point->tooth);
     }
     build->row[side * build->gear->teeth + index] = row + 1;
     build->present[side]++;

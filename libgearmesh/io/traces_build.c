@@ -138,6 +138,11 @@ static int is_on_profile(const builder *build, double roll) {
     return roll >= 0.0 && profile_place(build->gear, roll) <= 1.0 + overrun;
 }
 
+/* Lengths that can be worked with: no overflow on the way to a message. */
+static int is_sane(double length) {
+    return fabs(length) < 1e3;
+}
+
 static int check_structure(const builder *build, const gm_trace *trace) {
     const int known = trace->kind == GM_TRACE_PROFILE || trace->kind == GM_TRACE_HELIX;
     if (!known || trace->position == NULL || trace->deviation == NULL || trace->count < 1) {
@@ -156,12 +161,13 @@ static int check_structure(const builder *build, const gm_trace *trace) {
                                             : "roll length or diameter");
     }
     for (int i = 0; i < trace->count; i++) {
-        if (!isfinite(trace->deviation[i]) || !isfinite(trace->position[i]) ||
-            !isfinite(trace->at) || (i > 0 && !(trace->position[i] > trace->position[i - 1]))) {
+        const int rises = i == 0 || trace->position[i] > trace->position[i - 1];
+        if (!is_sane(trace->deviation[i]) || !is_sane(trace->position[i]) || !is_sane(trace->at) ||
+            !rises) {
             char name[GMI_TRACE_NAME_SIZE];
             return gmi_error_set(build->error, GM_IO_ERR_FORMAT, line_of(trace, i),
-                                 "%s has a value that is not finite, or a position that does not "
-                                 "rise",
+                                 "%s has a value that is not finite or beyond 1 km, or a position "
+                                 "that does not rise; those of a gear are right",
                                  gmi_trace_name(name, trace));
         }
     }

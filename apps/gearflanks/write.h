@@ -1,0 +1,25 @@
+/* SPDX-FileCopyrightText: The gearmesh authors */
+/* SPDX-License-Identifier: BSD-3-Clause */
+
+/* Writes flank and pitch files with a head that says where they come from. */
+#ifndef GEARFLANKS_WRITE_H
+#define GEARFLANKS_WRITE_H
+
+#include <gearmesh/gearmesh_io.h>
+#include <stdio.h>
+
+/* What becomes a file: either deviations or pitch, and its head of comment lines. */
+typedef struct written {
+    const gm_deviations *deviations; /* NULL = pitch is written */
+    const gm_pitch *pitch;
+    void (*print_head)(FILE *file, const void *context);
+    const void *context;
+} written;
+
+/* Writes FILE.part and renames it when it is whole. Returns an exit code; messages go to stderr. */
+int write_file(const char *path, const written *what);
+
+/* Prints file, line and reason of an error in the input; returns EXIT_BAD_INPUT, or EXIT_RUN_FAILED if it is memory. */
+int refuse_input(int status, const gm_io_error *error);
+
+#endif

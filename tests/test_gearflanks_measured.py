@@ -1,0 +1,362 @@
+#!/usr/bin/env python3
+# SPDX-FileCopyrightText: The gearmesh authors
+# SPDX-License-Identifier: BSD-3-Clause
+"""
+gearflanks with measurements: made flanks come back from their traces, the example holds what its head says, the direction
+of rotation is stated, and every bad input is refused with file and line, with nothing written.
+
+    test_gearflanks_measured.py GEARFLANKS [-v] [name of a test]...
+"""
+import cmath
+import csv
+import math
+import os
+import re
+import subprocess
+import sys
+import tempfile
+import unittest
+
+GEARFLANKS = os.environ.get("GEARFLANKS", "gearflanks")
+DATA = os.path.join(os.path.dirname(os.path.abspath(__file__)), os.pardir, "data", "measured")
+PARAMS = os.path.join(DATA, "params.ini")
+TRACES = os.path.join(DATA, "traces.csv")
+PITCH = os.path.join(DATA, "measured_pitch.csv")
+FACE_WIDTH_MM = 17.5
+
+# (base, start, tip) radii of the gears of params.ini, as data/paper/README.md derives them; mm.
+RADII = {
+    "pinion": (41.885928486852599, 42.793146962250511, 46.93839),
+    "wheel": (38.162734843576807, 38.874034774040076, 43.003591),
+}
+TEETH = {"pinion": 45, "wheel": 41}
+ALPHA_T = math.atan(math.tan(math.radians(16)) / math.cos(math.radians(33)))
+
+TRACE_HEADER = "tooth,flank,trace,face_mm,roll_length_mm,deviation_um\n"
+PITCH_HEADER = "tooth,flank,cumulative_pitch_um\n"
+
+
+def rows_of(path):
+    with open(path, encoding="ascii", newline="") as file:
+        return list(csv.DictReader(line for line in file if not line.startswith("#")))
+
+
+class Case(unittest.TestCase):
+    def setUp(self):
+        folder = tempfile.TemporaryDirectory()
+        self.addCleanup(folder.cleanup)
+        self.folder = folder.name
+
+    def path(self, name):
+        return os.path.join(self.folder, name)
+
+    def write(self, name, text):
+        with open(self.path(name), "w", encoding="utf-8") as file:
+            file.write(text)
+        return self.path(name)
+
+    def run_it(self, *arguments):
+        return subprocess.run(
+            [GEARFLANKS, *arguments], cwd=self.folder, capture_output=True, text=True, check=False, timeout=60
+        )
+
+    def accepted(self, *arguments):
+        result = self.run_it(*arguments)
+        self.assertEqual((result.returncode, result.stderr), (0, ""), arguments)
+        return result.stdout
+
+    def refused(self, said, *arguments, code=2):
+        result = self.run_it(*arguments)
+        self.assertEqual(result.returncode, code, result.stderr)
+        for text in [said] if isinstance(said, str) else said:
+            self.assertIn(text, result.stderr)
+        self.assertEqual(result.stdout, "")
+
+
+EXAMPLE = (
+    *(PARAMS, "--gear", "pinion", "--datum-face", "I", "--count", "clockwise"),
+    *("--traces", TRACES, "--flanks", "f.csv", "--measured-pitch", PITCH, "--pitch", "p.csv"),
+)
+
+
+class Example(Case):
+    def pitch_of(self, side):
+        return [float(row["deviation_um"]) for row in rows_of(self.path("p.csv")) if row["flank"] == side]
+
+    def test_it_holds_what_its_head_says(self):
+        self.accepted(*EXAMPLE)
+        flanks = {}
+        for row in rows_of(self.path("f.csv")):
+            key = (float(row["t1"]), round(30 * float(row["t2"])))
+            flanks.setdefault((int(row["tooth"]), row["flank"]), {})[key] = float(row["deviation_um"])
+        self.assertEqual(len(flanks), 90)
+        for table in flanks.values():
+            self.assertLess(table[0.5, 30], table[0.5, 22] - 8)  # tip relief
+            self.assertLess(table[0, 15] + table[1, 15], 2 * table[0.5, 15] - 8)  # crowning
+        # An eccentricity e is e along the line of action in the first order of the pitch, on either flank.
+        for side in ("drive", "coast"):
+            values = self.pitch_of(side)
+            self.assertEqual(len(values), 45)
+            first = sum(v * cmath.exp(2j * math.pi * i / 45) for i, v in enumerate(values)) / 22.5
+            self.assertAlmostEqual(abs(first), 12, delta=3)
+            self.assertAlmostEqual(math.fsum(values), 0, delta=1e-2)
+
+    def test_it_tells_mapping_and_direction_of_rotation(self):
+        told = self.accepted(*EXAMPLE)
+        for name in ("f.csv", "p.csv"):
+            with open(self.path(name), encoding="ascii") as file:
+                head = "".join(line for line in file if line.startswith("#"))
+            for said in (
+                "pinion of 45 teeth, from measurements",
+                "datum face I (t1 = 0): left flanks are coast, right flanks are drive",
+                "the pinion turns clockwise as it is driven forward, and teeth are counted clockwise",
+                "measured teeth 1, 2, 3 .. 45 are teeth 0, 1, 2 .. 44",
+            ):
+                self.assertIn(said, head)
+                self.assertIn(said, told)
+        self.assertIn("drive, profile: 4 traces of 4 teeth, 41 interpolated", told)
+        self.assertIn("last values held beyond", told)
+        self.assertRegex(told, r"\nclass \d+\n$")
+        self.assertRegex(told, r"21 x 31 nodes: no measured point is off by more than \d\.\d+ um")
+        self.assertEqual(sorted(os.listdir(self.folder)), ["f.csv", "p.csv"])
+
+    def test_the_same_rows_from_the_other_face_are_the_other_flanks(self):
+        self.accepted(*EXAMPLE)
+        drive, coast = self.pitch_of("drive"), self.pitch_of("coast")
+        told = self.accepted(*EXAMPLE, "--datum-face", "II", "--first-number=1", "--first-tooth=7")
+        self.assertIn("left flanks are drive, right flanks are coast", told)
+        self.assertIn("the pinion turns counter-clockwise as it is driven forward", told)
+        self.assertIn("measured teeth 1, 2, 3 .. 45 are teeth 7, 6, 5 .. 8", told)
+        # What stood ahead in the direction of counting now stands behind, on the other side: the same material.
+        for now, before in ((self.pitch_of("coast"), drive), (self.pitch_of("drive"), coast)):
+            for i in range(45):
+                self.assertEqual(now[(7 - i) % 45], before[i])
+
+    def test_one_of_the_two_is_enough(self):
+        told = self.accepted(*EXAMPLE[:7], "--traces", TRACES, "--flanks", "f.csv", "--nodes", "5x9")
+        self.assertNotIn("taken out", told)
+        self.assertEqual(len(rows_of(self.path("f.csv"))), 90 * 45)
+        self.assertEqual(os.listdir(self.folder), ["f.csv"])
+        told = self.accepted(*EXAMPLE[:7], "--measured-pitch", PITCH, "--pitch", "p.csv")
+        self.assertNotIn("interpolated", told)
+        self.assertIn("drive, pitch: mean of", told)
+
+
+class RoundTrip(Case):
+    """Flanks of a class, as a machine prints them of all teeth, measure to the same values again."""
+
+    def quality(self, gear, flanks, pitch):
+        """Every value of every flank."""
+        files = ("--flanks", flanks, "--pitch", pitch)
+        text = self.accepted(PARAMS, "--gear", gear, "--evaluate", "--teeth", *files)
+        rows = list(csv.reader(text.splitlines()[1:]))
+        self.assertEqual(len(rows), 2 * TEETH[gear])
+        return {(row[0], row[1]): [float(value) for value in row[2:]] for row in rows}
+
+    # Derived in libgearmesh/docs/measured-flanks.md: (gear, face, counting): (left is drive, order kept).
+    WAYS = (
+        ("pinion", "I", "clockwise", False, True),
+        ("pinion", "II", "clockwise", True, False),
+        ("wheel", "I", "counterclockwise", False, True),
+        ("wheel", "II", "counterclockwise", True, False),
+    )
+
+    def measured(self, gear, face, left_is_drive, order_kept):
+        """Texts of a trace and a pitch file of the flanks in f.csv and p.csv, teeth counted from 0."""
+        base, start, tip = RADII[gear]
+        first, last = math.sqrt(start**2 - base**2), math.sqrt(tip**2 - base**2)
+        teeth = TEETH[gear]
+
+        def place(row):
+            left = (row["flank"] == "drive") == left_is_drive
+            number = int(row["tooth"]) if order_kept else -int(row["tooth"]) % teeth
+            return f"{number},{'left' if left else 'right'}"
+
+        profiles, helices, pitch = {}, {}, []
+        for row in rows_of(self.path("f.csv")):
+            t1, t2 = float(row["t1"]), float(row["t2"])
+            face_mm = FACE_WIDTH_MM * (t1 if face == "I" else 1 - t1)
+            at = f"{face_mm:.6f},{first + t2 * (last - first):.7f},{row['deviation_um']}"
+            if t1 == 0.5:
+                profiles.setdefault(place(row), []).append(f"{place(row)},profile,{at}\n")
+            if t2 == 0.5:
+                helices.setdefault(place(row), []).append(f"{place(row)},helix,{at}\n")
+        for row in rows_of(self.path("p.csv")):
+            ahead = float(row["deviation_um"]) / math.cos(ALPHA_T)
+            ahead *= 1 if (row["flank"] == "drive") == (gear == "pinion") else -1
+            pitch.append(f"{place(row)},{ahead if order_kept else -ahead:.6f}\n")
+        traces = [line for group in (profiles, helices) for rows in group.values() for line in rows]
+        return TRACE_HEADER + "".join(traces), PITCH_HEADER + "".join(pitch)
+
+    def test_made_flanks(self):
+        for gear, face, counting, left_is_drive, order_kept in self.WAYS:
+            made = ("--flanks", "f.csv", "--pitch", "p.csv", "--nodes", "13x15")
+            self.accepted(PARAMS, "--gear", gear, "--class", "6", "--seed", "5", *made)
+            traces, pitch = self.measured(gear, face, left_is_drive, order_kept)
+            self.accepted(
+                *(PARAMS, "--gear", gear, "--datum-face", face, "--count", counting, "--first-number", "0"),
+                *("--traces", self.write("t.csv", traces), "--flanks", "g.csv"),
+                *("--measured-pitch", self.write("m.csv", pitch), "--pitch", "q.csv", "--nodes", "13x15"),
+            )
+            before, after = self.quality(gear, "f.csv", "p.csv"), self.quality(gear, "g.csv", "q.csv")
+            for flank, expected in before.items():
+                for value, got in zip(expected, after[flank]):
+                    self.assertAlmostEqual(got, value, delta=1e-3, msg=(gear, face, flank))
+
+
+class Refusals(Case):
+    def setUp(self):
+        super().setUp()
+        self.write("f.csv", "old\n")
+        with open(TRACES, encoding="ascii") as file:
+            self.traces = file.read().splitlines(keepends=True)
+        with open(PITCH, encoding="ascii") as file:
+            self.pitch = file.read().splitlines(keepends=True)
+
+    def tearDown(self):
+        with open(self.path("f.csv"), encoding="ascii") as file:
+            self.assertEqual(file.read(), "old\n")
+        self.assertFalse(os.path.exists(self.path("p.csv")))
+        self.assertEqual([name for name in os.listdir(self.folder) if ".part" in name or ".rows" in name], [])
+
+    def bad_traces(self, line, said, *more):
+        path = self.write("t.csv", "".join(self.traces))
+        place = f"{path}:{line}: " if line else f"{path}: "
+        self.refused([place, *said], *EXAMPLE, "--traces", path, *more)
+
+    def bad_pitch(self, line, said):
+        path = self.write("m.csv", "".join(self.pitch))
+        place = f"{path}:{line}: " if line else f"{path}: "
+        self.refused([place, *said], *EXAMPLE, "--measured-pitch", path)
+
+    def change(self, rows, pattern, replacement):
+        changed = [re.sub(pattern, replacement, row) for row in rows]
+        self.assertNotEqual(changed, rows)
+        return changed
+
+    def each(self, column, function):
+        """The rows of the traces with another value in a column."""
+        out = []
+        for row in self.traces:
+            fields = row.rstrip("\n").split(",")
+            if len(fields) == 6 and fields[0].isdecimal():
+                fields[column] = f"{function(float(fields[column])):.6g}"
+                row = ",".join(fields) + "\n"
+            out.append(row)
+        return out
+
+    def test_units_and_signs_of_deviations(self):
+        for factor, said in ((1e-3, "millimetres"), (1e3, "nanometres")):
+            path = self.write("t.csv", "".join(self.each(5, lambda um, factor=factor: factor * um)))
+            self.refused(["t.csv:", said], *EXAMPLE, "--traces", path)
+        self.traces = self.each(5, lambda um: -um)
+        self.bad_traces(0, ["16 of 16 traces stand out", "> 0 for material added is right"])
+
+    def test_lengths(self):
+        rows = self.traces
+        self.traces = self.each(4, lambda mm: mm / 10)
+        self.bad_traces(5, ["below the base circle", "centimetres"])
+        self.traces = rows
+        self.traces = self.each(4, lambda mm: mm / 2)
+        self.bad_traces(5, ["a radius"])
+        self.traces = rows
+        self.traces = self.each(3, lambda mm: mm / 25.4)
+        self.bad_traces(102, ["the helix trace of tooth 1, flank left", "inches"])
+        self.traces = rows
+        self.traces[100] = "1,left,profile,8.75,94.2,-14\n"
+        self.bad_traces(101, ["leaves the gear", "is right, the tip"])
+
+    def test_spikes_teeth_and_text(self):
+        rows = list(self.traces)
+        self.traces[40] = re.sub(r"[^,]*\n$", "25\n", self.traces[40])
+        self.bad_traces(41, ["the profile trace of tooth 1, flank left", "a spike"])
+        self.traces = rows + rows[4:101]
+        self.bad_traces(len(rows) + 1, ["twice", "begins in line 5", "two teeth with the number 1"])
+        self.traces = self.change(rows, "^34,", "46,")
+        self.bad_traces(4 + 6 * 182 + 1, ["no tooth 46", "1 to 45 is right, as the gear has 45 teeth"])
+        self.traces = self.change(rows, "_um", "")
+        self.bad_traces(4, ["'deviation' has no unit", "deviation_um"])
+        self.traces = self.change(rows, ",", ";")
+        self.bad_traces(4, ["semicolons", "commas"])
+        self.traces = self.change(rows, r"(\d)\.(\d\d\n)", r"\1,\2")
+        self.bad_traces(5, ["7 fields", "decimal comma"])
+
+    def test_pitch(self):
+        rows = list(self.pitch)
+        self.pitch = rows[:50] + rows[51:]
+        self.bad_pitch(0, ["no row for tooth 24", "each of the 45 teeth"])
+        self.pitch = rows + ["3,left,1.0\n"]
+        self.bad_pitch(len(rows) + 1, ["second row", "the first is in line 8"])
+        self.pitch = rows[:85]
+        self.bad_pitch(0, ["42, 43, 44, 45", "the other gear"])
+        self.pitch = self.change(rows, "cumulative", "single")
+        self.bad_pitch(5, ["single pitch deviations of flank right add up to", "0 is right"])
+        self.pitch = self.change(rows, r"_um\n", "_mm\n")
+        self.bad_pitch(3, ["'cumulative_pitch_mm'", "cumulative_pitch_um"])
+        self.pitch = self.change(rows, r"\.(\d)\n", r",\1\n")
+        self.bad_pitch(4, ["4 fields", "decimal comma"])
+
+    def test_options(self):
+        some = EXAMPLE[:3]
+        files = ("--traces", TRACES, "--flanks", "f.csv")
+        self.refused("--datum-face is missing", *some, *files, "--count", "clockwise")
+        self.refused("--count is missing", *some, *files, "--datum-face", "I")
+        self.refused("missing is --flanks", *EXAMPLE[:7], "--traces", TRACES)
+        self.refused("missing is --traces", *EXAMPLE[:7], *EXAMPLE[11:], "--flanks", "f.csv")
+        self.refused("missing is --pitch", *EXAMPLE[:7], *EXAMPLE[7:11], "--measured-pitch", PITCH)
+        self.refused("missing is --measured-pitch", *EXAMPLE[:7], *EXAMPLE[7:11], "--pitch", "p.csv")
+        self.refused("same file: f.csv", *EXAMPLE, "--pitch", "f.csv")
+        self.refused("an input would be overwritten", *EXAMPLE, "--pitch", TRACES)
+        self.refused("not together with --traces or --measured-pitch: --class", *EXAMPLE, "--class", "5")
+        self.refused("not together with --evaluate: --remove-spikes", *some, "--evaluate", "--remove-spikes")
+        self.refused(
+            "only together with --traces or --measured-pitch: --hollow", *some, "--class", "5", "--flanks", "f.csv",
+            "--pitch", "p.csv", "--hollow",
+        )
+
+    def test_values(self):
+        for option, value, right in (
+            ("--datum-face", "1", "I or II"),
+            ("--count", "left", "clockwise or counterclockwise"),
+            ("--first-number", "2", "0 or 1"),
+            ("--first-tooth", "-1", "0 or more"),
+            ("--first-tooth", "45", "from 0 to 44"),
+            ("--pitch-diameter", "x", "in mm"),
+            ("--pitch-diameter", "80", "(base) to"),
+            ("--held", "0.5", "0 to 0.45"),
+            ("--nodes", "1x9", "2 to 1000"),
+        ):
+            self.refused(right, *EXAMPLE, option, value)
+
+    def test_no_file(self):
+        self.refused("no.csv: cannot be opened", *EXAMPLE, "--traces", "no.csv")
+        self.refused("no.csv: cannot be opened", *EXAMPLE, "--measured-pitch", "no.csv")
+        self.refused("no/f.csv: cannot be", *EXAMPLE, "--flanks", "no/f.csv", code=1)
+
+
+class Allowances(Case):
+    def test_spikes_can_be_left_out_and_hollow_flanks_be_meant(self):
+        with open(TRACES, encoding="ascii") as file:
+            rows = file.read().splitlines(keepends=True)
+        rows[40] = re.sub(r"[^,]*\n$", "25\n", rows[40])
+        path = self.write("t.csv", "".join(rows))
+        self.assertIn("1 points left out", self.accepted(*EXAMPLE, "--traces", path, "--remove-spikes"))
+        hollow = [re.sub(r",(-?)(\d+\.\d\d)$", lambda m: f",{'' if m[1] else '-'}{m[2]}", row) for row in rows]
+        hollow[40] = hollow[39]
+        del hollow[40]
+        path = self.write("t.csv", "".join(hollow))
+        self.assertIn("16 of 16 traces stand out", self.accepted(*EXAMPLE, "--traces", path, "--hollow"))
+
+    def test_help_names_all_options(self):
+        text = self.accepted("--help")
+        for option in (
+            *("--traces", "--measured-pitch", "--datum-face", "--count", "--first-number", "--first-tooth"),
+            *("--pitch-diameter", "--transverse", "--held", "--hollow", "--remove-spikes"),
+        ):
+            self.assertIn("  " + option, text)
+
+
+if __name__ == "__main__":
+    if len(sys.argv) > 1 and not sys.argv[1].startswith("-"):
+        GEARFLANKS = os.path.abspath(sys.argv.pop(1))
+    unittest.main()
