@@ -58,11 +58,11 @@ do for [format in 'png svg'] {
         range_um = number('range', i)
         step_um = number('step', i)
         set cbrange [-range_um:range_um]
-        set label 3 number('title', i) at screen 0.025, screen from_top(top + 30) left font ',14'
-        set label 4 number('numbers', i) at screen 0.445, screen from_top(top + 30) right font ',11' \
+        set label 3 number('title', i) at screen 0.025, screen from_top(top + 22) left font ',14'
+        set label 4 number('numbers', i) at screen 0.445, screen from_top(top + 22) right font ',11' \
             textcolor rgb grey
 
-        set lmargin at screen 0.08
+        set lmargin at screen 0.09
         set rmargin at screen 0.445
         set tmargin at screen from_top(top + 55)
         set bmargin at screen from_top(top + 455)
@@ -72,7 +72,7 @@ do for [format in 'png svg'] {
         set xtics 0.25 offset 0,0 format '%g'
         set ytics 0.25 offset 0,0 format '%g'
         set xlabel 't1, along the face (z / face width)' norotate offset 0,0
-        set ylabel 't2, along the profile (0 start, 1 tip)' rotate offset 0,0
+        set ylabel 't2, along the profile (0 start, 1 tip)' rotate offset 0.5,0
         unset zlabel
         unset colorbox
         plot file('map', i, 'bin') binary array=(fine_nodes, fine_nodes) format='%float32' endian=little \
