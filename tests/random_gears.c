@@ -180,9 +180,62 @@ static void fill_side(random_flanks *f, uint64_t *seed, int side, int tables, in
     }
 }
 
-void random_flanks_make(random_flanks *f, uint64_t *seed, const gm_pair *pair, int teeth,
+/** 1 / the range of a relief, mostly one that ends on a grid line of some table. */
+static double any_steepness(uint64_t *seed) {
+    return chance(seed, 40) ? (double)gm_test_integer(seed, 1, 5) : gm_test_uniform(seed, 1.0, 8.0);
+}
+
+/** Reliefs of every kind, and planes that no drawing has: parallel to the lines of contact, which climb by `climb` in
+ *  t2 over the face; nothing anywhere; something everywhere; anything. */
+static gm_flank_ramp any_ramp(uint64_t *seed, double amplitude, double climb) {
+    const double amount = gm_test_uniform(seed, 0.0, amplitude);
+    const double face = any_steepness(seed) * any_sign(seed) * amount;
+    const double profile = any_steepness(seed) * any_sign(seed) * amount;
+    const double at_face = amount - fmax(face, 0.0);
+    const double at_profile = amount - fmax(profile, 0.0);
+    const double t1 = gm_test_uniform(seed, 0.0, 1.0);
+    const double t2 = gm_test_uniform(seed, 0.0, 1.0);
+    switch (gm_test_integer(seed, 0, 9)) {
+    case 0:
+        return (gm_flank_ramp){profile * (climb * t1 - t2), -profile * climb, profile};
+    case 1:
+        return (gm_flank_ramp){0.0, 0.0, 0.0};
+    case 2:
+        return (gm_flank_ramp){amount + fabs(face) + fabs(profile), face, profile};
+    case 3:
+        return (gm_flank_ramp){-face * t1 - profile * t2, face, profile};
+    case 4:
+    case 5:
+        return (gm_flank_ramp){at_face, face, 0.0};
+    case 6:
+    case 7:
+        return (gm_flank_ramp){at_profile, 0.0, profile};
+    default:
+        return (gm_flank_ramp){at_face + at_profile - amount, face, profile};
+    }
+}
+
+/** Ramps of one side; some twice, so that edges coincide. */
+static void set_ramps(random_flanks *f, uint64_t *seed, int side, double amplitude, double climb,
+                      double factor, long double exact) {
+    gm_flank_ramp ramps[MODEL_RAMPS];
+    const int count = chance(seed, 50)  ? 0
+                      : chance(seed, 5) ? MODEL_RAMPS
+                                        : gm_test_integer(seed, 1, 5);
+    for (int k = 0; k < count; k++) {
+        ramps[k] = k > 0 && chance(seed, 10) ? ramps[k - 1] : any_ramp(seed, amplitude, climb);
+        f->model.ramp[side][k] =
+            (model_ramp){exact, ramps[k].offset, ramps[k].per_t1, ramps[k].per_t2};
+    }
+    f->model.ramp_count[side] = count;
+    GM_ASSERT_INT(gm_flanks_set_ramps(&f->flanks, side, ramps, count, factor), GM_OK);
+}
+
+void random_flanks_make(random_flanks *f, uint64_t *seed, const gm_pair *pair, int wheel,
                         double amplitude) {
     static const int table_counts[] = {0, 1, 1, 3};
+    const gm_gear *gear = wheel ? &pair->wheel : &pair->pinion;
+    const int teeth = gear->teeth;
     memset(f, 0, sizeof *f);
     int tables[2];
     int face_nodes[2];
@@ -205,9 +258,14 @@ void random_flanks_make(random_flanks *f, uint64_t *seed, const gm_pair *pair, i
     GM_ASSERT_INT(gm_flanks_init(&f->flanks, &sizes, f->memory, size), GM_OK);
     const int normal = chance(seed, 50);
     const long double exact = 1.0L / cosl(atanl((long double)pair->twist / pair->face_width));
+    uint64_t ramp_seed = *seed; /* a sequence of their own */
     for (int side = 0; side < 2; side++) {
         fill_side(f, seed, side, tables[side], face_nodes[side], profile_nodes[side], amplitude,
                   normal ? pair->normal_to_transverse : 1.0, normal ? exact : 1.0L);
+        const double climb = (side == wheel ? 1.0 : -1.0) * pair->twist /
+                             (gear->tip_roll_length - gear->start_roll_length);
+        set_ramps(f, &ramp_seed, side, amplitude, climb, normal ? pair->normal_to_transverse : 1.0,
+                  normal ? exact : 1.0L);
     }
 }
 
@@ -257,7 +315,7 @@ int random_case_make(random_case *c, uint64_t *seed, int with_flanks) {
     c->amplitude = with_flanks ? c->params.normal_module * any_size(seed, -4.0, -2.3) : 0.0;
     for (int g = 0; g < 2 && status == GM_OK; g++) {
         if (with_flanks && chance(seed, 80)) {
-            random_flanks_make(&c->flanks[g], seed, &c->pair, c->model.teeth[g], c->amplitude);
+            random_flanks_make(&c->flanks[g], seed, &c->pair, g, c->amplitude);
             c->use[g] = &c->flanks[g].flanks;
             c->model_use[g] = &c->flanks[g].model;
         }

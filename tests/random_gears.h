@@ -38,8 +38,8 @@ typedef struct random_case {
 /** Draws parameters of a pair whose tips reach each other; always succeeds. */
 void random_params(uint64_t *seed, gm_pair_params *params, model_pair *model);
 
-/** Draws deviations for one gear of the pair. */
-void random_flanks_make(random_flanks *f, uint64_t *seed, const gm_pair *pair, int teeth,
+/** Draws tables, pitch and ramps for one gear of the pair: 0 = the pinion, 1 = the wheel. */
+void random_flanks_make(random_flanks *f, uint64_t *seed, const gm_pair *pair, int wheel,
                         double amplitude);
 void random_flanks_free(random_flanks *f);
 

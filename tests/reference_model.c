@@ -138,6 +138,8 @@ typedef struct line {
     long double rho[2];   /**< ideal, at t1 = 0 */
     long double climb[2]; /**< change of rho over the face width */
     const model_table *table[2];
+    const model_ramp *ramp[2];
+    int ramp_count[2];
     long double extra; /**< pitch deviations and the shift asked for */
 } line;
 
@@ -171,10 +173,19 @@ static long double deviation(const model_table *table, long double t1, long doub
            ((1 - u) * ((1 - v) * row[0] + v * row[1]) + u * ((1 - v) * next[0] + v * next[1]));
 }
 
+/** Where the plane of a ramp is above the flank: the height that it lacks, else below 0. */
+static long double plane_of(const model_ramp *ramp, long double t1, long double t2) {
+    return ramp->factor * (ramp->offset + ramp->per_t1 * t1 + ramp->per_t2 * t2);
+}
+
 static long double approach_at(const line *l, long double t1) {
     long double delta = l->rho[0] + l->rho[1] - l->pair->line_of_action + l->extra;
     for (int g = 0; g < 2; g++) {
-        delta += deviation(l->table[g], t1, profile_position(l, g, t1));
+        const long double t2 = profile_position(l, g, t1);
+        delta += deviation(l->table[g], t1, t2);
+        for (int k = 0; k < l->ramp_count[g]; k++) {
+            delta -= maximum(0.0L, plane_of(&l->ramp[g][k], t1, t2));
+        }
     }
     return delta;
 }
@@ -185,12 +196,19 @@ static int compare(const void *a, const void *b) {
     return (x > y) - (x < y);
 }
 
-/** All t1 in (low, high) where the line crosses a grid line of either table, and the two ends. */
+/** All t1 in (low, high) where the line crosses a grid line of either table or the edge of a ramp, and the two ends. */
 static int find_breaks(const line *l, long double low, long double high, long double *breaks) {
     int count = 0;
     breaks[count++] = low;
     breaks[count++] = high;
     for (int g = 0; g < 2; g++) {
+        for (int k = 0; k < l->ramp_count[g]; k++) {
+            const long double first = plane_of(&l->ramp[g][k], 0.0L, profile_position(l, g, 0.0L));
+            const long double last = plane_of(&l->ramp[g][k], 1.0L, profile_position(l, g, 1.0L));
+            if (first != last) {
+                breaks[count++] = first / (first - last);
+            }
+        }
         const model_table *table = l->table[g];
         if (table == NULL || table->face_nodes == 0) {
             continue;
@@ -357,10 +375,14 @@ void model_evaluate(const model_pair *pair, const model_flanks *pinion, const mo
             l.climb[1] = -s * pair->twist;
             if (pinion != NULL) {
                 l.table[0] = &pinion->table[side][tooth_p];
+                l.ramp[0] = pinion->ramp[side];
+                l.ramp_count[0] = pinion->ramp_count[side];
                 l.extra += pinion->pitch[side][tooth_p];
             }
             if (wheel != NULL) {
                 l.table[1] = &wheel->table[side][tooth_w];
+                l.ramp[1] = wheel->ramp[side];
+                l.ramp_count[1] = wheel->ramp_count[side];
                 l.extra += wheel->pitch[side][tooth_w];
             }
             add_line(&l, border, side, result);

@@ -6,8 +6,8 @@
  * A second evaluation of the contact model for the tests: slow, plain and in long double.
  *
  * Written from the statement of the model in libgearmesh/docs/conventions.md alone; it shares no code
- * with the library. It tries all teeth, cuts every contact line at every grid line of both tables
- * and integrates piece by piece. Of gearmesh.h it uses nothing but the struct of parameters.
+ * with the library. It tries all teeth, cuts every contact line at every grid line of both tables and at every
+ * edge of a linear relief, and integrates piece by piece. Of gearmesh.h it uses nothing but the struct of parameters.
  */
 #ifndef REFERENCE_MODEL_H
 #define REFERENCE_MODEL_H
@@ -46,10 +46,20 @@ typedef struct model_table {
     long double factor;
 } model_table;
 
-/** Deviations of one gear. Index 0 = drive, 1 = coast; then the tooth. */
+/** A linear relief: max(0, factor (offset + per_t1 t1 + per_t2 t2)) of material are missing (m). */
+typedef struct model_ramp {
+    long double factor;
+    double offset, per_t1, per_t2;
+} model_ramp;
+
+enum { MODEL_RAMPS = 16 };
+
+/** Deviations of one gear. Index 0 = drive, 1 = coast; then the tooth, or the ramp of all teeth. */
 typedef struct model_flanks {
     model_table *table[2];
     double *pitch[2];
+    model_ramp ramp[2][MODEL_RAMPS];
+    int ramp_count[2];
 } model_flanks;
 
 /** Result; index 0 = drive, 1 = coast. */

@@ -388,6 +388,8 @@ static void no_torque_is_carried_where_both_sides_touch(void) {
         c.pair.backlash = c.params.normal_module * gm_test_uniform(&seed, -2e-3, 2e-3);
         gm_test_context("case %d, helix %g", i, c.params.helix_angle);
         const double overlap = bisect(&c, COAST, -1e-300) - bisect(&c, DRIVE, 0.0);
+        /* Next to spur the only line may have left where bisection looks for it. */
+        const int grows = fabs(c.pair.twist) > 0.05 * c.params.normal_module;
         double x = NAN;
         gm_penetration r;
         const int status =
@@ -398,7 +400,7 @@ static void no_torque_is_carried_where_both_sides_touch(void) {
                 GM_ASSERT_ABS(r.drive, r.coast, 1e-14 * c.params.center_distance);
             }
             jammed++;
-        } else if (overlap < -1e-9) {
+        } else if (overlap < -1e-9 && grows) {
             GM_ASSERT_INT(status, GM_UNDETERMINED);
             GM_ASSERT_NAN(x);
             open++;

@@ -168,6 +168,10 @@ static void null_pointers_are_refused(void) {
     GM_ASSERT_INT(gm_flanks_set_table(NULL, GM_DRIVE, 0, values, 1.0), GM_ERR_NULL);
     GM_ASSERT_INT(gm_flanks_set_table(&flanks, GM_DRIVE, 0, NULL, 1.0), GM_ERR_NULL);
     GM_ASSERT_INT(gm_flanks_set_pitch(NULL, GM_DRIVE, 0, 0.0), GM_ERR_NULL);
+    const gm_flank_ramp ramp = {1e-6, 0.0, 0.0};
+    GM_ASSERT_INT(gm_flanks_set_ramps(NULL, GM_DRIVE, &ramp, 1, 1.0), GM_ERR_NULL);
+    GM_ASSERT_INT(gm_flanks_set_ramps(&flanks, GM_DRIVE, NULL, 1, 1.0), GM_ERR_NULL);
+    GM_ASSERT_INT(gm_flanks_set_ramps(&flanks, GM_DRIVE, NULL, 0, 1.0), GM_OK);
 }
 
 /* ---------------------------------------------------------------------------------------------
@@ -288,6 +292,62 @@ static void peak_is_the_most_material_of_any_tooth(void) {
 }
 
 /* ---------------------------------------------------------------------------------------------
+ * Ramps
+ * ------------------------------------------------------------------------------------------- */
+
+/* A ramp that is as high everywhere is a pitch deviation of all teeth. */
+static void ramps_replace_each_other_and_take_the_factor(void) {
+    gm_flanks_params sizes = small_sizes;
+    sizes.drive_tables = sizes.coast_tables = 0;
+    gm_flanks flanks = small_flanks(&sizes);
+    GM_ASSERT_INT(gm_flanks_set_pitch(&flanks, GM_DRIVE, GM_ALL_TEETH, -0.5e-6), GM_OK);
+    const double expected = probe(&flanks, GM_DRIVE, 0.1).drive;
+    flanks = small_flanks(&sizes);
+    const gm_flank_ramp halves[] = {{0.2e-6, 0.0, 0.0}, {0.2e-6, 0.0, 0.0}};
+    GM_ASSERT_INT(gm_flanks_set_ramps(&flanks, GM_DRIVE, halves, 1, 7.0), GM_OK);
+    GM_ASSERT_INT(gm_flanks_set_ramps(&flanks, GM_DRIVE, halves, 2, 1.25), GM_OK);
+    GM_ASSERT_REL(probe(&flanks, GM_DRIVE, 0.1).drive, expected, 1e-9);
+    GM_ASSERT_REL(probe(&flanks, GM_COAST, 0.1).coast, probe(NULL, GM_COAST, 0.1).coast, 1e-14);
+    GM_ASSERT_INT(gm_flanks_set_ramps(&flanks, GM_DRIVE, NULL, 0, 1.0), GM_OK);
+    GM_ASSERT_REL(probe(&flanks, GM_DRIVE, 0.1).drive, probe(NULL, GM_DRIVE, 0.1).drive, 1e-14);
+    /* there is still no room for a table */
+    const double values[12] = {0.0};
+    GM_ASSERT_INT(gm_flanks_set_table(&flanks, GM_DRIVE, 0, values, 1.0), GM_ERR_MEMORY);
+}
+
+static void ramps_that_cannot_be_change_nothing(void) {
+    gm_flanks flanks = small_flanks(&small_sizes);
+    gm_flank_ramp ramps[GM_FLANK_RAMPS_MAX + 1];
+    for (int k = 0; k <= GM_FLANK_RAMPS_MAX; k++) {
+        ramps[k] = (gm_flank_ramp){1e-6, -2e-6, 0.5e-6};
+    }
+    GM_ASSERT_INT(gm_flanks_set_ramps(&flanks, GM_COAST, ramps, GM_FLANK_RAMPS_MAX, 1.0), GM_OK);
+    GM_ASSERT_INT(flanks.coast.ramp_count, GM_FLANK_RAMPS_MAX);
+    const gm_flanks before = flanks;
+    GM_ASSERT_INT(gm_flanks_set_ramps(&flanks, 2, ramps, 1, 1.0), GM_ERR_TOOTH);
+    GM_ASSERT_INT(gm_flanks_set_ramps(&flanks, -1, ramps, 1, 1.0), GM_ERR_TOOTH);
+    GM_ASSERT_INT(gm_flanks_set_ramps(&flanks, GM_COAST, ramps, -1, 1.0), GM_ERR_PARAMETER);
+    GM_ASSERT_INT(gm_flanks_set_ramps(&flanks, GM_COAST, ramps, GM_FLANK_RAMPS_MAX + 1, 1.0),
+                  GM_ERR_PARAMETER);
+    static const double factors[] = {0.0, -1.0, NAN};
+    for (int k = 0; k < 3; k++) {
+        GM_ASSERT_INT(gm_flanks_set_ramps(&flanks, GM_COAST, ramps, 1, factors[k]),
+                      GM_ERR_PARAMETER);
+    }
+    static const double bad[] = {NAN, HUGE_VAL, -HUGE_VAL, 1e308};
+    for (int k = 0; k < 4; k++) {
+        for (int field = 0; field < 3; field++) {
+            gm_test_context("field %d = %g", field, bad[k]);
+            gm_flank_ramp wrong[2] = {{3e-6, 0.0, 0.0}, {0.0, 0.0, 0.0}};
+            double *const fields[] = {&wrong[1].offset, &wrong[1].per_t1, &wrong[1].per_t2};
+            *fields[field] = bad[k];
+            GM_ASSERT_INT(gm_flanks_set_ramps(&flanks, GM_COAST, wrong, 2, 2.0), GM_ERR_DEVIATION);
+        }
+    }
+    GM_ASSERT(memcmp(&before, &flanks, sizeof flanks) == 0);
+}
+
+/* ---------------------------------------------------------------------------------------------
  * Refusals
  * ------------------------------------------------------------------------------------------- */
 
@@ -382,6 +442,8 @@ int main(int argc, char **argv) {
         GM_TEST(the_callers_table_is_copied),
         GM_TEST(pitch_deviations_replace_each_other),
         GM_TEST(peak_is_the_most_material_of_any_tooth),
+        GM_TEST(ramps_replace_each_other_and_take_the_factor),
+        GM_TEST(ramps_that_cannot_be_change_nothing),
         GM_TEST(teeth_and_sides_that_do_not_exist_are_refused),
         GM_TEST(deviations_that_are_no_numbers_change_nothing),
         GM_TEST(flanks_of_another_gear_are_refused),

@@ -123,19 +123,25 @@ class Notes(Case):
                      "*_{tip,root}_corner_{I,II}_width_mm"]:
             self.assertEqual(part.count(f"  {name} "), 1, name)
 
-    def test_grid_and_error_are_noted(self):
-        text = self.stderr("pinion_drive_tip_relief_um=10", "pinion_drive_tip_relief_share=0.2")
-        self.assertRegex(text, r"^run\.ini: note: \[modifications\] of pinion_drive: table of 2 x 6 nodes, off by at most "
-                               r"\S+e-1\d um\n$")
+    def test_ramps_grid_and_error_are_noted(self):
+        relief = ["pinion_drive_tip_relief_um=10", "pinion_drive_tip_relief_share=0.2"]
+        start = "run.ini: note: [modifications] of pinion_drive: "
+        self.assertEqual(self.stderr(*relief), start + "1 linear relief, exact\n")
+        table = re.escape(start) + r"%stable of 2 x %d nodes, off by at most %s um\n$"
+        self.assertRegex(self.stderr("pinion_drive_profile_slope_um=5"), "^" + table % ("", 2, r"\S+e-1\d"))
+        corner = ["pinion_drive_tip_corner_I_um=20", "pinion_drive_tip_corner_I_width_mm=4", "pinion_drive_tip_corner_I_share=0.3"]
+        self.assertRegex(self.stderr(*relief, *corner, "pinion_drive_profile_crowning_um=2"),
+                         "^" + table % ("2 linear reliefs, exact; ", 16, r"0\.00889"))  # 2 um / 15^2, and 14 cells are too few
         result = self.accepted("run.ini", "--check", "--quiet", *settings("pinion_crowning_um=10"))
         self.assertEqual(result.stderr, "")
 
     def test_missed_tolerance_is_warned_of(self):
-        text = self.stderr("pinion_drive_tip_corner_I_um=20", "pinion_drive_tip_corner_I_width_mm=4",
-                           "pinion_drive_tip_corner_I_share=0.3")
-        self.assertRegex(text, r"modifications\.tolerance_um: warning: missed: the table of pinion_drive .* by up to 0\.0\d+ um")
-        text = self.stderr("pinion_drive_tip_corner_I_um=20", "pinion_drive_tip_corner_I_width_mm=4",
-                           "pinion_drive_tip_corner_I_share=0.3", "tolerance_um=0.2")
+        corner = ["pinion_drive_tip_corner_I_um=20", "pinion_drive_tip_corner_I_width_mm=4", "pinion_drive_tip_corner_I_share=0.3"]
+        text = self.stderr(*corner, "pinion_drive_tip_corner_I_shape=parabolic", "tolerance_um=1e-4")
+        self.assertRegex(text, r"modifications\.tolerance_um: warning: missed: the table of pinion_drive .* by up to 0\.00\d+ um")
+        text = self.stderr(*corner, "pinion_drive_tip_corner_I_shape=parabolic", "tolerance_um=0.2")
+        self.assertNotIn("warning", text)
+        text = self.stderr(*corner, "tolerance_um=1e-4")  # linear: exact, whatever the tolerance
         self.assertNotIn("warning", text)
 
     def test_keys_that_change_nothing_are_warned_of(self):
@@ -166,13 +172,18 @@ class Notes(Case):
         result = self.accepted("run.ini", "--geometry", *settings("pinion_tip_relief_um=3"))
         self.assertEqual(result.stderr, "")
 
-    def test_result_says_which_table_it_used(self):
-        _, head = self.run_te(*STATIC, *settings("wheel_coast_tip_relief_um=10", "wheel_coast_tip_relief_share=0.25"))
-        for line in ["# modifications.wheel_coast_tip_relief_um = 10", "# wheel_coast_modification_face_nodes = 2",
-                     "# wheel_coast_modification_profile_nodes = 5"]:
-            self.assertIn(line, head)
-        self.assertEqual(sum("wheel_coast_modification_error_um = " in line for line in head), 1)
-        self.assertFalse(any("_modification_" in line and "wheel_coast" not in line for line in head))
+    def test_result_says_what_held_the_design(self):
+        relief = settings("wheel_coast_tip_relief_um=10", "wheel_coast_tip_relief_share=0.25")
+        _, head = self.run_te(*STATIC, *relief)
+        self.assertIn("# modifications.wheel_coast_tip_relief_um = 10", head)
+        notes = [line for line in head if "_modification_" in line]
+        self.assertEqual(notes, ["# wheel_coast_modification_ramps = 1", "# wheel_coast_modification_error_um = 0"])
+        _, head = self.run_te(*STATIC, *relief, *settings("wheel_coast_crowning_um=3"))
+        notes = [line for line in head if "_modification_" in line]
+        self.assertEqual(notes[:3], ["# wheel_coast_modification_ramps = 1", "# wheel_coast_modification_face_nodes = 19",
+                                     "# wheel_coast_modification_profile_nodes = 2"])
+        self.assertRegex(notes[3], r"^# wheel_coast_modification_error_um = 0\.009")
+        self.assertEqual(len(notes), 4)
 
 
 class Runs(Case):
@@ -219,15 +230,14 @@ class Runs(Case):
 
     def test_example_has_no_transmission_error_at_its_load(self):
         # test_flank_design.c derives it: 0 at the design load, C / 4 at half of it, F / (2 K) without relief.
-        self.assertLess(self.spread(), 0.01)  # the tolerance of the table
-        self.assertLess(self.spread(*settings("tolerance_um=1e-4")), 2e-4)
+        self.assertLess(self.spread(), 2e-6)  # load and length are given to seven digits, 2e-6 um of 20 um
         self.assertAlmostEqual(self.spread("--set", "load.mean_Nm=36.507"), 5, delta=0.05)
         plain = settings("pinion_tip_relief_um=0", "wheel_tip_relief_um=0")
         self.assertAlmostEqual(self.spread(*plain), 10, delta=0.01)
 
     def test_example_is_accepted_with_notes_alone(self):
         text = self.accepted(RELIEF, "--check").stderr
-        self.assertEqual(len(re.findall(r"(?m)^\S+: note: \[modifications\] of \w+: table of 2 x \d+ nodes", text)), 4)
+        self.assertEqual(len(re.findall(r"(?m)^\S+: note: \[modifications\] of \w+: 1 linear relief, exact$", text)), 4)
         self.assertEqual(text.count("\n"), 4)
 
 

@@ -148,12 +148,13 @@ static int build(void) {
     return gm_flanks_build(&flanks, &memory, TEETH, &deviations, &pitch, NULL, &error);
 }
 
-/* The same with a crowning on both sides. */
+/* The same with a crowning and a ramp on both sides. */
 static int build_with_design(void) {
-    const gm_modification crowning = {
-        .kind = GM_MOD_CROWNING, .shape = GM_SHAPE_PARABOLIC, .amount = 5e-6};
+    const gm_modification list[] = {
+        {.kind = GM_MOD_CROWNING, .shape = GM_SHAPE_PARABOLIC, .amount = 5e-6},
+        {.kind = GM_MOD_END_RELIEF_I, .amount = 5e-6, .face_range = 2e-3}};
     const gm_gear gear = {.teeth = TEETH, .tip_radius = 2e-2, .tip_roll_length = 1e-2};
-    const gm_modifications design = {&crowning, 1, &gear, 1e-2};
+    const gm_modifications design = {list, 2, &gear, 1e-2};
     gm_flanks_options options;
     gm_flanks_options_default(&options);
     options.drive_modifications = options.coast_modifications = &design;

@@ -517,6 +517,78 @@ static void the_table_is_added_to_what_is_there(void) {
 }
 
 /* ---------------------------------------------------------------------------------------------
+ * Ramps
+ * ------------------------------------------------------------------------------------------- */
+
+static gm_flank_ramp ramps[GM_FLANK_RAMPS_MAX];
+static int ramp_count;
+static gm_modification rest_list[GM_MODIFICATIONS_MAX];
+static gm_modifications rest;
+
+static void split(void) {
+    rest = design;
+    rest.list = rest_list;
+    GM_ASSERT_INT(gm_modifications_split(&design, ramps, &ramp_count, rest_list, &rest.count),
+                  GM_OK);
+}
+
+/* By the definition of a ramp. */
+static double parts_at(double t1, double t2) {
+    double sum = gm_modifications_value(&rest, t1, t2);
+    for (int k = 0; k < ramp_count; k++) {
+        sum -= fmax(0.0, ramps[k].offset + ramps[k].per_t1 * t1 + ramps[k].per_t2 * t2);
+    }
+    return sum;
+}
+
+static void ramps_and_the_rest_are_the_design(void) {
+    uint64_t seed = 77;
+    int linear = 0;
+    for (int round = 0; round < 300; round++) {
+        begin();
+        const int count = gm_test_integer(&seed, 0, MOST);
+        int expected = 0;
+        for (int k = 0; k < count; k++) {
+            const int kind = gm_test_integer(&seed, 0, GM_MODIFICATION_KINDS - 1);
+            const int shape = gm_test_integer(&seed, first_shape(kind), GM_SHAPE_CIRCULAR);
+            gm_modification *m = add(kind, shape, gm_test_uniform(&seed, 1, 30) * UM);
+            m->face_range = gm_test_uniform(&seed, 0.1, 1.0) * pair.face_width;
+            m->profile_range = gm_test_uniform(&seed, 0.1, 1.0);
+            expected += is_relief(kind) && shape == GM_SHAPE_LINEAR;
+        }
+        split();
+        gm_test_context("round %d", round);
+        GM_ASSERT_INT(ramp_count, expected);
+        GM_ASSERT_INT(rest.count, count - expected);
+        linear += expected;
+        for (int k = 0; k < 100; k++) {
+            const double t1 = k % 10 == 0 ? 1.0 : gm_test_uniform(&seed, 0.0, 1.0);
+            const double t2 = k % 7 == 0 ? 0.0 : gm_test_uniform(&seed, 0.0, 1.0);
+            /* roundings of 30 um, ten times magnified by the range, in each of eight */
+            GM_ASSERT_ABS(parts_at(t1, t2), value(t1, t2), 8 * 10 * 4 * 0x1p-53 * 30 * UM);
+        }
+    }
+    GM_ASSERT(linear > 200);
+}
+
+static void more_ramps_than_flanks_hold_are_left_for_a_table(void) {
+    static gm_modification many[GM_FLANK_RAMPS_MAX + 3];
+    begin();
+    for (int k = 0; k < GM_FLANK_RAMPS_MAX + 3; k++) {
+        many[k] = (gm_modification){
+            GM_MOD_TIP_RELIEF, GM_SHAPE_LINEAR, GM_RANGE_SHARE, (k == 1) ? 0.0 : k * UM, 0.0,
+            0.05 * (k + 1)};
+    }
+    many[0].kind = GM_MOD_TWIST; /* without an amount, as the second one: nothing is left of them */
+    design = (gm_modifications){many, GM_FLANK_RAMPS_MAX + 3, &pair.pinion, pair.face_width};
+    split();
+    GM_ASSERT_INT(ramp_count, GM_FLANK_RAMPS_MAX);
+    GM_ASSERT_INT(rest.count, 1);
+    GM_ASSERT_REL(rest_list[0].amount, (GM_FLANK_RAMPS_MAX + 2) * UM, 0.0);
+    GM_ASSERT_REL(parts_at(0.3, 0.9), value(0.3, 0.9), 1e-13);
+}
+
+/* ---------------------------------------------------------------------------------------------
  * What is refused
  * ------------------------------------------------------------------------------------------- */
 
@@ -538,6 +610,11 @@ static void refused(const char *field, int index) {
     GM_ASSERT_NAN(grid.error);
     GM_ASSERT_INT(gm_modifications_add(&design, 2, 2, nodes), GM_ERR_PARAMETER);
     GM_ASSERT_REL(nodes[0], 1.0, 0.0);
+    ramp_count = rest.count = 7;
+    GM_ASSERT_INT(gm_modifications_split(&design, ramps, &ramp_count, rest_list, &rest.count),
+                  GM_ERR_PARAMETER);
+    GM_ASSERT_INT(ramp_count, 0);
+    GM_ASSERT_INT(rest.count, 0);
 }
 
 /* The second of two modifications, so that the index tells something. */
@@ -638,6 +715,12 @@ static void calls_that_cannot_be_done_are_refused(void) {
     GM_ASSERT_INT(gm_modifications_grid_find(&design, 2, 2, 1e-8, NULL), GM_ERR_NULL);
     GM_ASSERT_INT(gm_modifications_add(NULL, 2, 2, nodes), GM_ERR_NULL);
     GM_ASSERT_INT(gm_modifications_add(&design, 2, 2, NULL), GM_ERR_NULL);
+    int count;
+    GM_ASSERT_INT(gm_modifications_split(NULL, ramps, &count, rest_list, &count), GM_ERR_NULL);
+    GM_ASSERT_INT(gm_modifications_split(&design, NULL, &count, rest_list, &count), GM_ERR_NULL);
+    GM_ASSERT_INT(gm_modifications_split(&design, ramps, NULL, rest_list, &count), GM_ERR_NULL);
+    GM_ASSERT_INT(gm_modifications_split(&design, ramps, &count, NULL, &count), GM_ERR_NULL);
+    GM_ASSERT_INT(gm_modifications_split(&design, ramps, &count, rest_list, NULL), GM_ERR_NULL);
     static const int bad_nodes[] = {1, 0, -5, 10001};
     for (int k = 0; k < 4; k++) {
         GM_ASSERT_INT(gm_modifications_grid_find(&design, bad_nodes[k], 2, 1e-8, &grid),
@@ -682,6 +765,8 @@ int main(int argc, char **argv) {
         GM_TEST(a_given_grid_beyond_the_limit_is_taken_as_it_is),
         GM_TEST(no_modifications_need_no_grid),
         GM_TEST(the_table_is_added_to_what_is_there),
+        GM_TEST(ramps_and_the_rest_are_the_design),
+        GM_TEST(more_ramps_than_flanks_hold_are_left_for_a_table),
         GM_TEST(what_is_out_of_range_is_refused),
         GM_TEST(ranges_beyond_the_flank_are_refused),
         GM_TEST(the_whole_flank_is_the_longest_range),

@@ -209,6 +209,21 @@ static int opposite_space(int tooth, int teeth) {
     return teeth - 1 - tooth;
 }
 
+/** Ramps of side `from` on `side` of the image. */
+static int image_ramps(const random_flanks *original, gm_flanks *image, int from, int side,
+                       int turn_face) {
+    gm_flank_ramp ramps[GM_FLANK_RAMPS_MAX];
+    const int count = original->model.ramp_count[from];
+    for (int k = 0; k < count; k++) {
+        const model_ramp *ramp = &original->model.ramp[from][k];
+        ramps[k].offset =
+            (double)(ramp->factor * (ramp->offset + (turn_face ? ramp->per_t1 : 0.0)));
+        ramps[k].per_t1 = (double)(ramp->factor * (turn_face ? -ramp->per_t1 : ramp->per_t1));
+        ramps[k].per_t2 = (double)(ramp->factor * ramp->per_t2);
+    }
+    return GM_ASSERT_INT(gm_flanks_set_ramps(image, side, ramps, count, 1.0), GM_OK);
+}
+
 /** Flanks of an image of the gear: teeth renumbered, sides exchanged, face turned round. */
 static int image_flanks(const random_flanks *original, gm_flanks *image, void **memory,
                         tooth_map *map, int exchange_sides, int turn_face) {
@@ -230,6 +245,7 @@ static int image_flanks(const random_flanks *original, gm_flanks *image, void **
     int good = GM_ASSERT_INT(gm_flanks_init(image, &sizes, *memory, size), GM_OK);
     for (int side = 0; side < 2; side++) {
         const int from = exchange_sides ? 1 - side : side;
+        good &= image_ramps(original, image, from, side, turn_face);
         const int n1 = nodes[side][0];
         const int n2 = nodes[side][1];
         double *values = malloc((size_t)(n1 * n2) * sizeof *values);

@@ -358,7 +358,7 @@ static void discard(prepared *p) {
 
 /** Makes the flanks of one gear for the second model; the tables stay those of the case. */
 static model_flanks model_flanks_of(const case_record *c, int gear, const model_pair *pair) {
-    model_flanks flanks;
+    model_flanks flanks = {0};
     const long double factor = c->is_normal ? 1.0L / cosl(pair->beta_b) : 1.0L;
     const int teeth = pair->teeth[gear];
     for (int side = 0; side < 2; side++) {

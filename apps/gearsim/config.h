@@ -106,7 +106,7 @@ typedef struct config {
 } config;
 
 /* Room for config_note(). */
-enum { PROVENANCE_NOTES = 16 };
+enum { PROVENANCE_NOTES = 24 };
 
 /* Exit codes of gearsim. */
 enum exit_code { EXIT_DONE = 0, EXIT_RUN_FAILED = 1, EXIT_BAD_INPUT = 2, EXIT_INTERRUPTED = 130 };

@@ -227,33 +227,53 @@ static gm_flanks_options flank_options(const config *conf, const gm_pair *pair) 
 static const char *const flank_names[2][2] = {{"pinion_drive", "pinion_coast"},
                                               {"wheel_drive", "wheel_coast"}};
 
-/* How true the table of a design is: a note, or a warning where the tolerance is missed. */
-static void note_design(const config *conf, const char *flank, const gm_modifications_grid *grid) {
+/* What holds a design and how true it is: a note, or a warning where the tolerance is missed. */
+static void note_design(const config *conf, const char *flank, const design_form *form) {
     const char *key = "modifications.tolerance_um";
+    const gm_modifications_grid *grid = &form->grid;
+    char ramps[64] = "", table[128] = "";
 
     if (grid->error > conf->modification_tolerance)
         config_warn(conf, key,
                     "missed: the table of %s with %d x %d nodes is off by up to %.3g um, a finer "
                     "one would have too many nodes",
                     flank, grid->face_nodes, grid->profile_nodes, 1e6 * grid->error);
-    else if (!conf->quiet)
-        fprintf(stderr,
-                "%s: note: [modifications] of %s: table of %d x %d nodes, off by at most %.3g um\n",
-                conf->path, flank, grid->face_nodes, grid->profile_nodes, 1e6 * grid->error);
+    else if (!conf->quiet) {
+        if (form->ramps > 0)
+            snprintf(ramps, sizeof ramps, "%d linear relief%s, exact", form->ramps,
+                     form->ramps > 1 ? "s" : "");
+        if (grid->face_nodes > 0)
+            snprintf(table, sizeof table, "table of %d x %d nodes, off by at most %.3g um",
+                     grid->face_nodes, grid->profile_nodes, 1e6 * grid->error);
+        fprintf(stderr, "%s: note: [modifications] of %s: %s%s%s\n", conf->path, flank, ramps,
+                ramps[0] != '\0' && table[0] != '\0' ? "; " : "", table);
+    }
 }
 
-/* The grids that gm_flanks_build() will find as well. */
-static void find_grids(gearbox *box, const config *conf, int gear, const gear_design *design,
-                       const gm_deviations *deviations) {
-    const int face_nodes = deviations != NULL ? deviations->face_nodes : 2;
-    const int profile_nodes = deviations != NULL ? deviations->profile_nodes : 2;
+/* What gm_flanks_build() will find as well. */
+static design_form form_of(const gm_modifications *design, const config *conf,
+                           const gm_deviations *deviations) {
+    gm_flank_ramp ramps[GM_FLANK_RAMPS_MAX];
+    gm_modification list[GM_MODIFICATION_KINDS];
+    gm_modifications rest = *design;
+    design_form form = {0};
 
+    rest.list = list;
+    (void)gm_modifications_split(design, ramps, &form.ramps, list, &rest.count);
+    if (rest.count > 0)
+        (void)gm_modifications_grid_find(&rest, deviations != NULL ? deviations->face_nodes : 2,
+                                         deviations != NULL ? deviations->profile_nodes : 2,
+                                         conf->modification_tolerance, &form.grid);
+    return form;
+}
+
+static void find_forms(gearbox *box, const config *conf, int gear, const gear_design *design,
+                       const gm_deviations *deviations) {
     for (int side = GM_DRIVE; side <= GM_COAST; ++side) {
-        gm_modifications_grid *grid = &box->modification_grid[gear][side];
-        if (design->of[side].count > 0 &&
-            gm_modifications_grid_find(&design->of[side], face_nodes, profile_nodes,
-                                       conf->modification_tolerance, grid) == GM_OK)
-            note_design(conf, flank_names[gear][side], grid);
+        design_form *form = &box->design_form[gear][side];
+        *form = form_of(&design->of[side], conf, deviations);
+        if (form->ramps > 0 || form->grid.face_nodes > 0)
+            note_design(conf, flank_names[gear][side], form);
     }
 }
 
@@ -275,7 +295,7 @@ static int build_flanks(gearbox *box, const config *conf, const flank_task *task
     options.drive_modifications = &design->of[GM_DRIVE];
     options.coast_modifications = &design->of[GM_COAST];
     options.modification_tolerance = conf->modification_tolerance;
-    find_grids(box, conf, gear, design, deviations);
+    find_forms(box, conf, gear, design, deviations);
     if (gm_flanks_build(&box->flank_storage[gear], &box->flank_memory[gear], task->teeth,
                         deviations, pitch, &options, &error) == GM_IO_OK)
         return 0;
@@ -422,18 +442,23 @@ void gearbox_print_geometry(const gearbox *box, const config *conf, FILE *stream
     print_value(stream, "mesh_frequency_per_rpm_Hz", box->pair.pinion.teeth / 60.0);
 }
 
-/* The table that stands for a design. */
-static void note_grid(config *conf, const char *flank, const gm_modifications_grid *grid) {
+static void note_value(config *conf, const char *flank, const char *what, double value) {
     char name[64];
 
-    if (grid->face_nodes == 0)
+    snprintf(name, sizeof name, "%s_modification_%s", flank, what);
+    config_note(conf, name, value);
+}
+
+/* What holds a design. */
+static void note_form(config *conf, const char *flank, const design_form *form) {
+    if (form->ramps == 0 && form->grid.face_nodes == 0)
         return;
-    snprintf(name, sizeof name, "%s_modification_face_nodes", flank);
-    config_note(conf, name, grid->face_nodes);
-    snprintf(name, sizeof name, "%s_modification_profile_nodes", flank);
-    config_note(conf, name, grid->profile_nodes);
-    snprintf(name, sizeof name, "%s_modification_error_um", flank);
-    config_note(conf, name, 1e6 * grid->error);
+    note_value(conf, flank, "ramps", form->ramps);
+    if (form->grid.face_nodes > 0) {
+        note_value(conf, flank, "face_nodes", form->grid.face_nodes);
+        note_value(conf, flank, "profile_nodes", form->grid.profile_nodes);
+    }
+    note_value(conf, flank, "error_um", 1e6 * form->grid.error);
 }
 
 void gearbox_note(const gearbox *box, config *conf) {
@@ -441,7 +466,7 @@ void gearbox_note(const gearbox *box, config *conf) {
 
     for (int gear = 0; gear < 2; ++gear)
         for (int side = GM_DRIVE; side <= GM_COAST; ++side)
-            note_grid(conf, flank_names[gear][side], &box->modification_grid[gear][side]);
+            note_form(conf, flank_names[gear][side], &box->design_form[gear][side]);
 
     if (isfinite(frequency))
         config_note(conf, "eigenfrequency_Hz", frequency);

@@ -7,6 +7,12 @@
 
 #include "config.h"
 
+/* What holds the design of a flank; all zero = no design. */
+typedef struct design_form {
+    int ramps;                  /* linear reliefs, exact */
+    gm_modifications_grid grid; /* of the table of the others, 0 nodes = none */
+} design_form;
+
 typedef struct gearbox {
     gm_pair pair;
     const gm_flanks *pinion_flanks; /* NULL = ideal */
@@ -14,8 +20,7 @@ typedef struct gearbox {
     double simple_stiffness; /* K_simple, N/m: of the simple model */
     double simple_damping;   /* D_simple = D eps_alpha, N s/m */
 
-    gm_modifications_grid
-        modification_grid[2][2]; /* [gear][side] of the tables, 0 nodes = no design */
+    design_form design_form[2][2]; /* [gear][side] */
 
     gm_flanks flank_storage[2];
     void *flank_memory[2];

@@ -70,7 +70,7 @@ static const key_spec keys[] = {
      .standard = "0.1", .used = FOR_3D, .help = "width of the ramps to zero outside that range"},
 
     {NAME("modifications", "tolerance_um"), NUMBER(UNIT_UM, {1e-5, HUGE_VAL, 0, 1}), INTO(modification_tolerance),
-     .standard = "0.01", .used = FOR_3D, .help = "how far the table of a design may be off"},
+     .standard = "0.01", .used = FOR_3D, .help = "how far the table of a design may be off; linear reliefs have none"},
     MODIFICATION_ROWS,
 
     {NAME("mesh", "model"), CHOICE("simple 3d"), INTO(model), .standard = "3d",

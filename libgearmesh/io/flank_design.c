@@ -1,7 +1,7 @@
 /* SPDX-FileCopyrightText: The gearmesh authors */
 /* SPDX-License-Identifier: BSD-3-Clause */
 
-/* The table of a flank's designed modifications, on a grid that refines that of the file. */
+/* The ramps of a flank's designed modifications, and the table of the others, on a grid that refines that of the file. */
 
 #include "flank_design.h"
 
@@ -31,9 +31,6 @@ static int fail_modification(const gm_modifications *modifications, gm_io_error 
 static int find_grid(gmi_design *design, const gm_modifications *modifications, double tolerance,
                      gm_io_error *error) {
     gm_modifications_grid grid;
-    if (gm_modifications_check(modifications, NULL, NULL, NULL) != GM_OK) {
-        return fail_modification(modifications, error);
-    }
     const int status = gm_modifications_grid_find(modifications, design->file_nodes[0],
                                                   design->file_nodes[1], tolerance, &grid);
     if (status != GM_OK) {
@@ -55,16 +52,23 @@ int gmi_design_make(gmi_design *design, const gm_modifications *modifications,
     const int has_file = deviations != NULL && deviations->set_count > 0;
     design->file_nodes[0] = has_file ? deviations->face_nodes : 2;
     design->file_nodes[1] = has_file ? deviations->profile_nodes : 2;
-    const int status = find_grid(design, modifications, tolerance, error);
-    if (status != GM_IO_OK) {
+    if (gm_modifications_check(modifications, NULL, NULL, NULL) != GM_OK) {
+        return fail_modification(modifications, error);
+    }
+    gm_modification list[GM_MODIFICATIONS_MAX];
+    gm_modifications rest = *modifications; /* what ramps leave for the table */
+    rest.list = list;
+    (void)gm_modifications_split(modifications, design->ramps, &design->ramp_count, list,
+                                 &rest.count); /* checked above: cannot fail */
+    const int status = find_grid(design, &rest, tolerance, error);
+    if (status != GM_IO_OK || rest.count == 0) {
         return status;
     }
     design->values = calloc(node_count(design), sizeof *design->values);
     if (design->values == NULL) {
         return gmi_error_set(error, GM_IO_ERR_MEMORY, 0, "out of memory");
     }
-    /* Checked above: cannot fail. */
-    (void)gm_modifications_add(modifications, design->nodes[0], design->nodes[1], design->values);
+    (void)gm_modifications_add(&rest, design->nodes[0], design->nodes[1], design->values);
     return GM_IO_OK;
 }
 

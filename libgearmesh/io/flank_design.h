@@ -3,7 +3,7 @@
 
 /**
  * @file flank_design.h
- * Designed modifications as a table, and what becomes of a file's table when they are added to it.
+ * Designed modifications as ramps and a table, and what becomes of a file's table when that is added to it.
  */
 #ifndef GEARMESH_FLANK_DESIGN_H
 #define GEARMESH_FLANK_DESIGN_H
@@ -12,13 +12,15 @@
 
 /** The design of one side of all teeth. All zero = none. */
 typedef struct gmi_design {
+    gm_flank_ramp ramps[GM_FLANK_RAMPS_MAX]; /**< linear reliefs, along the surface normal */
+    int ramp_count;
     int file_nodes[2]; /**< grid of the file's tables, along t1 and t2; 2 x 2 if there is no file */
     int nodes[2];      /**< grid of the design, which holds all nodes of the file's */
-    double *values;    /**< [nodes[0]][nodes[1]] modifications (m); NULL = no design */
+    double *values;    /**< [nodes[0]][nodes[1]] what ramps do not hold (m); NULL = nothing */
 } gmi_design;
 
 /**
- * Finds the grid and computes the table; free it with gmi_design_free() whatever this returns.
+ * Finds ramps and grid and computes the table; free it with gmi_design_free() whatever this returns.
  *
  * @param[in] modifications  NULL or none in its list: no design
  * @param[in] deviations     whose grid is to be kept; NULL = no file
@@ -27,7 +29,7 @@ int gmi_design_make(gmi_design *design, const gm_modifications *modifications,
                     const gm_deviations *deviations, double tolerance, gm_io_error *error);
 
 /**
- * Design plus a table of the file, between whose nodes it is bilinear.
+ * Table of the design plus one of the file, between whose nodes it is bilinear.
  *
  * @param[in]  deviation  [file_nodes[0]][file_nodes[1]]; NULL = zero
  * @param[out] table      [nodes[0]][nodes[1]]

@@ -80,13 +80,13 @@ static int shared_set(const builder *build, int side) {
     return set >= 0 ? set : build->set_of_slot[gmi_slot(GMI_ALL, GMI_ALL)];
 }
 
-static int has_design(const builder *build, int side) {
+static int has_design_table(const builder *build, int side) {
     return build->design[side].values != NULL;
 }
 
 /* A shared set takes one place, however many teeth it serves; so does the design of teeth without a set. */
 static int count_tables(const builder *build, int teeth, int side) {
-    int tables = has_design(build, side);
+    int tables = has_design_table(build, side);
     if (build->deviations == NULL) {
         return tables;
     }
@@ -125,16 +125,29 @@ static void fill_nodes(const builder *build, const double *values) {
     }
 }
 
-/* The table of a set with the design on top; set -1 = the design alone. */
+/* The table of a set with that of the design on top; set -1 = the latter alone. */
 static const double *make_table(const builder *build, int side, int set) {
     if (set >= 0) {
         fill_nodes(build, build->deviations->sets[set].values);
     }
-    if (!has_design(build, side)) {
+    if (!has_design_table(build, side)) {
         return build->nodes;
     }
     gmi_design_table(&build->design[side], set >= 0 ? build->nodes : NULL, build->table);
     return build->table;
+}
+
+static int fail_design(const builder *build, int status) {
+    return gmi_error_set(build->error, GM_IO_ERR_OPTION, 0,
+                         "the modifications cannot be used with these options: %s",
+                         gm_status_text(status));
+}
+
+static int set_ramps(const builder *build, int side) {
+    const gmi_design *design = &build->design[side];
+    const int status = gm_flanks_set_ramps(build->flanks, side, design->ramps, design->ramp_count,
+                                           build->options->normal_factor);
+    return status == GM_OK ? GM_IO_OK : fail_design(build, status);
 }
 
 static int set_table(const builder *build, int side, int tooth, int set) {
@@ -144,20 +157,18 @@ static int set_table(const builder *build, int side, int tooth, int set) {
         return GM_IO_OK;
     }
     if (set < 0) {
-        return gmi_error_set(build->error, GM_IO_ERR_OPTION, 0,
-                             "the modifications cannot be used with these options: %s",
-                             gm_status_text(status));
+        return fail_design(build, status);
     }
     return gmi_error_set(build->error, GM_IO_ERR_OPTION, 0,
                          "set %d of the deviations cannot be used with these options: %s", set,
                          gm_status_text(status));
 }
 
-static int set_tables(const builder *build, int side) {
+static int set_side(const builder *build, int side) {
     const int has_sets = build->deviations != NULL;
-    int status = GM_IO_OK;
+    int status = set_ramps(build, side);
     const int shared = has_sets ? shared_set(build, side) : -1;
-    if (shared >= 0 || has_design(build, side)) {
+    if (status == GM_IO_OK && (shared >= 0 || has_design_table(build, side))) {
         status = set_table(build, side, GM_ALL_TEETH, shared);
     }
     for (int tooth = 0; has_sets && status == GM_IO_OK && tooth < build->flanks->teeth; tooth++) {
@@ -192,7 +203,7 @@ static int set_pitch(const builder *build, int side, const double *deviation, co
 
 /* Grid lines of one side along t1 (axis 0) or t2 (axis 1). */
 static int grid_nodes(const builder *build, int side, int axis) {
-    if (has_design(build, side)) {
+    if (has_design_table(build, side)) {
         return build->design[side].nodes[axis];
     }
     if (build->deviations == NULL) {
@@ -241,7 +252,7 @@ static int allocate_table(double **table, size_t nodes, gm_io_error *error) {
 }
 
 static size_t design_size(const gmi_design *design) {
-    return (size_t)design->nodes[0] * (size_t)design->nodes[1];
+    return design->values == NULL ? 0 : (size_t)design->nodes[0] * (size_t)design->nodes[1];
 }
 
 /* Room for one table of a set, and for one with the design on top. */
@@ -261,10 +272,10 @@ static int allocate_tables(builder *build) {
 static int fill_flanks(builder *build, const gm_pitch *pitch) {
     int status = allocate_tables(build);
     if (status == GM_IO_OK) {
-        status = set_tables(build, GM_DRIVE);
+        status = set_side(build, GM_DRIVE);
     }
     if (status == GM_IO_OK) {
-        status = set_tables(build, GM_COAST);
+        status = set_side(build, GM_COAST);
     }
     if (status == GM_IO_OK && pitch != NULL) {
         status = set_pitch(build, GM_DRIVE, pitch->drive, pitch->drive_set);

@@ -55,6 +55,7 @@ static double *side_init(gm_flank_tables *side, int tables, int face_nodes, int 
     side->profile_nodes = tables == 0 ? 0 : profile_nodes;
     side->capacity = tables;
     side->count = 0;
+    side->ramp_count = 0;
     side->peak = 0.0;
     side->values = doubles;
     doubles +=
@@ -210,5 +211,31 @@ int gm_flanks_set_pitch(gm_flanks *flanks, int side, int tooth, double deviation
             tables->pitch[k] = deviation;
     }
     update_peak(flanks, tables, tooth, before);
+    return GM_OK;
+}
+
+int gm_flanks_set_ramps(gm_flanks *flanks, int side, const gm_flank_ramp *ramps, int count,
+                        double factor) {
+    if (flanks == NULL || (ramps == NULL && count > 0))
+        return GM_ERR_NULL;
+    gm_flank_tables *tables = side_of(flanks, side);
+    if (tables == NULL)
+        return GM_ERR_TOOTH;
+    if (count < 0 || count > GM_FLANK_RAMPS_MAX || !(factor > 0.0))
+        return GM_ERR_PARAMETER;
+
+    gm_flank_ramp scaled[GM_FLANK_RAMPS_MAX];
+    for (int k = 0; k < count; ++k) {
+        const gm_flank_ramp ramp = {factor * ramps[k].offset, factor * ramps[k].per_t1,
+                                    factor * ramps[k].per_t2};
+        if (!gmi_is_finite(ramp.offset) || !gmi_is_finite(ramp.per_t1) ||
+            !gmi_is_finite(ramp.per_t2))
+            return GM_ERR_DEVIATION;
+        scaled[k] = ramp;
+    }
+    memcpy(tables->ramps, scaled, (size_t)count * sizeof scaled[0]);
+    tables->ramp_count = count;
+    if (tables->capacity == 0)
+        tables->face_nodes = tables->profile_nodes = 2; /* places on the flank are then in t1, t2 */
     return GM_OK;
 }

@@ -3,7 +3,7 @@
 
 /*
  * What the sources of the core share and users never see. Dependencies run one way:
- * gear -> pair -> position -> contact -> flank -> line -> penetration -> force -> wrench, equilibrium.
+ * gear -> pair -> position -> contact -> flank -> line -> ramp -> penetration -> force -> wrench, equilibrium.
  */
 #ifndef GEARMESH_INTERNAL_H
 #define GEARMESH_INTERNAL_H
@@ -149,7 +149,8 @@ static inline gmi_flank gmi_flank_of(const gm_flank_tables *tables, int tooth) {
 /*
  * How the lines of one side run through the tables of one gear: the same for all its teeth and all lines. Lines are
  * followed in grid units: v1 = face_rate t1 across the face, s = v1 of the table whose face lines lead, and along
- * the profile u = v2 counted in the direction in which the lines climb. All zero for ideal flanks.
+ * the profile u = v2 counted in the direction in which the lines climb. All zero for ideal flanks; a flank with ramps
+ * and no tables is one cell, so that v2 = t2.
  */
 typedef struct gmi_grid {
     int last_face, last_profile; /* indices of the last cell */
@@ -171,10 +172,11 @@ typedef struct gmi_grid {
 /* climb: d rho / d t1 of this gear along a line, signed (m); length: rho from start to tip (m). */
 void gmi_grid_init(gmi_grid *grid, const gm_flank_tables *tables, double climb, double length);
 
-/* One line: t1 from `from` to `to`, with f = gap + deviations of both flanks. */
+/* One line: t1 from `from` to `to`, with f = gap + 2 half_slope (t1 - from) + tables of both flanks. */
 typedef struct gmi_line {
     double from, to;
-    double gap;           /* delta and both pitch deviations (m) */
+    double gap;           /* delta, both pitch deviations, and ramps (m) */
+    double half_slope;    /* half of what the ramps make of d f / d t1 (m) */
     const double *pinion; /* table, NULL = none */
     const double *wheel;
     double pinion_profile; /* v2 of the pinion's table at t1 = 0 */
@@ -195,6 +197,11 @@ typedef struct gmi_line_sum {
 
 void gmi_line_integrate(const gmi_line *line, const gmi_grid *pinion, const gmi_grid *wheel,
                         int wanted, gmi_line_sum *result);
+
+/* ramp.c: gmi_line_integrate() with the ramps of both flanks, NULL = none, taken off; line->half_slope is 0. */
+void gmi_ramps_integrate(const gmi_line *line, const gmi_grid *pinion, const gmi_grid *wheel,
+                         const gm_flank_tables *pinion_tables, const gm_flank_tables *wheel_tables,
+                         int wanted, gmi_line_sum *result);
 
 /* penetration.c: the sums over all lines of one side. */
 void gmi_side_sum_3d(const gm_pair *pair, const gm_flanks *pinion_flanks,

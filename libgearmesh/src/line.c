@@ -2,7 +2,7 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 
 /*
- * The integral of max(0, f) along one line of contact, f = gap + deviation of both flanks, exactly.
+ * The integral of max(0, f) along one line of contact, f = gap + 2 half_slope (t1 - from) + tables of both flanks, exactly.
  *
  * In grid units the line climbs straight through a flank's table, and within a cell the bilinear surface is quadratic
  * along it. At a grid line only slope and curvature change, by the second difference of the nodes across that grid
@@ -355,11 +355,16 @@ SPECIALIZED void walk(walk_state at, const gmi_grid *first, const gmi_grid *seco
     result->at_to = at.f.value;
 }
 
-/* No table on either flank: f is the same all along. */
-static void integrate_ideal(const gmi_line *line, gmi_line_sum *result) {
+/* No table on either flank: f is the same all along, or straight where there are ramps. */
+static void integrate_ideal(const gmi_line *line, int wanted, gmi_line_sum *result) {
     const double length = line->to - line->from;
-    result->at_from = result->at_to = line->gap;
-    if (line->gap > 0.0) {
+    result->at_from = line->gap;
+    result->at_to = line->gap + length * (2.0 * line->half_slope);
+    if (line->half_slope != 0.0) {
+        const quadratic f = {line->gap, line->half_slope, 0.0};
+        const piece part = {line->from, length, f, 0.0, 0.0, 0.0, 0.0};
+        add_split(&part, wanted, result);
+    } else if (line->gap > 0.0) {
         result->sum = line->gap * length;
         result->contact = length;
         result->contact_t1 = 0.5 * length * (line->from + line->to);
@@ -381,7 +386,7 @@ static void integrate_tables(const gmi_line *line, const gmi_grid *first, const 
     walk_state at; /* every field is set below; zeroing all first costs as much as ten pieces */
     at.s = s;
     at.faces = (double)face;
-    at.f = (quadratic){line->gap, 0.0, 0.0};
+    at.f = (quadratic){line->gap, line->half_slope / first->face_rate, 0.0};
     at.three_sums = at.contact = at.two_first = at.two_second = 0.0;
     at.first.faces = cell_of(to, first->last_face) - face;
     double end = smaller(to - (double)face, begin(&at.first, first, first_table, first_profile,
@@ -430,6 +435,6 @@ void gmi_line_integrate(const gmi_line *line, const gmi_grid *pinion, const gmi_
         result->wheel = result->pinion;
         result->pinion = 0.0;
     } else {
-        integrate_ideal(line, result);
+        integrate_ideal(line, wanted, result);
     }
 }

@@ -288,6 +288,49 @@ int gm_modifications_add(const gm_modifications *modifications, int face_nodes, 
 }
 
 /* ---------------------------------------------------------------------------------------------
+ * Ramps
+ * ------------------------------------------------------------------------------------------- */
+
+/* amount * share_of_range(), as a plane. */
+static gm_flank_ramp ramp_of(const gm_modifications *of, const gm_modification *m) {
+    gm_flank_ramp ramp = {m->amount, 0.0, 0.0};
+    if (has_face_range(m->kind)) {
+        const double rise = m->amount / range_share(of, m, FACE);
+        ramp.per_t1 = is_at_face_ii(m->kind) ? rise : -rise;
+        ramp.offset -= is_at_face_ii(m->kind) ? rise : 0.0;
+    }
+    if (has_profile_range(m->kind)) {
+        const double rise = m->amount / range_share(of, m, PROFILE);
+        ramp.per_t2 = is_at_tip(m->kind) ? rise : -rise;
+        ramp.offset -= is_at_tip(m->kind) ? rise : 0.0;
+    }
+    return ramp;
+}
+
+int gm_modifications_split(const gm_modifications *modifications,
+                           gm_flank_ramp ramps[GM_FLANK_RAMPS_MAX], int *ramp_count,
+                           gm_modification *rest, int *rest_count) {
+    if (ramp_count == NULL || rest_count == NULL)
+        return GM_ERR_NULL;
+    *ramp_count = *rest_count = 0;
+    const int status = status_of(modifications);
+    if (status != GM_OK)
+        return status;
+    if (ramps == NULL || (rest == NULL && modifications->count > 0))
+        return GM_ERR_NULL;
+    for (int k = 0; k < modifications->count; ++k) {
+        const gm_modification *m = &modifications->list[k];
+        if (m->amount == 0.0)
+            continue;
+        if (is_relief(m->kind) && m->shape == GM_SHAPE_LINEAR && *ramp_count < GM_FLANK_RAMPS_MAX)
+            ramps[(*ramp_count)++] = ramp_of(modifications, m);
+        else
+            rest[(*rest_count)++] = *m;
+    }
+    return GM_OK;
+}
+
+/* ---------------------------------------------------------------------------------------------
  * The grid
  * ------------------------------------------------------------------------------------------- */
 

@@ -5,7 +5,8 @@
  * The penetration models: simple [Paper, Eqs. 9-11] and 3D [Paper, Eqs. 12-25].
  *
  * 3D: the sum over all lines of the integral of max(0, delta + deviations) over t1. Between ideal flanks that is delta
- * times the clipped length; with tables line.c integrates along each line. No slices, no quadrature error.
+ * times the clipped length; with tables line.c integrates along each line, ramp.c where there are linear reliefs. No
+ * slices, no quadrature error.
  */
 #include "internal.h"
 
@@ -28,6 +29,7 @@ typedef struct side_view {
     const gm_flank_tables *wheel_tables;
     gmi_grid pinion_grid;
     gmi_grid wheel_grid;
+    int ramps;          /* of both flanks */
     double wheel_reach; /* rho_w - start of the wheel's flank = wheel_reach - rho_p (m) */
 } side_view;
 
@@ -83,13 +85,18 @@ static void add_line(const gm_pair *pair, const side_view *view, const gmi_flank
         part.from,
         part.to,
         view->lines.delta + pinion->pitch + wheel->pitch,
+        0.0,
         pinion->values,
         wheel->values,
         (rho_origin - pair->pinion.start_roll_length) * view->pinion_grid.per_rho,
         (view->wheel_reach - rho_origin) * view->wheel_grid.per_rho,
     };
     gmi_line_sum sum;
-    gmi_line_integrate(&line, &view->pinion_grid, &view->wheel_grid, wanted, &sum);
+    if (view->ramps > 0)
+        gmi_ramps_integrate(&line, &view->pinion_grid, &view->wheel_grid, view->pinion_tables,
+                            view->wheel_tables, wanted, &sum);
+    else
+        gmi_line_integrate(&line, &view->pinion_grid, &view->wheel_grid, wanted, &sum);
 
     side->sum += sum.sum;
     side->contact += sum.contact;
@@ -124,12 +131,17 @@ static void sum_tables(const gm_pair *pair, side_view *view, gmi_teeth teeth, in
     }
 }
 
+static int ramp_count(const gm_flank_tables *tables) {
+    return tables == NULL ? 0 : tables->ramp_count;
+}
+
 SEPARATE void side_sum_tables(const gm_pair *pair, const gm_flank_tables *pinion,
                               const gm_flank_tables *wheel, int side, const gm_position *position,
                               int wanted, gmi_side_sum *total) {
     side_view view;
     view.pinion_tables = pinion;
     view.wheel_tables = wheel;
+    view.ramps = ramp_count(pinion) + ramp_count(wheel);
     gmi_lines_find(pair, side, position, &view.lines);
     find_grids(pair, &view);
     sum_tables(pair, &view, gmi_lines_teeth(pair, side, position, &view.lines), wanted, total);

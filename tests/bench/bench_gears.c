@@ -48,7 +48,7 @@ static void *allocate(size_t size) {
 }
 
 bench_params bench_params_default(void) {
-    const bench_params params = {45, 41, 33.0, 21, 31, 0.0};
+    const bench_params params = {45, 41, 33.0, 21, 31, BENCH_NO_RELIEFS, 0.0};
     return params;
 }
 
@@ -165,6 +165,74 @@ static void make_flanks(bench_flanks *own, const gm_pair *pair, int teeth,
 }
 
 /* ---------------------------------------------------------------------------------------------
+ * Linear reliefs
+ * ------------------------------------------------------------------------------------------- */
+
+enum { RELIEFS = 3 };
+
+static void list_reliefs(gm_modification list[RELIEFS]) {
+    static const int kinds[RELIEFS] = {GM_MOD_TIP_RELIEF, GM_MOD_TIP_CORNER_I,
+                                       GM_MOD_TIP_CORNER_II};
+    for (int k = 0; k < RELIEFS; ++k) {
+        const gm_modification relief = {
+            kinds[k], GM_SHAPE_LINEAR, GM_RANGE_SHARE, (k == 0 ? 10.0 : 15.0) * micro, 4e-3, 0.3};
+        list[k] = relief;
+    }
+}
+
+static void set_ramps(gm_flanks *flanks, const gm_modifications *reliefs, double factor) {
+    gm_flank_ramp ramps[GM_FLANK_RAMPS_MAX];
+    gm_modification rest[RELIEFS];
+    int count, rest_count;
+    bench_check(gm_modifications_split(reliefs, ramps, &count, rest, &rest_count), "ramps");
+    for (int side = GM_DRIVE; side <= GM_COAST; ++side)
+        bench_check(gm_flanks_set_ramps(flanks, side, ramps, count, factor), "ramps");
+}
+
+/* Flanks without tables, or with the finest table of the reliefs that gearsim would have taken. */
+static void make_relief_flanks(bench_flanks *own, const gm_modifications *reliefs, int in_table,
+                               double factor) {
+    gm_modifications_grid grid;
+    bench_check(gm_modifications_grid_find(reliefs, 2, 2, 1e-8, &grid), "grid");
+    const gm_flanks_params sizes = {.teeth = reliefs->gear->teeth,
+                                    .drive_tables = in_table,
+                                    .drive_face_nodes = grid.face_nodes,
+                                    .drive_profile_nodes = grid.profile_nodes,
+                                    .coast_tables = in_table,
+                                    .coast_face_nodes = grid.face_nodes,
+                                    .coast_profile_nodes = grid.profile_nodes};
+    const size_t size = gm_flanks_size(&sizes);
+    const size_t nodes = (size_t)grid.face_nodes * (size_t)grid.profile_nodes;
+    own->memory = allocate(size);
+    bench_check(gm_flanks_init(&own->flanks, &sizes, own->memory, size), "flanks");
+    if (!in_table)
+        return;
+    double *values = allocate(nodes * sizeof *values);
+    for (size_t k = 0; k < nodes; ++k)
+        values[k] = 0.0;
+    bench_check(gm_modifications_add(reliefs, grid.face_nodes, grid.profile_nodes, values),
+                "table");
+    for (int side = GM_DRIVE; side <= GM_COAST; ++side)
+        bench_check(gm_flanks_set_table(&own->flanks, side, GM_ALL_TEETH, values, factor), "table");
+    free(values);
+}
+
+static void make_reliefs(bench_gears *gears, const bench_params *params) {
+    const gm_pair *pair = &gears->pair;
+    const gm_gear *const gear[2] = {&pair->pinion, &pair->wheel};
+    for (int k = 0; k < 2; ++k) {
+        gm_modification list[RELIEFS];
+        const gm_modifications reliefs = {list, RELIEFS, gear[k], pair->face_width};
+        list_reliefs(list);
+        if (params->profile_nodes == 0)
+            make_relief_flanks(&gears->own[k], &reliefs, params->reliefs == BENCH_RELIEF_TABLE,
+                               pair->normal_to_transverse);
+        if (params->reliefs == BENCH_RAMPS)
+            set_ramps(&gears->own[k].flanks, &reliefs, pair->normal_to_transverse);
+    }
+}
+
+/* ---------------------------------------------------------------------------------------------
  * States
  * ------------------------------------------------------------------------------------------- */
 
@@ -242,6 +310,10 @@ void bench_gears_make(bench_gears *gears, const bench_params *params) {
     if (params->profile_nodes > 0) {
         make_flanks(&gears->own[0], &gears->pair, params->pinion_teeth, params, &seed);
         make_flanks(&gears->own[1], &gears->pair, params->wheel_teeth, params, &seed);
+    }
+    if (params->reliefs != BENCH_NO_RELIEFS)
+        make_reliefs(gears, params);
+    if (params->profile_nodes > 0 || params->reliefs != BENCH_NO_RELIEFS) {
         gears->pinion = &gears->own[0].flanks;
         gears->wheel = &gears->own[1].flanks;
     }

@@ -4,7 +4,8 @@
 /**
  * @file bench_gears.h
  * Gear pairs to measure with: the reference pair and its relatives with other numbers of teeth, helix angles and
- * tables. All teeth of both gears have different tables, made as those of data/paper/ are.
+ * tables. All teeth of both gears have different tables, made as those of data/paper/ are; or linear reliefs, the same on
+ * all teeth: at the tip (10 um over 0.3 of the profile) and at its corners (15 um over 4 mm and the same share).
  */
 #ifndef BENCH_GEARS_H
 #define BENCH_GEARS_H
@@ -18,12 +19,16 @@
 /** Number of states that every measurement goes through again and again. */
 enum { BENCH_STATES = 256 };
 
+/** What the flanks have; the reliefs exactly, or in one table for all teeth that is as true as tables can be. */
+enum bench_reliefs { BENCH_NO_RELIEFS, BENCH_RAMPS, BENCH_RELIEF_TABLE };
+
 /** What can be varied; bench_params_default() is the reference pair. */
 typedef struct bench_params {
     int pinion_teeth, wheel_teeth;
     double helix_angle_deg;
-    int face_nodes, profile_nodes; /**< of the tables; 0 = ideal flanks */
-    double first_angle;            /**< pinion angle from which on the states lie (rad) */
+    int face_nodes, profile_nodes; /**< of the tables of all teeth; 0 = none */
+    int reliefs;        /**< enum bench_reliefs; BENCH_RELIEF_TABLE without other tables only */
+    double first_angle; /**< pinion angle from which on the states lie (rad) */
 } bench_params;
 
 /** Flanks of one gear and their memory. */

@@ -127,28 +127,39 @@ static void run_slices_touching(const bench *b, long count) {
     run_slices(b, count, SLICES_TOUCHING);
 }
 
+/* Which flanks. */
+enum { IDEAL, TABLES, RAMPS, RELIEF_TABLE, TABLES_AND_RAMPS, FLANKS };
+
 typedef struct bench_case {
     const char *name;
     const char *text;
-    int ideal;
+    int flanks;
     void (*run)(const bench *b, long count);
 } bench_case;
 
 static const bench_case cases[] = {
-    {"ideal.sum", "ideal flanks, sum", 1, run_sum},
-    {"ideal.derivatives", "   with exact derivatives", 1, run_derivatives},
-    {"ideal.angles", "   from angles, with derivatives", 1, run_angles},
-    {"ideal.wrench", "   wrench", 1, run_wrench},
-    {"ideal.equilibrium", "   equilibrium", 1, run_equilibrium},
-    {"ideal.curve", "   static curve, 1000 positions", 1, run_curve},
-    {"tables.sum", "tables, sum", 0, run_sum},
-    {"tables.derivatives", "   with exact derivatives", 0, run_derivatives},
-    {"tables.angles", "   from angles, with derivatives", 0, run_angles},
-    {"tables.wrench", "   wrench", 0, run_wrench},
-    {"tables.equilibrium", "   equilibrium", 0, run_equilibrium},
-    {"tables.curve", "   static curve, 1000 positions", 0, run_curve},
-    {"slices.all", "slices, all teeth", 0, run_slices_all},
-    {"slices.touching", "slices, pairs that can touch", 0, run_slices_touching},
+    {"ideal.sum", "ideal flanks, sum", IDEAL, run_sum},
+    {"ideal.derivatives", "   with exact derivatives", IDEAL, run_derivatives},
+    {"ideal.angles", "   from angles, with derivatives", IDEAL, run_angles},
+    {"ideal.wrench", "   wrench", IDEAL, run_wrench},
+    {"ideal.equilibrium", "   equilibrium", IDEAL, run_equilibrium},
+    {"ideal.curve", "   static curve, 1000 positions", IDEAL, run_curve},
+    {"tables.sum", "tables, sum", TABLES, run_sum},
+    {"tables.derivatives", "   with exact derivatives", TABLES, run_derivatives},
+    {"tables.angles", "   from angles, with derivatives", TABLES, run_angles},
+    {"tables.wrench", "   wrench", TABLES, run_wrench},
+    {"tables.equilibrium", "   equilibrium", TABLES, run_equilibrium},
+    {"tables.curve", "   static curve, 1000 positions", TABLES, run_curve},
+    {"ramps.sum", "linear reliefs, sum", RAMPS, run_sum},
+    {"ramps.derivatives", "   with exact derivatives", RAMPS, run_derivatives},
+    {"ramps.wrench", "   wrench", RAMPS, run_wrench},
+    {"relief_table.sum", "the same in a fine table, sum", RELIEF_TABLE, run_sum},
+    {"relief_table.derivatives", "   with exact derivatives", RELIEF_TABLE, run_derivatives},
+    {"relief_table.wrench", "   wrench", RELIEF_TABLE, run_wrench},
+    {"both.sum", "tables and linear reliefs, sum", TABLES_AND_RAMPS, run_sum},
+    {"both.derivatives", "   with exact derivatives", TABLES_AND_RAMPS, run_derivatives},
+    {"slices.all", "slices, all teeth", TABLES, run_slices_all},
+    {"slices.touching", "slices, pairs that can touch", TABLES, run_slices_touching},
 };
 enum { CASES = sizeof cases / sizeof cases[0] };
 
@@ -221,11 +232,10 @@ static double count_of(const counts *read, const char *name) {
     return (double)NAN;
 }
 
-static void print_table(const bench_gears *ideal, const bench_gears *tables,
-                        const counts *counted) {
+static void print_table(const bench_gears gears[FLANKS], const counts *counted) {
     printf("%-34s %14s %14s %14s\n", "", "evaluations/s", "ns", "instructions");
     for (int k = 0; k < CASES; ++k) {
-        const bench b = {cases[k].ideal ? ideal : tables, 51};
+        const bench b = {&gears[cases[k].flanks], 51};
         const double seconds = measure(&cases[k], &b);
         const double instructions = count_of(counted, cases[k].name);
         printf("%-34s %14.0f %14.1f ", cases[k].text, 1.0 / seconds, 1e9 * seconds);
@@ -237,7 +247,7 @@ static void print_table(const bench_gears *ideal, const bench_gears *tables,
     }
     printf(
         "\nWith tables: %.2f lines of contact and %.1f smooth pieces per evaluation; slices: 51.\n",
-        tables->mean_lines, tables->mean_pieces);
+        gears[TABLES].mean_lines, gears[TABLES].mean_pieces);
 }
 
 /* Error of the sum, in parts of the mean sum. */
@@ -308,10 +318,14 @@ static int read_options(int argc, char **argv, bench_params *params, int *slices
     return 0;
 }
 
-static bench_params params_of(int ideal) {
+static bench_params params_of(int flanks) {
     bench_params params = bench_params_default();
-    if (ideal)
+    if (flanks != TABLES && flanks != TABLES_AND_RAMPS)
         params.face_nodes = params.profile_nodes = 0;
+    if (flanks == RAMPS || flanks == TABLES_AND_RAMPS)
+        params.reliefs = BENCH_RAMPS;
+    if (flanks == RELIEF_TABLE)
+        params.reliefs = BENCH_RELIEF_TABLE;
     return params;
 }
 
@@ -319,7 +333,7 @@ static bench_params params_of(int ideal) {
 static int run_one(const char *name, long count, int argc, char **argv) {
     static bench_gears gears;
     const bench_case *c = find_case(name);
-    bench_params params = params_of(c->ideal);
+    bench_params params = params_of(c->flanks);
     bench b = {&gears, 51};
     if (read_options(argc, argv, &params, &b.slices) != 0)
         return 2;
@@ -333,19 +347,20 @@ static int run_one(const char *name, long count, int argc, char **argv) {
 }
 
 static int run_all(const char *command, const char *instructions) {
-    static bench_gears ideal, tables;
+    static bench_gears gears[FLANKS];
     static counts counted;
-    const bench_params ideal_params = params_of(1), table_params = params_of(0);
     if (instructions != NULL && read_counts(&counted, instructions) != 0)
         return 2;
-    bench_gears_make(&ideal, &ideal_params);
-    bench_gears_make(&tables, &table_params);
+    for (int flanks = 0; flanks < FLANKS; ++flanks) {
+        const bench_params params = params_of(flanks);
+        bench_gears_make(&gears[flanks], &params);
+    }
     if (strcmp(command, "--slices") == 0)
-        print_slices(&tables);
+        print_slices(&gears[TABLES]);
     else
-        print_table(&ideal, &tables, &counted);
-    bench_gears_free(&ideal);
-    bench_gears_free(&tables);
+        print_table(gears, &counted);
+    for (int flanks = 0; flanks < FLANKS; ++flanks)
+        bench_gears_free(&gears[flanks]);
     return 0;
 }
 

@@ -73,6 +73,18 @@ static gm_flanks make_flanks(int teeth, int coast_face_nodes, uint64_t *seed, vo
     return flanks;
 }
 
+/* The same flanks with linear reliefs: an end, a tip and a corner. */
+static gm_flanks with_ramps(const gm_flanks *flanks, uint64_t *seed) {
+    gm_flanks ramped = *flanks;
+    for (int side = GM_DRIVE; side <= GM_COAST; ++side) {
+        const double face = uniform(seed, 5e-6, 20e-6), profile = uniform(seed, 5e-6, 20e-6);
+        const gm_flank_ramp ramps[] = {
+            {3e-6, -face, 0.0}, {4e-6 - profile, 0.0, profile}, {5e-6, -face, -profile}};
+        check(gm_flanks_set_ramps(&ramped, side, ramps, 3, 1.125));
+    }
+    return ramped;
+}
+
 static void print_result(const gm_penetration *r) {
     printf("%a %a %a %a %a %a %d %d\n", r->penetration, r->rate, r->drive_contact, r->coast_contact,
            r->d_pinion_angle, r->d_wheel_angle, r->drive_pairs, r->coast_pairs);
@@ -82,9 +94,11 @@ static void print_pair(const gm_pair *pair, uint64_t *seed) {
     void *memory[2];
     const gm_flanks pinion = make_flanks(pair->pinion.teeth, FACE_NODES, seed, &memory[0]);
     const gm_flanks wheel = make_flanks(pair->wheel.teeth, OTHER_FACE_NODES, seed, &memory[1]);
+    const gm_flanks ramped_pinion = with_ramps(&pinion, seed);
+    const gm_flanks ramped_wheel = with_ramps(&wheel, seed);
     for (int k = 0; k < STATES; ++k) {
-        const gm_flanks *wheel_flanks = k % 7 == 0 ? NULL : &wheel;
-        const gm_flanks *pinion_flanks = k % 5 == 0 ? NULL : &pinion;
+        const gm_flanks *wheel_flanks = k % 7 == 0 ? NULL : k % 3 == 0 ? &ramped_wheel : &wheel;
+        const gm_flanks *pinion_flanks = k % 5 == 0 ? NULL : k % 4 == 0 ? &ramped_pinion : &pinion;
         const double angle = uniform(seed, -1e4, 1e4);
         const double offset = 0.5 * pair->backlash + uniform(seed, -8e-6, 8e-6);
         gm_position position;

@@ -85,7 +85,7 @@ static double take_within(fuzz_bytes *bytes, double limit) {
     return isfinite(value) && fabs(value) > limit ? limit : value;
 }
 
-/* A few tables and pitch deviations; NULL if the bytes ask for ideal flanks. */
+/* A few tables, pitch deviations and ramps; NULL if the bytes ask for ideal flanks. */
 static void *take_flanks(fuzz_bytes *bytes, int how, int teeth, double m, gm_flanks *flanks) {
     const gm_flanks_params params = {
         .teeth = teeth,
@@ -114,6 +114,18 @@ static void *take_flanks(fuzz_bytes *bytes, int how, int teeth, double m, gm_fla
                                : gm_flanks_set_pitch(flanks, side, tooth, values[0]);
         FUZZ_CLAIM(status == GM_OK || status == GM_ERR_TOOTH || status == GM_ERR_MEMORY ||
                    status == GM_ERR_DEVIATION);
+    }
+    for (int side = GM_DRIVE; side <= GM_COAST; ++side) {
+        gm_flank_ramp ramps[GM_FLANK_RAMPS_MAX];
+        const int count = fuzz_byte(bytes) % (GM_FLANK_RAMPS_MAX + 1);
+        for (int k = 0; k < count; ++k) {
+            double *const fields[] = {&ramps[k].offset, &ramps[k].per_t1, &ramps[k].per_t2};
+            for (int field = 0; field < 3; ++field)
+                *fields[field] = how & RAW_DEVIATIONS ? take_within(bytes, 1e6 * m)
+                                                      : m * fuzz_between(bytes, -0.1, 0.1);
+        }
+        const int status = gm_flanks_set_ramps(flanks, side, ramps, count, 1.0);
+        FUZZ_CLAIM(status == GM_OK || status == GM_ERR_DEVIATION);
     }
     return memory;
 }

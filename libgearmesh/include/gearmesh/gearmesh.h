@@ -276,18 +276,33 @@ typedef struct gm_flanks_params {
     int coast_profile_nodes;
 } gm_flanks_params;
 
-/** One side (drive or coast) of all teeth of a gear: views over the caller's memory. */
+/**
+ * A linear relief: takes max(0, offset + per_t1 t1 + per_t2 t2) off the flank (m). Tip, root and end reliefs and
+ * triangular corners are ramps, see gm_modifications_split(). Ramps add up, to each other and to the table of a tooth.
+ */
+typedef struct gm_flank_ramp {
+    double offset; /**< at t1 = t2 = 0 (m) */
+    double per_t1; /**< change over the face width (m) */
+    double per_t2; /**< change over the active profile (m) */
+} gm_flank_ramp;
+
+/** Largest number of ramps of a side. */
+#define GM_FLANK_RAMPS_MAX 16
+
+/** One side (drive or coast) of all teeth of a gear: views over the caller's memory, and ramps. */
 typedef struct gm_flank_tables {
-    int face_nodes;     /**< grid lines along t1 */
-    int profile_nodes;  /**< grid lines along t2 */
+    int face_nodes;     /**< grid lines along t1; without tables 0, or 2 if there are ramps */
+    int profile_nodes;  /**< grid lines along t2; likewise */
     int capacity;       /**< table places */
     int count;          /**< table places taken */
-    double peak;        /**< most material of any tooth, pitch included (m) */
+    double peak;        /**< most material of any tooth, pitch included, before ramps (m) */
     double *values;     /**< [capacity][face_nodes][profile_nodes][4]: node value, its second
                              difference along t1, that along t2, 0 (m) */
     double *table_peak; /**< [capacity] largest node value (m) */
     double *pitch;      /**< [teeth] transverse pitch deviation, > 0 material added (m) */
     int *table;         /**< [teeth] table of a tooth, -1 = ideal */
+    int ramp_count;     /**< 0 .. GM_FLANK_RAMPS_MAX */
+    gm_flank_ramp ramps[GM_FLANK_RAMPS_MAX]; /**< of all teeth, in the transverse section */
 } gm_flank_tables;
 
 /** The flanks of one gear. Prepared once by the functions below, read-only in evaluation. */
@@ -339,6 +354,20 @@ GM_API int gm_flanks_set_table(gm_flanks *flanks, int side, int tooth, const dou
  * @return GM_OK, GM_ERR_NULL, GM_ERR_TOOTH, GM_ERR_DEVIATION
  */
 GM_API int gm_flanks_set_pitch(gm_flanks *flanks, int side, int tooth, double deviation);
+
+/**
+ * Gives all teeth of one side these linear reliefs, in place of those that they had. Evaluated exactly, without a table.
+ *
+ * @param[in,out] flanks  the flanks
+ * @param[in]     side    GM_DRIVE or GM_COAST
+ * @param[in]     ramps   [count]; may be NULL if there are none
+ * @param[in]     count   0 .. GM_FLANK_RAMPS_MAX
+ * @param[in]     factor  multiplies every ramp, as with gm_flanks_set_table(); > 0
+ * @return GM_OK, GM_ERR_NULL, GM_ERR_TOOTH (no such side), GM_ERR_PARAMETER (count or factor), GM_ERR_DEVIATION (not
+ *         finite); on an error nothing is changed
+ */
+GM_API int gm_flanks_set_ramps(gm_flanks *flanks, int side, const gm_flank_ramp *ramps, int count,
+                               double factor);
 
 /* ---------------------------------------------------------------------------------------------
  * Designed modifications: what the drawing wants beside the involute helicoid
@@ -425,6 +454,21 @@ GM_API int gm_modifications_check(const gm_modifications *modifications, int *in
                                   const char **field, const char **requirement);
 
 /**
+ * Divides the modifications of a flank: linear reliefs and linear corners become ramps, which are exact and need no
+ * table, up to GM_FLANK_RAMPS_MAX of them; the others are left for a table. Those with an amount of 0 are left out.
+ *
+ * @param[in]  modifications  the modifications
+ * @param[out] ramps          along the surface normal: gm_flanks_set_ramps() takes them with the factor of the tables
+ * @param[out] ramp_count     how many ramps; 0 on an error
+ * @param[out] rest           [modifications.count] the others, in their order
+ * @param[out] rest_count     how many others; 0 on an error
+ * @return GM_OK, GM_ERR_NULL, GM_ERR_PARAMETER
+ */
+GM_API int gm_modifications_split(const gm_modifications *modifications,
+                                  gm_flank_ramp ramps[GM_FLANK_RAMPS_MAX], int *ramp_count,
+                                  gm_modification *rest, int *rest_count);
+
+/**
  * Exact sum of the modifications at a point, along the surface normal (m). NaN where
  * gm_modifications_check() would not return GM_OK, or for a point outside 0 <= t1, t2 <= 1.
  */
@@ -433,7 +477,8 @@ GM_API double gm_modifications_value(const gm_modifications *modifications, doub
 /**
  * Finds a uniform grid on which a bilinear table of the modifications is true to a tolerance. Few lines are
  * preferred, and lines where linear reliefs begin. If no grid of 262144 nodes is fine enough (a linear
- * triangular relief has a kink across the grid), one of the best is given: its error says so.
+ * triangular relief has a kink across the grid), one of the best is given: its error says so. Linear reliefs and
+ * corners need no table, see gm_modifications_split().
  *
  * @param[in]  modifications  the modifications
  * @param[in]  face_nodes     of a table that they are to be added to: all its nodes are kept, so that it

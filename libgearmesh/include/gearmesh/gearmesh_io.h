@@ -121,8 +121,9 @@ GM_API void gm_flanks_options_default(gm_flanks_options *options);
 /**
  * Builds the prepared flanks of a gear. The more special set wins (tooth and flank, then tooth, then
  * flank, then `*`,`*`). Scale and profile window act on node values, so that a table stays bilinear.
- * A set for all teeth is kept once per side, not once per tooth. With modifications the tables of a side have
- * the grid that gm_modifications_grid_find() gives for those of the deviations (2 x 2 without).
+ * A set for all teeth is kept once per side, not once per tooth. Of modifications gm_modifications_split() makes ramps; if
+ * others are left, the tables of the side have the grid that gm_modifications_grid_find() gives for those, on top of
+ * that of the deviations (2 x 2 without).
  *
  * @param[out] flanks      the flanks
  * @param[out] memory      what they live in: free it with gm_flanks_memory_free() after the last use

@@ -1,0 +1,117 @@
+/* SPDX-FileCopyrightText: The gearmesh authors */
+/* SPDX-License-Identifier: BSD-3-Clause */
+
+/*
+ * Linear reliefs along one line of contact.
+ *
+ * A line is straight in (t1, t2), so along it a ramp takes off what grows linearly from the place where the line
+ * crosses the ramp's edge, if it does. There the line is cut. Between two cuts all ramps of both flanks together are
+ * one straight line, which line.c takes as the value and the slope that f has beside the tables. So ramps are exact on
+ * any grid and without one; each edge costs one more entry into the tables.
+ */
+#include "internal.h"
+
+/* One ramp along the line: takes off max(0, at_zero + per_t1 t1). */
+typedef struct trace {
+    double at_zero;     /* at t1 = 0 (m) */
+    double per_t1;      /* (m) */
+    double per_profile; /* the same by v2 of its flank, for the derivatives (m) */
+} trace;
+
+/* The ramps that take something off the line. */
+typedef struct traces {
+    trace list[2 * GM_FLANK_RAMPS_MAX];
+    int pinion; /* the first ones; the rest are the wheel's */
+    int all;
+} traces;
+
+static trace trace_of(const gm_flank_ramp *ramp, const gmi_grid *grid, double profile) {
+    trace along;
+    along.per_profile = ramp->per_t2 / grid->profile_cells;
+    along.at_zero = ramp->offset + along.per_profile * profile;
+    along.per_t1 = ramp->per_t1 + along.per_profile * (grid->direction * grid->climb);
+    return along;
+}
+
+static double height(const trace *ramp, double t1) {
+    return ramp->at_zero + ramp->per_t1 * t1;
+}
+
+/* profile: v2 of this flank at t1 = 0. */
+static void add_traces(traces *found, const gm_flank_tables *tables, const gmi_grid *grid,
+                       double profile, double from, double to) {
+    const int count = tables == NULL ? 0 : tables->ramp_count;
+    for (int k = 0; k < count; ++k) {
+        const trace along = trace_of(&tables->ramps[k], grid, profile);
+        if (height(&along, from) > 0.0 || height(&along, to) > 0.0)
+            found->list[found->all++] = along;
+    }
+}
+
+/* The first edge behind `from`, or `to`. */
+static double next_edge(const traces *ramps, double from, double to) {
+    double next = to;
+    for (int k = 0; k < ramps->all; ++k) {
+        /* Not a finite number if the line runs along it. */
+        const double edge = -ramps->list[k].at_zero / ramps->list[k].per_t1;
+        if (edge > from && edge < next)
+            next = edge;
+    }
+    return next;
+}
+
+/*
+ * Takes ramps first .. last - 1 off a part of the line that no edge cuts: what a ramp does in its middle it does all
+ * along. Returns their sum by v2 of the flank (m).
+ */
+static double take_off(gmi_line *part, const traces *ramps, int first, int last) {
+    const double middle = 0.5 * (part->from + part->to);
+    double per_profile = 0.0;
+    for (int k = first; k < last; ++k) {
+        const trace *ramp = &ramps->list[k];
+        if (!(height(ramp, middle) > 0.0))
+            continue;
+        part->gap -= height(ramp, part->from);
+        part->half_slope -= 0.5 * ramp->per_t1;
+        per_profile += ramp->per_profile;
+    }
+    return per_profile;
+}
+
+static void add_part(const gmi_line_sum *part, gmi_line_sum *result) {
+    result->sum += part->sum;
+    result->contact += part->contact;
+    result->pinion += part->pinion;
+    result->wheel += part->wheel;
+    result->sum_t1 += part->sum_t1;
+    result->contact_t1 += part->contact_t1;
+}
+
+void gmi_ramps_integrate(const gmi_line *line, const gmi_grid *pinion, const gmi_grid *wheel,
+                         const gm_flank_tables *pinion_tables, const gm_flank_tables *wheel_tables,
+                         int wanted, gmi_line_sum *result) {
+    const gmi_line_sum none = {0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0};
+    traces ramps;
+    ramps.all = 0;
+    add_traces(&ramps, pinion_tables, pinion, line->pinion_profile, line->from, line->to);
+    ramps.pinion = ramps.all;
+    add_traces(&ramps, wheel_tables, wheel, line->wheel_profile, line->from, line->to);
+
+    *result = none;
+    for (double from = line->from; from < line->to;) {
+        gmi_line part = *line;
+        gmi_line_sum sum;
+        part.from = from;
+        part.to = next_edge(&ramps, from, line->to);
+        const double by_pinion = take_off(&part, &ramps, 0, ramps.pinion);
+        const double by_wheel = take_off(&part, &ramps, ramps.pinion, ramps.all);
+        gmi_line_integrate(&part, pinion, wheel, wanted, &sum);
+        sum.pinion -= by_pinion * sum.contact;
+        sum.wheel -= by_wheel * sum.contact;
+        add_part(&sum, result);
+        if (from == line->from)
+            result->at_from = sum.at_from;
+        result->at_to = sum.at_to;
+        from = part.to;
+    }
+}
