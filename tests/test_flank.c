@@ -306,10 +306,12 @@ static void ramps_replace_each_other_and_take_the_factor(void) {
     const gm_flank_ramp halves[] = {{0.2e-6, 0.0, 0.0}, {0.2e-6, 0.0, 0.0}};
     GM_ASSERT_INT(gm_flanks_set_ramps(&flanks, GM_DRIVE, halves, 1, 7.0), GM_OK);
     GM_ASSERT_INT(gm_flanks_set_ramps(&flanks, GM_DRIVE, halves, 2, 1.25), GM_OK);
+    GM_ASSERT_INT(flanks.drive.face_nodes, 2);
     GM_ASSERT_REL(probe(&flanks, GM_DRIVE, 0.1).drive, expected, 1e-9);
     GM_ASSERT_REL(probe(&flanks, GM_COAST, 0.1).coast, probe(NULL, GM_COAST, 0.1).coast, 1e-14);
     GM_ASSERT_INT(gm_flanks_set_ramps(&flanks, GM_DRIVE, NULL, 0, 1.0), GM_OK);
     GM_ASSERT_REL(probe(&flanks, GM_DRIVE, 0.1).drive, probe(NULL, GM_DRIVE, 0.1).drive, 1e-14);
+    GM_ASSERT_INT(flanks.drive.face_nodes, 0);
     /* there is still no room for a table */
     const double values[12] = {0.0};
     GM_ASSERT_INT(gm_flanks_set_table(&flanks, GM_DRIVE, 0, values, 1.0), GM_ERR_MEMORY);

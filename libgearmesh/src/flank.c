@@ -235,7 +235,7 @@ int gm_flanks_set_ramps(gm_flanks *flanks, int side, const gm_flank_ramp *ramps,
     }
     memcpy(tables->ramps, scaled, (size_t)count * sizeof scaled[0]);
     tables->ramp_count = count;
-    if (tables->capacity == 0)
-        tables->face_nodes = tables->profile_nodes = 2; /* places on the flank are then in t1, t2 */
+    if (tables->capacity == 0) /* places on the flank are then in t1, t2 */
+        tables->face_nodes = tables->profile_nodes = count > 0 ? 2 : 0;
     return GM_OK;
 }
