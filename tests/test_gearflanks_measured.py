@@ -132,6 +132,16 @@ class Example(Case):
             for i in range(45):
                 self.assertEqual(now[(7 - i) % 45], before[i])
 
+    def test_a_wrong_direction_of_counting_shows_in_the_run_out(self):
+        told = self.accepted(*EXAMPLE)
+        displaced = re.search(r"displaced by (\S+) um, but for (\d+) %", told)
+        self.assertAlmostEqual(float(displaced[1]), 12, delta=3)  # 2.5 um of the index come on top
+        self.assertLess(int(displaced[2]), 10)
+        self.assertNotIn("as said?", told)
+        self.assertIn("are they as said?", self.accepted(*EXAMPLE, "--count", "counterclockwise"))
+        # The other face turns both around; that cannot be seen.
+        self.assertNotIn("as said?", self.accepted(*EXAMPLE, "--datum-face", "II"))
+
     def test_one_of_the_two_is_enough(self):
         told = self.accepted(*EXAMPLE[:7], "--traces", TRACES, "--flanks", "f.csv", "--nodes", "5x9")
         self.assertNotIn("taken out", told)

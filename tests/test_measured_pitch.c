@@ -132,6 +132,16 @@ static void try_displaced_gear(int wheel, double radius) {
         GM_ASSERT_ABS(pitch.coast[tooth], added(&of, tooth, -1, radius), 1e-10);
         GM_ASSERT(pitch.drive_set[tooth] && pitch.coast_set[tooth]);
     }
+    GM_ASSERT_REL(report.displacement, hypot(of.x, of.y), 1e-4);
+    GM_ASSERT_ABS(report.rest, 0.0, 1e-6);
+    GM_ASSERT(report.mirrored_rest > 0.2);
+    gm_pitch_free(&pitch);
+    /* Counted the other way than said: it looks like the mirror image of a displaced gear. */
+    setup.counting = GM_CLOCKWISE + GM_COUNTERCLOCKWISE - setup.counting;
+    GM_ASSERT_INT(gm_measured_pitch_build(&pitch, &report, &measured, &setup, &pair, wheel, &error),
+                  GM_IO_OK);
+    GM_ASSERT_ABS(report.mirrored_rest, 0.0, 1e-6);
+    GM_ASSERT(report.rest > 0.2);
     gm_pitch_free(&pitch);
     gm_measured_pitch_free(&measured);
 }
@@ -249,6 +259,8 @@ static void one_flank_alone_is_fine(void) {
     }
     GM_ASSERT_INT(read_and_build(file_of(text), 0), GM_IO_OK);
     GM_ASSERT_INT(gm_pitch_ideal_teeth(&pitch, GM_DRIVE), 45);
+    GM_ASSERT_NAN(report.displacement);
+    GM_ASSERT_NAN(report.rest);
     GM_ASSERT_INT(gm_pitch_ideal_teeth(&pitch, GM_COAST), 0);
     /* Tooth number 4 is tooth 3: 4 um ahead, 2 um taken out as the mean. */
     GM_ASSERT_REL(pitch.coast[3], -2e-6 * pair.pinion.base_radius / pair.pinion.reference_radius,

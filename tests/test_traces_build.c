@@ -493,6 +493,10 @@ static double wrong_sign(int tooth, int side, double t1, double t2) {
     return -crowned(tooth, side, t1, t2);
 }
 
+static double hollow_helix(int tooth, int side, double t1, double t2) {
+    return crowned(tooth, side, 0.5, t2) + 11e-6 * (t1 - 0.5) * (t1 - 0.5);
+}
+
 static void add_teeth(surface *of, int teeth) {
     for (int tooth = 0; tooth < teeth; tooth++) {
         for (int side = 0; side < 2; side++) {
@@ -521,6 +525,22 @@ static void the_opposite_sign_is_noticed(void) {
     options.hollow = 1;
     GM_ASSERT_INT(build(), GM_IO_OK);
     GM_ASSERT_INT(report.hollow_traces, 12);
+    end();
+    /* Helices that are hollow beside profiles that are relieved are meant so; and three of four may be chance. */
+    begin();
+    for (int tooth = 0; tooth < 18; tooth++) {
+        add_helix(hollow_helix, tooth, 0, 0.5, 0.0);
+    }
+    add_profile(hollow_helix, 0, 0, 0.5, 0.0);
+    GM_ASSERT_INT(build(), GM_IO_OK);
+    GM_ASSERT_INT(report.hollow_traces, 18);
+    end();
+    begin();
+    for (int tooth = 0; tooth < 44; tooth++) {
+        add_profile(tooth % 4 ? wrong_sign : crowned, tooth, 0, 0.5, 0.0);
+    }
+    GM_ASSERT_INT(build(), GM_IO_OK);
+    GM_ASSERT_INT(report.hollow_traces, 33);
     end();
     /* Two teeth are too few to tell. */
     begin();
@@ -669,6 +689,8 @@ static void files_that_do_not_fit_the_gear_are_refused(void) {
                  "0 to 17.5 mm");
     refused_text(HEADER "1,left,helix,0,12,0\n1,left,helix,9,12,0\n", 2, "from 0 to 9 mm",
                  "0 to 17.5 mm is right");
+    refused_text(HEADER "1,left,profile,8.75,12,0\n1,left,profile,8.75,21,0\n", 2,
+                 "from 12 to 21 mm roll length", "8.7648 to 21.184 mm is right");
     refused_text(HEADER "1,left,profile,8.75,12,0\n", 2, "has 1 point", "are right");
     refused_text(HEADER "1,left,profile,8,4,0\n1,left,profile,8.1,5,0\n1,left,profile,8.2,6,0\n", 2,
                  "has 1 point", "all at the same distance");
@@ -676,6 +698,16 @@ static void files_that_do_not_fit_the_gear_are_refused(void) {
                  "begins in line 2", "two teeth with the number 1");
     refused_text(HEADER HELIX("1", "12") HELIX("1", "14"), 2, "without a profile trace",
                  "is right");
+}
+
+/* How much more the surface rises along the profile, from 0.2 to 0.8, at t1 = 0.8 than at 0.2. */
+static double mixed_difference(const double *table) {
+    return table_at(table, 0.8, 0.8) - table_at(table, 0.8, 0.2) - table_at(table, 0.2, 0.8) +
+           table_at(table, 0.2, 0.2);
+}
+
+static double mixed_difference_of(surface *of) {
+    return of(2, 0, 0.8, 0.8) - of(2, 0, 0.8, 0.2) - of(2, 0, 0.2, 0.8) + of(2, 0, 0.2, 0.2);
 }
 
 static void traces_that_contradict_each_other_are_refused(void) {
@@ -690,6 +722,9 @@ static void traces_that_contradict_each_other_are_refused(void) {
     }
     GM_ASSERT_INT(build(), GM_IO_OK);
     GM_ASSERT_REL(report.crossing_error, 16e-6 * 0.6 / 4, 1e-9);
+    /* The twist of the helices is the surface's own, that of the profiles has 16 um * 0.6 more: halfway between. */
+    GM_ASSERT_REL(mixed_difference(table_of(2, 0)) - mixed_difference_of(twisted),
+                  0.5 * 16e-6 * 0.6, 1e-9);
     gm_deviations_free(&deviations);
     for (int k = 0; k < PROFILE_NODES; k++) { /* a hump at one of the two crossings */
         traces.traces[1].deviation[k] -= 16e-6 * k / (PROFILE_NODES - 1);

@@ -118,6 +118,25 @@ static void print_pitch(const measured_gear *of, FILE *file) {
     }
 }
 
+/* What runs out does so on both sides, as if the gear were displaced. */
+static void print_displacement(const measured_gear *of, FILE *file) {
+    const gm_measured_pitch_report *found = &of->pitch_report;
+
+    if (isnan(found->displacement))
+        return;
+    fprintf(
+        file,
+        "# what the pitch varies once per revolution is that of a gear displaced by %.3f um, but "
+        "for %.0f %%\n",
+        1e6 * found->displacement, 100.0 * found->rest);
+    if (found->rest > 0.15 && found->mirrored_rest < 0.25 * found->rest)
+        fprintf(file,
+                "# but for %.0f %% if left and right, or else the direction of counting, were the "
+                "other "
+                "way round: are they as said?\n",
+                100.0 * found->mirrored_rest);
+}
+
 /* In the file of the flanks. */
 static void print_traces_head(FILE *file, const void *context) {
     print_sources(context, file);
@@ -129,6 +148,7 @@ static void print_pitch_head(FILE *file, const void *context) {
     print_sources(context, file);
     print_mapping(context, file);
     print_pitch(context, file);
+    print_displacement(context, file);
 }
 
 static void print_report(const measured_gear *of) {
@@ -136,8 +156,10 @@ static void print_report(const measured_gear *of) {
     print_mapping(of, stdout);
     if (of->options->traces != NULL)
         print_traces(of, stdout);
-    if (of->options->measured_pitch != NULL)
+    if (of->options->measured_pitch != NULL) {
         print_pitch(of, stdout);
+        print_displacement(of, stdout);
+    }
 }
 
 /* ---------------------------------------------------------------------------------------------

@@ -12,6 +12,8 @@
 #include "number_text.h"
 #include "pitch_file.h"
 
+static const double pi = 3.14159265358979323846;
+
 enum { SIDES = 2 };
 
 typedef struct builder {
@@ -173,13 +175,16 @@ static void take_out_mean(builder *build, int side, double *place) {
     build->report.level[side] = mean;
 }
 
+static double measuring_radius(const builder *build) {
+    const double diameter = build->measurement->pitch_diameter;
+    return isnan(diameter) ? build->gear->reference_radius : 0.5 * diameter;
+}
+
 /* From how far a flank stands ahead on the machine, as an arc, to the material added on it. */
 static double material_per_arc(const builder *build, int side) {
-    const double diameter = build->measurement->pitch_diameter;
-    const double radius = isnan(diameter) ? build->gear->reference_radius : 0.5 * diameter;
     const double ahead = (side == GM_DRIVE) == !build->wheel ? 1.0 : -1.0;
     return ahead * gmi_measurement_sense(build->measurement, build->wheel) *
-           build->gear->base_radius / radius;
+           build->gear->base_radius / measuring_radius(build);
 }
 
 static int build_side(builder *build, gm_pitch *pitch, int side) {
@@ -214,6 +219,68 @@ static int build_side(builder *build, gm_pitch *pitch, int side) {
 }
 
 /* ---------------------------------------------------------------------------------------------
+ * First order
+ * ------------------------------------------------------------------------------------------- */
+
+typedef struct vector {
+    double x;
+    double y;
+} vector;
+
+static vector turned(vector from, double angle) {
+    const vector to = {from.x * cos(angle) - from.y * sin(angle),
+                       from.x * sin(angle) + from.y * cos(angle)};
+    return to;
+}
+
+static double square(vector of) {
+    return of.x * of.x + of.y * of.y;
+}
+
+/* The displacement that would add this material on flanks whose normals look along their teeth: first order around the
+ * gear. */
+static vector first_order(const builder *build, const double *material) {
+    const int teeth = build->gear->teeth;
+    /* Teeth follow each other counter-clockwise on the pinion, clockwise on the wheel, seen from face II. */
+    const double step = (build->wheel ? -1.0 : 1.0) * build->gear->pitch_angle;
+    vector sum = {0.0, 0.0};
+    for (int i = 0; i < teeth; i++) {
+        sum.x += 2.0 / teeth * material[i] * cos(step * i);
+        sum.y += 2.0 / teeth * material[i] * sin(step * i);
+    }
+    return sum;
+}
+
+/* Share that is left of two vectors if their mean stands for both; fills the mean. */
+static double rest_of(vector a, vector b, vector *mean) {
+    mean->x = 0.5 * (a.x + b.x);
+    mean->y = 0.5 * (a.y + b.y);
+    const vector half = {0.5 * (a.x - b.x), 0.5 * (a.y - b.y)};
+    const double all = square(a) + square(b);
+    return all > 0.0 ? 2.0 * square(half) / all : 0.0;
+}
+
+/*
+ * A displaced gear adds on each flank what its displacement has along the flank's normal. The normal of a drive
+ * flank stands at `lean` to the direction of its tooth, that of a coast flank at -lean, on both gears.
+ */
+static void fit_displacement(builder *build, const gm_pitch *pitch) {
+    gm_measured_pitch_report *report = &build->report;
+    report->displacement = report->rest = report->mirrored_rest = (double)NAN;
+    if (build->present[GM_DRIVE] == 0 || build->present[GM_COAST] == 0) {
+        return;
+    }
+    const double radius = measuring_radius(build) / build->gear->base_radius;
+    const double lean = 0.5 * pi + build->gear->base_half_thickness - sqrt(radius * radius - 1.0);
+    const vector drive = first_order(build, pitch->drive);
+    const vector coast = first_order(build, pitch->coast);
+    vector displacement;
+    report->mirrored_rest = rest_of(turned(drive, -lean), turned(coast, lean), &displacement);
+    report->rest = rest_of(turned(drive, lean), turned(coast, -lean), &displacement);
+    report->displacement = sqrt(square(displacement));
+}
+
+/* ---------------------------------------------------------------------------------------------
  * All of it
  * ------------------------------------------------------------------------------------------- */
 
@@ -235,6 +302,9 @@ static int build_pitch(builder *build, gm_pitch *pitch) {
     }
     for (int side = 0; side < SIDES && status == GM_IO_OK; side++) {
         status = build_side(build, pitch, side);
+    }
+    if (status == GM_IO_OK) {
+        fit_displacement(build, pitch);
     }
     return status;
 }

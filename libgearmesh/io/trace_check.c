@@ -98,7 +98,8 @@ static void mark_spikes(const gmi_measured *trace, int stride, double *marks, do
     for (int k = 0; k < count; k++) {
         off[k] = stand_off(trace, k + stride, stride);
     }
-    double limit = spike_deviations * roughness(off, count, work + count);
+    /* A few points do not say well how rough the trace is. */
+    double limit = spike_deviations * (1.0 + 10.0 / count) * roughness(off, count, work + count);
     limit = limit > spike_floor ? limit : spike_floor;
     for (int k = stride; k < count - stride; k++) {
         const double height = spike_height(off[k - stride], off[k], off[k + stride]);
@@ -209,9 +210,13 @@ static const double least_end_height = 0.5e-6;
 
 /*
  * Real flanks are relieved and crowned, or neither: their ends fall away. If chance alone were at work, the ends of
- * half of the traces would stand out; so many as here do so with a chance below 1 in 1000 (3.1 standard deviations
- * of a fair coin), and that takes 10 traces at least.
+ * half of the traces would stand out. That many is 3.1 standard deviations of a fair coin more (which takes 10
+ * traces at least), and four of five.
  */
+static double hollow_limit(int count) {
+    return fmax(0.5 * count + 1.55 * sqrt(count), 0.8 * count);
+}
+
 static int check_sign(const gmi_measured *traces, int count, const gm_traces_options *options,
                       gm_traces_report *report, gm_io_error *error) {
     int hollow = 0;
@@ -223,8 +228,7 @@ static int check_sign(const gmi_measured *traces, int count, const gm_traces_opt
     const double profile = mean_end_height(traces, count, GM_TRACE_PROFILE);
     const double helix = mean_end_height(traces, count, GM_TRACE_HELIX);
     if (options->hollow || profile < 0.0 || helix < 0.0 ||
-        (profile < least_end_height && helix < least_end_height) ||
-        hollow <= 0.5 * count + 1.55 * sqrt(count)) {
+        (profile < least_end_height && helix < least_end_height) || hollow <= hollow_limit(count)) {
         return GM_IO_OK;
     }
     char profile_text[GMI_NUMBER_SIZE];

@@ -509,12 +509,18 @@ GM_API int gm_traces_build(gm_deviations *deviations, gm_traces_report *report,
                            const gm_pair *pair, int wheel, const gm_traces_options *options,
                            gm_io_error *error);
 
-/** What gm_measured_pitch_build() found, for each flank side; arcs at the measuring circle. */
+/** What gm_measured_pitch_build() found, [side] with arcs at the measuring circle. The last three fields compare what
+ *  varies once per revolution on both sides with a gear that is displaced as a whole; NaN if one side is missing. */
 typedef struct gm_measured_pitch_report {
     double
         sum[2]; /**< of the single pitches, spread evenly over them; 0 for cumulative values (m) */
     double level
         [2]; /**< mean of the cumulative values, taken out: no pitch says how thick teeth are (m) */
+    double displacement; /**< of the axis, that fits best (m) */
+    double rest;         /**< share (of squares) of the first order that it leaves, 0 .. 1 */
+    double
+        mirrored_rest; /**< the same if left and right, or else the direction of counting, were the
+                               other way round than said */
 } gm_measured_pitch_report;
 
 /**
