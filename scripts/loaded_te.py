@@ -13,7 +13,7 @@ import threading
 
 import numpy as np
 
-import runup
+import results
 
 ROOT = os.path.join(os.path.dirname(os.path.abspath(__file__)), os.pardir)
 GEARS = ("pinion", "wheel")
@@ -64,6 +64,19 @@ def torques(text, count, mean_Nm):
 def loads(values_Nm, mean_Nm):
     """Torques with the sign of the mean load, and a small one in the place of 0."""
     return np.copysign(np.maximum(values_Nm, NO_LOAD * abs(mean_Nm)), mean_Nm)
+
+
+def even_parts(values):
+    """The values cut into parts whose steps are even, which one run can do."""
+    parts = []
+    for value in values:
+        part = parts[-1] if parts else None
+        is_next = part and (len(part) == 1 or abs(value - 2 * part[-1] + part[-2]) <= 1e-9 * abs(value))
+        if is_next:
+            part.append(value)
+        else:
+            parts.append([value])
+    return parts
 
 
 def full_key(key):
@@ -142,7 +155,7 @@ class Gears:
         text = self._call({}, "--geometry")
         self.geometry = {key: float(value) for key, _, value in (line.partition(" = ") for line in text.splitlines())}
         names = "pinion_angle_rad,te_um"
-        self.parameters, table = self._run({"output.columns": names})
+        self.parameters, table = self._run({"output.columns": names, "analysis.loads": 1})
         self.mean_Nm = float(self.parameters["load.mean_Nm"])
         self.flank = "drive" if self.mean_Nm > 0 else "coast"
         if self.differs_by_tooth() and self.parameters["analysis.period"] == "mesh":
@@ -177,32 +190,36 @@ class Gears:
         if self.positions is not None:
             forced["analysis.positions"] = self.positions
         self._call({**forced, **values}, "--output", path)
-        head, _, head_lines = runup.read_head(path)
+        head, _, head_lines = results.read_head(path)
         return head, np.loadtxt(path, delimiter=",", skiprows=head_lines, ndmin=2)
 
-    def te_um(self, torque_Nm, values):
-        """Transmission error at all positions under a torque on the wheel, with {key: value} in place of the file's."""
+    def te_um(self, torques_Nm, values):
+        """Transmission error [torque, position] with {key: value} in place of the file's; the torques are even."""
+        loads = {"load.mean_Nm": float(torques_Nm[0]), "analysis.loads": len(torques_Nm)}
+        if len(torques_Nm) > 1:
+            loads["load.end_Nm"] = float(torques_Nm[-1])
         try:
-            return self._run({**values, "load.mean_Nm": float(torque_Nm)})[1][:, 0]
+            return np.reshape(self._run({**values, **loads})[1][:, 0], (len(torques_Nm), -1))
         except RunFailed as error:
-            given = "".join(f", {short_key(key)} = {value:.6g}" for key, value in values.items())
+            given = "".join(f"{short_key(key)} = {value:.6g}: " for key, value in values.items())
             kind = NoEquilibrium if "no equilibrium" in str(error) else RunFailed
-            raise kind(f"torque {torque_Nm:.6g} N m{given}: {error}") from error
+            raise kind(f"{given}{error}") from error
 
-    def each(self, jobs):
-        """te_um() of (torque_Nm, values), in this order, several at a time."""
-        futures = [self.pool.submit(self.te_um, *job) for job in jobs]
+    def each(self, designs, torques_Nm):
+        """Transmission error [torque, position] of each {key: value}, in this order, several at a time."""
+        parts = even_parts(torques_Nm)
+        futures = [[self.pool.submit(self.te_um, part, design) for part in parts] for design in designs]
         try:
-            for future in futures:
-                yield future.result()
+            for of_design in futures:
+                yield np.vstack([future.result() for future in of_design])
         finally:
-            for future in futures:
-                future.cancel()
+            for of_design in futures:
+                for future in of_design:
+                    future.cancel()
 
     def curves_um(self, designs, torques_Nm):
-        """te_um() as [design, torque, position] for a list of {key: value}."""
-        jobs = [(torque_Nm, values) for values in designs for torque_Nm in torques_Nm]
-        return np.reshape(list(self.each(jobs)), (len(designs), len(torques_Nm), -1))
+        """The same of all: [design, torque, position]."""
+        return np.array(list(self.each(designs, torques_Nm)))
 
     def touching_um(self):
         """What added to a transmission error makes it 0 where ideal flanks just touch."""

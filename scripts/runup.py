@@ -14,6 +14,8 @@ import os
 import numpy as np
 from scipy import interpolate, signal
 
+from results import RunError, read_head
+
 COLUMNS = ("time_s", "pinion_speed_rpm", "pinion_angle_rad", "contact_force_N")
 PAIRS_COLUMN = "pairs_in_contact"
 HDF5_SIGNATURE = b"\x89HDF\r\n\x1a\n"
@@ -25,10 +27,6 @@ BLOCK_MIN_SHARE_OF_SPEED = 0.1
 BLOCK_TURNS = 82  # about so many turns of the pinion: 1/82 order from bin to bin
 # Bins around an order line that tell its floor: nearer ones hold the line, farther ones other lines.
 FLOOR_NEAR, FLOOR_FAR = 4, 24
-
-
-class RunError(Exception):
-    """A run cannot be read or cannot be analysed; the text says why."""
 
 
 # ----------------------------------------------------------------------------------------------------
@@ -109,20 +107,6 @@ def _read_csv(path):
     except ValueError as error:
         raise RunError(f"{path}: {error}") from error
     return [np.ascontiguousarray(column) for column in table.T], provenance, _incomplete_reason(path)
-
-
-def read_head(path):
-    """Provenance lines `# section.key = value`, the column names, and how many lines both take."""
-    provenance = {}
-    with open(path, encoding="utf-8", errors="replace") as file:
-        for number, line in enumerate(file, start=1):
-            line = line.strip()
-            if not line.startswith("#"):
-                return provenance, [name.strip() for name in line.split(",")], number
-            key, equals, value = line.lstrip("# ").partition("=")
-            if equals:
-                provenance[key.strip()] = value.strip()
-    raise RunError(f"{path}: no header line")
 
 
 def _incomplete_reason(path):

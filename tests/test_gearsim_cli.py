@@ -504,6 +504,19 @@ class Values(Case):
         self.refused(f"run.ini:{line_of(params, 'model')}: mesh.model: ", "(got simple)", "must be 3d", params=params,
                      arguments=static)
 
+    def test_loads_of_a_static_analysis_fit_together(self):
+        static = ["--set", "analysis.type=static", "--set", "analysis.loads=2"]
+        self.refused("--set analysis.loads: ", "need load.end_Nm", arguments=static)
+        for end in ("-5", "0"):
+            self.refused("--set load.end_Nm: ", "with the sign of load.mean_Nm",
+                         arguments=static + ["--set", f"load.end_Nm={end}"])
+        self.refused("--set analysis.loads: ", "too many rows", "(got 1000000 with 100000000 positions)",
+                     arguments=static + ["--set", "analysis.loads=1000000", "--set", "load.end_Nm=5", "--set",
+                                         "analysis.positions=100000000"])
+        self.write("run.ini", PARAMS)
+        result = self.accepted("run.ini", "--check", "--set", "analysis.type=static", "--set", "load.end_Nm=5")
+        self.assertIn("--set load.end_Nm: warning: not used with analysis.loads = 1\n", result.stderr)
+
     def test_lookup_needs_helical_gears_and_stays_within_a_tooth(self):
         spur = ["--set", "gears.helix_angle_deg=0", "--set", "gears.center_distance_mm=71.5"]
         for key in ("pinion", "wheel"):

@@ -385,6 +385,15 @@ class Static(Case):
             angles = self.static(f"analysis.period={period}", "analysis.positions=7")["pinion_angle_rad"]
             self.assert_all_close(angles, [2 * math.pi / 45 * passes * k / 7 for k in range(7)], relative=4e-16)
 
+    def test_several_loads_are_the_runs_of_each_one_after_the_other(self):
+        loads = [20, 12.5, 5]
+        together = self.static("analysis.loads=3", "load.end_Nm=5")
+        one_by_one = [self.static(f"load.mean_Nm={load}") for load in loads]
+        for name, values in together.items():
+            self.assertEqual(values, [value for run in one_by_one for value in run[name]])
+        self.assertEqual(together["load_torque_Nm"], [load for load in loads for _ in range(60)])
+        self.assertGreater(max(together["te_um"][120:]) - max(together["te_um"][:60]), 1)
+
     def test_coast_side_mirrors_the_drive_side(self):
         """Without flank files: the mean of one side is minus that of the other."""
         drive, coast = self.static("analysis.positions=500"), self.static("load.mean_Nm=-20", "analysis.positions=500")

@@ -15,7 +15,8 @@ const char *const dynamic_columns[] = {
 const int dynamic_column_count = sizeof dynamic_columns / sizeof dynamic_columns[0];
 
 const char *const static_columns[] = {
-    "pinion_angle_rad", "te_um", "mesh_stiffness_N_per_um", "contact_length_mm", "pairs_in_contact",
+    "load_torque_Nm",          "pinion_angle_rad",  "te_um",
+    "mesh_stiffness_N_per_um", "contact_length_mm", "pairs_in_contact",
 };
 const int static_column_count = sizeof static_columns / sizeof static_columns[0];
 

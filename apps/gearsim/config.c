@@ -182,6 +182,24 @@ static int check_profile_window(const config *conf) {
     return 1;
 }
 
+/* The loads of a static analysis must not pass zero. */
+static int check_loads(const config *conf) {
+    const double rows = (double)conf->loads * conf->positions;
+
+    if (!(rows <= row_limit)) {
+        config_complain(conf, "analysis.loads",
+                        "gives too many rows (got %d with %d positions), at most %.9g are written",
+                        conf->loads, conf->positions, row_limit);
+        return 1;
+    }
+    if (conf->loads > 1 && !(conf->mean_load * conf->end_load > 0)) {
+        config_complain(conf, isnan(conf->end_load) ? "analysis.loads" : "load.end_Nm",
+                        "several loads need load.end_Nm, with the sign of load.mean_Nm");
+        return 1;
+    }
+    return 0;
+}
+
 static int check_static(const config *conf) {
     int faults = 0;
 
@@ -196,7 +214,7 @@ static int check_static(const config *conf) {
                         "backlash, must not be 0");
         ++faults;
     }
-    return faults;
+    return faults + check_loads(conf);
 }
 
 static int check_dynamic(const config *conf) {
@@ -273,6 +291,8 @@ static void warn_of_unused(const config *conf) {
     for (int i = 0; i < gearsim_keys.count; ++i)
         if (conf->entries[i].text != NULL && !key_is_used(key_at(i), conf, &reason))
             config_warn(conf, key_at(i)->full_name, "not used with %s", reason);
+    if (conf->analysis == ANALYSIS_STATIC && conf->loads == 1 && !isnan(conf->end_load))
+        config_warn(conf, "load.end_Nm", "not used with analysis.loads = 1");
     if (conf->model == MODEL_3D)
         modification_keys_warn(conf);
 }

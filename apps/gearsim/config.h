@@ -72,6 +72,7 @@ typedef struct config {
     double drive_torque;           /* N m */
 
     double mean_load; /* N m */
+    double end_load;  /* of the last of the static sweeps, N m; NaN: mean_load */
     double noise_amplitude;
     double noise_interval; /* s */
     uint64_t seed;
@@ -79,6 +80,7 @@ typedef struct config {
     enum analysis_type analysis;
     double duration; /* s */
     int positions;
+    int loads; /* static sweeps over the positions, from mean_load to end_load */
     enum static_period period;
 
     enum solver_method method;

@@ -103,6 +103,8 @@ static const key_spec keys[] = {
 
     {NAME("load", "mean_Nm"), NUMBER(UNIT_SI, ANY), INTO(mean_load),
      .required = FOR_RUN, .help = "on the wheel, > 0 resists its driven direction"},
+    {NAME("load", "end_Nm"), NUMBER(UNIT_SI, ANY), INTO(end_load), .derived = "as mean_Nm",
+     .used = FOR_STATIC, .help = "last of the loads of a static analysis, the first is mean_Nm"},
     {NAME("load", "noise_amplitude_Nm"), NUMBER(UNIT_SI, NOT_NEGATIVE), INTO(noise_amplitude),
      .standard = "0", .used = FOR_DYNAMIC, .help = "noise on the load, uniform in +- amplitude"},
     {NAME("load", "noise_interval_s"), NUMBER(UNIT_SI, ABOVE_ZERO), INTO(noise_interval),
@@ -118,6 +120,8 @@ static const key_spec keys[] = {
      .standard = "200", .used = FOR_STATIC, .help = "equal steps over the period"},
     {NAME("analysis", "period"), CHOICE("mesh pinion hunting"), INTO(period),
      .standard = "mesh", .used = FOR_STATIC, .help = "one tooth, one turn, or until the same teeth meet"},
+    {NAME("analysis", "loads"), COUNT(1, 1000000), INTO(loads), .standard = "1",
+     .used = FOR_STATIC, .help = "one period for each of so many loads, evenly from mean_Nm to end_Nm"},
 
     {NAME("solver", "method"), CHOICE("bdf adams erk"), INTO(method), .standard = "adams",
      .used = FOR_DYNAMIC, .help = "of CVODE; erk: explicit Runge-Kutta, of ARKODE"},

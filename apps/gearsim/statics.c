@@ -11,7 +11,7 @@
 #include <math.h>
 
 /* Places of static_columns. */
-enum column { PINION_ANGLE, TE, MESH_STIFFNESS, CONTACT_LENGTH, PAIRS, COLUMNS };
+enum column { LOAD, PINION_ANGLE, TE, MESH_STIFFNESS, CONTACT_LENGTH, PAIRS, COLUMNS };
 
 static const double two_pi = 6.283185307179586;
 
@@ -46,14 +46,22 @@ static double pinion_angle(const config *conf, int position) {
            ((double)conf->positions * conf->gears.pinion_teeth);
 }
 
-/* Where the position before was in equilibrium, and how it goes on from there. */
-typedef struct course {
+/* The ends exactly as given. */
+static double load_of(const config *conf, int index) {
+    const double share = conf->loads > 1 ? (double)index / (conf->loads - 1) : 0.0;
+
+    return share > 0.0 ? (1.0 - share) * conf->mean_load + share * conf->end_load : conf->mean_load;
+}
+
+/* A period under one load: where the position before was in equilibrium, and how it goes on from there. */
+typedef struct sweep {
+    double load;   /* (N m) */
     double angle;  /* (rad) */
     double offset; /* (m), NaN = not known yet */
     double slope;  /* its derivative by the pinion angle (m/rad) */
-} course;
+} sweep;
 
-static int write_position(const config *conf, const gearbox *gears, double angle, course *before,
+static int write_position(const config *conf, const gearbox *gears, double angle, sweep *before,
                           output_file *output, int *status) {
     const gm_pair *pair = &gears->pair;
     const double guess = before->offset + before->slope * (angle - before->angle);
@@ -61,7 +69,7 @@ static int write_position(const config *conf, const gearbox *gears, double angle
     double offset;
 
     *status = gm_static_equilibrium_near(pair, gears->pinion_flanks, gears->wheel_flanks, angle,
-                                         conf->stiffness, conf->mean_load, guess, &offset, &mesh);
+                                         conf->stiffness, before->load, guess, &offset, &mesh);
     if (*status != GM_OK) {
         return EXIT_RUN_FAILED;
     }
@@ -73,6 +81,7 @@ static int write_position(const config *conf, const gearbox *gears, double angle
     /* Of the face width, summed over the pairs and both flanks. */
     const double touching = mesh.drive_contact + mesh.coast_contact;
     const double values[COLUMNS] = {
+        [LOAD] = before->load,
         [PINION_ANGLE] = angle,
         [TE] = -offset * 1e6,
         [MESH_STIFFNESS] = conf->stiffness * touching * 1e-6,
@@ -82,42 +91,63 @@ static int write_position(const config *conf, const gearbox *gears, double angle
     return output_row(output, values);
 }
 
+/* Which position a message is about. */
+enum { PLACE_SIZE = 96 };
+static const char *place_text(char text[PLACE_SIZE], double load, double angle) {
+    snprintf(text, PLACE_SIZE, "at a pinion angle of %.9g rad under %.9g N m", angle, load);
+    return text;
+}
+
 /* Why a position could not be written, as a message and in the file. */
-static int fail(output_file *output, double angle, int status) {
+static int fail(output_file *output, double load, double angle, int status) {
+    char place[PLACE_SIZE];
     char why[256];
 
+    place_text(place, load, angle);
     if (status == GM_OK) {
-        snprintf(why, sizeof why, "the disk took no more at a pinion angle of %.9g rad", angle);
+        snprintf(why, sizeof why, "the disk took no more %s", place);
     } else {
-        snprintf(why, sizeof why, "no equilibrium at a pinion angle of %.9g rad: %s", angle,
-                 gm_status_text(status));
+        snprintf(why, sizeof why, "no equilibrium %s: %s", place, gm_status_text(status));
     }
     fprintf(stderr, "gearsim: %s\n", why);
     output_close(output, why);
     return EXIT_RUN_FAILED;
 }
 
-static int interrupted(output_file *output, double angle) {
+static int interrupted(output_file *output, double load, double angle) {
+    char place[PLACE_SIZE];
     char why[128];
 
-    snprintf(why, sizeof why, "interrupted at a pinion angle of %.9g rad", angle);
+    snprintf(why, sizeof why, "interrupted %s", place_text(place, load, angle));
     fprintf(stderr, "gearsim: %s\n", why);
     output_close(output, why);
     return EXIT_INTERRUPTED;
 }
 
-static int write_all(const config *conf, const gearbox *gears, output_file *output) {
-    course before = {0.0, NAN, 0.0};
+/* The period under one load; 0, or an exit code and the file is closed. */
+static int write_period(const config *conf, const gearbox *gears, double load,
+                        output_file *output) {
+    sweep before = {load, 0.0, NAN, 0.0};
 
     for (int position = 0; position < conf->positions; ++position) {
         const double angle = pinion_angle(conf, position);
         int status;
 
         if (interrupt_requested()) {
-            return interrupted(output, angle);
+            return interrupted(output, load, angle);
         }
         if (write_position(conf, gears, angle, &before, output, &status) != 0) {
-            return fail(output, angle, status);
+            return fail(output, load, angle, status);
+        }
+    }
+    return 0;
+}
+
+static int write_all(const config *conf, const gearbox *gears, output_file *output) {
+    for (int index = 0; index < conf->loads; ++index) {
+        const int exit_code = write_period(conf, gears, load_of(conf, index), output);
+        if (exit_code != 0) {
+            return exit_code;
         }
     }
     return output_close(output, NULL);
