@@ -11,8 +11,8 @@
 
 static const char usage[] =
     "usage: gearflanks PARAMS.ini --gear pinion|wheel --class N [--share X]\n"
-    "                  --flanks FILE --pitch FILE [--seed N] [--nodes FACExPROFILE] [--wave "
-    "ORDER:UM]...\n"
+    "                  --flanks FILE --pitch FILE [--seed N] [--nodes FACExPROFILE]\n"
+    "                  [--wave ORDER:UM]...\n"
     "       gearflanks PARAMS.ini --gear pinion|wheel --scatter SCATTER.ini ... as above\n"
     "       gearflanks PARAMS.ini --gear pinion|wheel --evaluate [--flanks FILE] [--pitch FILE] "
     "[--teeth]\n"
@@ -25,12 +25,9 @@ static const char usage[] =
 
 static const char help[] =
     "\n"
-    "Makes flank and pitch files of a gear: of a flank tolerance class of ISO 1328-1, or with "
-    "amounts "
-    "that\n"
-    "scatter from tooth to tooth; and prints what they measure to. Or makes them from what was "
-    "measured.\n"
-    "Or evaluates such files. PARAMS.ini is that of gearsim; only [gears] is needed.\n"
+    "Makes flank and pitch files of a gear: of a flank tolerance class of ISO 1328-1, or with\n"
+    "amounts that scatter from tooth to tooth, and prints what they measure to; or from what was\n"
+    "measured. Or evaluates such files. PARAMS.ini is that of gearsim; only [gears] is needed.\n"
     "\n"
     "  --gear pinion|wheel    which gear\n"
     "  --flanks FILE          deviation file: written, or with --evaluate read\n"
@@ -76,8 +73,7 @@ static const char help[] =
     "What is evaluated and made: libgearmesh/docs/flank-quality.md. Files of measurements: "
     "measured-flanks.md.\n"
     "\n"
-    "All keys of SCATTER.ini, with [default], meaning and range; amounts are along the surface "
-    "normal:\n"
+    "All keys of SCATTER.ini, with [default], meaning and range; amounts are along the normal:\n"
     "\n";
 
 void options_print_help(FILE *stream) {
