@@ -281,7 +281,7 @@ static void equilibrium_refuses_what_it_must(void) {
     r.penetration = 0.0;
     GM_ASSERT_INT(gm_static_equilibrium(&pair, NULL, NULL, 0.1, 1e8, 1.0, NULL, &r), GM_ERR_NULL);
     GM_ASSERT_NAN(r.penetration);
-    static const double bad_stiffness[] = {0.0, -1.0, NAN, HUGE_VAL};
+    static const double bad_stiffness[] = {0.0, -1.0, NAN, HUGE_VAL, 0.99e-30, 1.01e30};
     for (size_t k = 0; k < sizeof bad_stiffness / sizeof bad_stiffness[0]; k++) {
         gm_test_context("stiffness %g", bad_stiffness[k]);
         x = 0.0;
@@ -521,16 +521,28 @@ static void a_guess_beyond_the_largest_sum_finds_back(void) {
     GM_ASSERT_INT(gm_flanks_init(&flanks, &sizes, memory, sizeof memory), GM_OK);
 
     /* Without and with a gap of 0.12 base pitches before all teeth but one, which is elsewhere. */
-    for (int gap = 0; gap < 2; gap++) {
-        const double angle = 0.1;
-        const double best = gap == 0 ? 0.3 * pitch : 0.36 * pitch;
-        const double sum = 0.9 * at(&pair, &flanks, NULL, angle, best).drive;
+    for (int n = 0; n < 8; n++) {
+        const int gap = n / 4;
+        const double angle = n % 2 == 0 ? 0.1 : 0.9 * pair.pinion.pitch_angle;
+        for (int tooth = 0; tooth < 45 && gap; tooth++) {
+            GM_ASSERT_INT(
+                gm_flanks_set_pitch(&flanks, GM_DRIVE, tooth, tooth == 20 ? 0.0 : -0.12 * pitch),
+                GM_OK);
+        }
+        double largest = 0.0, best = 0.0;
+        for (int k = 0; k < 500; k++) {
+            const double x = 1e-3 * k * pitch;
+            const double drive = at(&pair, &flanks, NULL, angle, x).drive;
+            best = drive > largest ? x : best;
+            largest = fmax(drive, largest);
+        }
+        const double sum = (n % 4 < 2 ? 0.98 : 0.9999) * largest;
         const double torque = 1e8 * pair.wheel.base_radius * sum;
         const double behind = 0.49 * pitch;
         GM_ASSERT(at(&pair, &flanks, NULL, angle, behind).drive < sum);
         const double guesses[] = {NAN, behind, 0.4999 * pitch, 0.6 * pair.backlash};
         for (size_t k = 0; k < sizeof guesses / sizeof guesses[0]; k++) {
-            gm_test_context("gap %d, guess %g", gap, guesses[k]);
+            gm_test_context("case %d, guess %g", n, guesses[k]);
             double x = NAN;
             gm_penetration r;
             GM_ASSERT_INT(gm_static_equilibrium_near(&pair, &flanks, NULL, angle, 1e8, torque,
@@ -538,11 +550,6 @@ static void a_guess_beyond_the_largest_sum_finds_back(void) {
                           GM_OK);
             GM_ASSERT(x < best);
             GM_ASSERT_ABS(r.drive, sum, ACCURACY * pair.center_distance);
-        }
-        for (int tooth = 0; tooth < 45; tooth++) {
-            GM_ASSERT_INT(
-                gm_flanks_set_pitch(&flanks, GM_DRIVE, tooth, tooth == 20 ? 0.0 : -0.12 * pitch),
-                GM_OK);
         }
     }
 }

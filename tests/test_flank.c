@@ -336,8 +336,8 @@ static void ramps_that_cannot_be_change_nothing(void) {
         GM_ASSERT_INT(gm_flanks_set_ramps(&flanks, GM_COAST, ramps, 1, factors[k]),
                       GM_ERR_PARAMETER);
     }
-    static const double bad[] = {NAN, HUGE_VAL, -HUGE_VAL, 1e308};
-    for (int k = 0; k < 4; k++) {
+    static const double bad[] = {NAN, HUGE_VAL, -HUGE_VAL, 1e308, -0.51e30};
+    for (int k = 0; k < 5; k++) {
         for (int field = 0; field < 3; field++) {
             gm_test_context("field %d = %g", field, bad[k]);
             gm_flank_ramp wrong[2] = {{3e-6, 0.0, 0.0}, {0.0, 0.0, 0.0}};
@@ -380,7 +380,7 @@ static void deviations_that_are_no_numbers_change_nothing(void) {
     GM_ASSERT_INT(gm_flanks_set_pitch(&flanks, GM_DRIVE, GM_ALL_TEETH, 0.5e-6), GM_OK);
     const gm_flanks before = flanks;
     const double drive = probe(&flanks, GM_DRIVE, 0.1).drive;
-    static const double bad[] = {NAN, HUGE_VAL, -HUGE_VAL};
+    static const double bad[] = {NAN, HUGE_VAL, -HUGE_VAL, 1.01, -1.01, 1e80, -1e300};
     for (size_t k = 0; k < sizeof bad / sizeof bad[0]; k++) {
         for (int node = 0; node < 12; node += 11) {
             gm_test_context("node %d = %g", node, bad[k]);
@@ -389,7 +389,7 @@ static void deviations_that_are_no_numbers_change_nothing(void) {
             GM_ASSERT_INT(gm_flanks_set_table(&flanks, GM_DRIVE, GM_ALL_TEETH, values, 1.0),
                           GM_ERR_DEVIATION);
         }
-        constant_table(values, 12, 9e-6);
+        constant_table(values, 12, 1.0);
         GM_ASSERT_INT(gm_flanks_set_table(&flanks, GM_DRIVE, 0, values, bad[k]), GM_ERR_DEVIATION);
         GM_ASSERT_INT(gm_flanks_set_pitch(&flanks, GM_DRIVE, 0, bad[k]), GM_ERR_DEVIATION);
         GM_ASSERT_INT(gm_flanks_set_pitch(&flanks, GM_DRIVE, GM_ALL_TEETH, bad[k]),
@@ -400,6 +400,33 @@ static void deviations_that_are_no_numbers_change_nothing(void) {
     GM_ASSERT_INT(gm_flanks_set_table(&flanks, GM_DRIVE, 0, values, 1e200), GM_ERR_DEVIATION);
     GM_ASSERT(memcmp(&before, &flanks, sizeof flanks) == 0);
     GM_ASSERT_REL(probe(&flanks, GM_DRIVE, 0.1).drive, drive, 0.0);
+}
+
+/* A metre of material on one gear and a metre less on the other, in all combinations: nothing overflows. */
+static void the_largest_deviations_give_numbers(void) {
+    const gm_pair pair = reference_pair(REFERENCE_FACE_WIDTH);
+    gm_flanks flanks = small_flanks(&small_sizes);
+    double values[12];
+    for (int i = 0; i < 12; i++) {
+        values[i] = i % 2 == 0 ? 1.0 : -1.0;
+    }
+    GM_ASSERT_INT(gm_flanks_set_table(&flanks, GM_DRIVE, GM_ALL_TEETH, values, 1.0), GM_OK);
+    for (int sign = -1; sign <= 1; sign += 2) {
+        GM_ASSERT_INT(gm_flanks_set_pitch(&flanks, GM_DRIVE, GM_ALL_TEETH, sign), GM_OK);
+        gm_position position;
+        gm_penetration r;
+        gm_wrench w;
+        GM_ASSERT_INT(gm_position_from_pinion_angle(&pair, 0.1, 1e-3, -1e9, &position), GM_OK);
+        GM_ASSERT_INT(gm_penetration_3d_at(&pair, &flanks, NULL, &position, &r), GM_OK);
+        GM_ASSERT(isfinite(r.drive) && isfinite(r.rate) && isfinite(r.d_pinion_angle) &&
+                  isfinite(r.d_wheel_angle));
+        GM_ASSERT(isfinite(gm_contact_force(1e30, 1e30, &r)));
+        GM_ASSERT_INT(gm_wrench_3d_at(&pair, &flanks, NULL, &position, 1e30, 1e30, &w), GM_OK);
+        for (int k = 0; k < 3; k++) {
+            GM_ASSERT(isfinite(w.pinion_force[k]) && isfinite(w.pinion_moment[k]));
+            GM_ASSERT(isfinite(w.wheel_force[k]) && isfinite(w.wheel_moment[k]));
+        }
+    }
 }
 
 static void flanks_of_another_gear_are_refused(void) {
@@ -448,6 +475,7 @@ int main(int argc, char **argv) {
         GM_TEST(ramps_that_cannot_be_change_nothing),
         GM_TEST(teeth_and_sides_that_do_not_exist_are_refused),
         GM_TEST(deviations_that_are_no_numbers_change_nothing),
+        GM_TEST(the_largest_deviations_give_numbers),
         GM_TEST(flanks_of_another_gear_are_refused),
     };
     return gm_test_main("unit.flank", tests, GM_TEST_COUNT(tests), argc, argv);

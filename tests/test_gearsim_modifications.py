@@ -53,7 +53,7 @@ class Refusals(Case):
                                        ["wheel_root_corner_II_width_mm", "-1", "must be > 0"],
                                        ["pinion_drive_tip_relief_shape", "cubic", "must be linear | parabolic | circular"],
                                        ["wheel_crowning_shape", "linear", "must be parabolic | circular"],
-                                       ["tolerance_um", "0", "must be >= 1e-05"]]:
+                                       ["tolerance_um", "0", "must be from 1e-05 to 10000"]]:
             with self.subTest(f"{key} = {value}"):
                 self.refused_value("modifications", key, value, *fragments)
 

@@ -347,26 +347,37 @@ typedef struct wrong_value {
     { #name, offsetof(gm_pair_params, name), value, 1, status }
 
 static const wrong_value wrong_values[] = {
-    INTEGER(pinion_teeth, 2, GM_ERR_PARAMETER), INTEGER(pinion_teeth, -45, GM_ERR_PARAMETER),
-    INTEGER(pinion_teeth, 100001, GM_ERR_PARAMETER), INTEGER(wheel_teeth, 2, GM_ERR_PARAMETER),
-    INTEGER(wheel_teeth, 0, GM_ERR_PARAMETER), INTEGER(wheel_teeth, 100001, GM_ERR_PARAMETER),
-    INTEGER(base_helix, 2, GM_ERR_PARAMETER), INTEGER(base_helix, -1, GM_ERR_PARAMETER),
-    NUMBER(normal_module, 0.0, GM_ERR_PARAMETER), NUMBER(normal_module, -1e-3, GM_ERR_PARAMETER),
-    NUMBER(normal_module, NAN, GM_ERR_PARAMETER), NUMBER(normal_module, HUGE_VAL, GM_ERR_PARAMETER),
+    INTEGER(pinion_teeth, 2, GM_ERR_PARAMETER),
+    INTEGER(pinion_teeth, -45, GM_ERR_PARAMETER),
+    INTEGER(pinion_teeth, 100001, GM_ERR_PARAMETER),
+    INTEGER(wheel_teeth, 2, GM_ERR_PARAMETER),
+    INTEGER(wheel_teeth, 0, GM_ERR_PARAMETER),
+    INTEGER(wheel_teeth, 100001, GM_ERR_PARAMETER),
+    INTEGER(base_helix, 2, GM_ERR_PARAMETER),
+    INTEGER(base_helix, -1, GM_ERR_PARAMETER),
+    NUMBER(normal_module, 0.0, GM_ERR_PARAMETER),
+    NUMBER(normal_module, -1e-3, GM_ERR_PARAMETER),
+    NUMBER(normal_module, NAN, GM_ERR_PARAMETER),
+    NUMBER(normal_module, HUGE_VAL, GM_ERR_PARAMETER),
     NUMBER(normal_pressure_angle, 0.0, GM_ERR_PARAMETER),
     NUMBER(normal_pressure_angle, -0.1, GM_ERR_PARAMETER),
     NUMBER(normal_pressure_angle, 0.7854, GM_ERR_PARAMETER),
     NUMBER(normal_pressure_angle, NAN, GM_ERR_PARAMETER),
-    NUMBER(helix_angle, 1.0472, GM_ERR_PARAMETER), NUMBER(helix_angle, -1.0472, GM_ERR_PARAMETER),
-    NUMBER(helix_angle, NAN, GM_ERR_PARAMETER), NUMBER(center_distance, 0.0, GM_ERR_PARAMETER),
+    NUMBER(helix_angle, 1.0472, GM_ERR_PARAMETER),
+    NUMBER(helix_angle, -1.0472, GM_ERR_PARAMETER),
+    NUMBER(helix_angle, NAN, GM_ERR_PARAMETER),
+    NUMBER(center_distance, 0.0, GM_ERR_PARAMETER),
     NUMBER(center_distance, -85e-3, GM_ERR_PARAMETER),
     NUMBER(center_distance, NAN, GM_ERR_PARAMETER),
-    NUMBER(center_distance, HUGE_VAL, GM_ERR_PARAMETER), NUMBER(face_width, 0.0, GM_ERR_PARAMETER),
-    NUMBER(face_width, -1e-3, GM_ERR_PARAMETER), NUMBER(face_width, NAN, GM_ERR_PARAMETER),
+    NUMBER(center_distance, HUGE_VAL, GM_ERR_PARAMETER),
+    NUMBER(face_width, 0.0, GM_ERR_PARAMETER),
+    NUMBER(face_width, -1e-3, GM_ERR_PARAMETER),
+    NUMBER(face_width, NAN, GM_ERR_PARAMETER),
     NUMBER(face_width, HUGE_VAL, GM_ERR_PARAMETER),
     NUMBER(pinion_profile_shift, HUGE_VAL, GM_ERR_PARAMETER),
     NUMBER(wheel_profile_shift, -HUGE_VAL, GM_ERR_PARAMETER),
-    NUMBER(backlash, HUGE_VAL, GM_ERR_PARAMETER), NUMBER(backlash, -HUGE_VAL, GM_ERR_PARAMETER),
+    NUMBER(backlash, HUGE_VAL, GM_ERR_PARAMETER),
+    NUMBER(backlash, -HUGE_VAL, GM_ERR_PARAMETER),
     NUMBER(pinion_normal_thickness, 0.0, GM_ERR_PARAMETER),
     NUMBER(pinion_normal_thickness, HUGE_VAL, GM_ERR_PARAMETER),
     NUMBER(wheel_normal_thickness, -1e-3, GM_ERR_PARAMETER),
@@ -379,6 +390,22 @@ static const wrong_value wrong_values[] = {
     NUMBER(pinion_start_radius, HUGE_VAL, GM_ERR_PARAMETER),
     NUMBER(wheel_start_radius, -1.0, GM_ERR_PARAMETER),
     NUMBER(wheel_start_radius, HUGE_VAL, GM_ERR_PARAMETER),
+    /* Far beyond all gears. */
+    NUMBER(normal_module, 0.99e-6, GM_ERR_PARAMETER),
+    NUMBER(normal_module, 1.01e9, GM_ERR_PARAMETER),
+    NUMBER(center_distance, 0.99e-6, GM_ERR_PARAMETER),
+    NUMBER(center_distance, 1.01e9, GM_ERR_PARAMETER),
+    NUMBER(face_width, 0.99e-6, GM_ERR_PARAMETER),
+    NUMBER(face_width, 1.01e9, GM_ERR_PARAMETER),
+    NUMBER(pinion_profile_shift, 1001.0, GM_ERR_PARAMETER),
+    NUMBER(wheel_profile_shift, -1001.0, GM_ERR_PARAMETER),
+    NUMBER(backlash, -1.01e9, GM_ERR_PARAMETER),
+    NUMBER(pinion_normal_thickness, 1.01e9, GM_ERR_PARAMETER),
+    NUMBER(wheel_normal_thickness, 0.99e-6, GM_ERR_PARAMETER),
+    NUMBER(pinion_tip_radius, 1.01e9, GM_ERR_PARAMETER),
+    NUMBER(wheel_tip_radius, 0.99e-6, GM_ERR_PARAMETER),
+    NUMBER(pinion_start_radius, 1e-7, GM_ERR_PARAMETER),
+    NUMBER(wheel_start_radius, 1e300, GM_ERR_PARAMETER),
     /* Each fine, together not. r_bp + r_bw = 80.05 mm. */
     NUMBER(center_distance, 80.04e-3, GM_ERR_GEOMETRY),
     NUMBER(pinion_tip_radius, 41.8e-3, GM_ERR_GEOMETRY), /* below the base circle */
@@ -390,6 +417,10 @@ static const wrong_value wrong_values[] = {
     NUMBER(wheel_profile_shift, -3.0, GM_ERR_GEOMETRY),
     NUMBER(backlash, -5.85e-3, GM_ERR_GEOMETRY), /* the base pitch is 5.848 mm */
     NUMBER(face_width, 100.0, GM_ERR_GEOMETRY),  /* thousands of lines of contact at once */
+    /* Teeth so thick that they would overlap by more than a pitch, also where no backlash is given. */
+    NUMBER(pinion_normal_thickness, 20e-3, GM_ERR_GEOMETRY),
+    NUMBER(wheel_normal_thickness, 1e6, GM_ERR_GEOMETRY),
+    NUMBER(pinion_profile_shift, 20.0, GM_ERR_GEOMETRY),
 };
 
 static void set_wrong(gm_pair_params *params, const wrong_value *wrong) {
@@ -460,6 +491,24 @@ static void values_just_inside_the_ranges_are_taken(void) {
     GM_ASSERT_INT(gm_pair_init(&pair, &params), GM_OK);
     params.helix_angle = -59.9 * degree;
     GM_ASSERT_INT(gm_pair_init(&pair, &params), GM_OK);
+}
+
+static void teeth_far_from_their_path_of_contact_are_refused(void) {
+    gm_pair_params params = reference_params(REFERENCE_FACE_WIDTH);
+    gm_pair pair;
+    /* The wheel's tips are far out, so that the pair meshes nowhere near the pitch point. */
+    params.center_distance = 400.0;
+    params.pinion_tip_radius = 170.0;
+    params.pinion_start_radius = 165.0;
+    params.wheel_tip_radius = 236.0;
+    params.wheel_start_radius = 230.0;
+    const char *field = "";
+    const char *requirement = "";
+    GM_ASSERT_INT(gm_pair_params_check(&params, &field, &requirement), GM_ERR_GEOMETRY);
+    GM_ASSERT_STRING(field, "center_distance");
+    GM_ASSERT(requirement != NULL && strstr(requirement, "1000 base pitches") != NULL);
+    GM_ASSERT_INT(gm_pair_init(&pair, &params), GM_ERR_GEOMETRY);
+    assert_unusable(&pair);
 }
 
 static void tips_that_do_not_reach_each_other_are_refused(void) {
@@ -683,6 +732,7 @@ int main(int argc, char **argv) {
         GM_TEST(pitch_angle_carries_two_doubles),
         GM_TEST(every_wrong_value_is_named),
         GM_TEST(values_just_inside_the_ranges_are_taken),
+        GM_TEST(teeth_far_from_their_path_of_contact_are_refused),
         GM_TEST(tips_that_do_not_reach_each_other_are_refused),
         GM_TEST(a_thin_tooth_is_blamed_on_what_was_given),
         GM_TEST(the_gear_at_fault_is_named),

@@ -166,6 +166,59 @@ static void simple_model_refuses_what_is_no_number(void) {
     }
 }
 
+/* Both sides touch, so that the rates of both add up. */
+static void speeds_are_taken_up_to_1e9(void) {
+    gm_pair_params params = reference_params(REFERENCE_FACE_WIDTH);
+    params.backlash = -20e-6;
+    const gm_pair pair = make_pair(&params);
+    static const double absurd[] = {1.01e9, -1.01e9, 1e80, -1.7e308};
+    for (int k = 0; k < 4; k++) {
+        gm_test_context("%g", absurd[k]);
+        gm_state states[2] = {{0.1, 0.1 * 45.0 / 41.0, absurd[k], 0.0},
+                              {0.1, 0.1 * 45.0 / 41.0, 0.0, absurd[k]}};
+        gm_position position = {0, 0, 0.0, 0.0, absurd[k]};
+        gm_penetration r;
+        gm_wrench w;
+        for (int gear = 0; gear < 2; gear++) {
+            GM_ASSERT_INT(gm_penetration_3d(&pair, NULL, NULL, &states[gear], &r),
+                          GM_STATE_OUT_OF_RANGE);
+            assert_all_nan(&r);
+            GM_ASSERT_INT(gm_penetration_simple(&pair, &states[gear], &r), GM_STATE_OUT_OF_RANGE);
+            assert_all_nan(&r);
+            GM_ASSERT_INT(gm_position_from_state(&pair, &states[gear], &position),
+                          GM_STATE_OUT_OF_RANGE);
+            GM_ASSERT_NAN(position.offset_rate);
+        }
+        position = (gm_position){0, 0, 0.0, 0.0, absurd[k]};
+        GM_ASSERT_INT(gm_penetration_3d_at(&pair, NULL, NULL, &position, &r),
+                      GM_STATE_OUT_OF_RANGE);
+        assert_all_nan(&r);
+        GM_ASSERT_INT(gm_wrench_3d_at(&pair, NULL, NULL, &position, 1e8, 1e3, &w),
+                      GM_STATE_OUT_OF_RANGE);
+        GM_ASSERT_NAN(w.wheel_force[0]);
+        GM_ASSERT_INT(gm_penetration_simple_at(&pair, 0.0, absurd[k], &r), GM_STATE_OUT_OF_RANGE);
+        assert_all_nan(&r);
+        GM_ASSERT_INT(gm_penetration_simple_at(&pair, k % 2 ? 1.01e18 : -1.7e308, 0.0, &r),
+                      GM_STATE_OUT_OF_RANGE);
+        assert_all_nan(&r);
+        GM_ASSERT_INT(gm_position_from_pinion_angle(&pair, 0.1, 0.0, absurd[k], &position),
+                      GM_STATE_OUT_OF_RANGE);
+        GM_ASSERT_NAN(position.offset_rate);
+    }
+    gm_penetration r;
+    gm_position position = {0, 0, 0.0, 0.0, 1e9};
+    GM_ASSERT_INT(gm_penetration_3d_at(&pair, NULL, NULL, &position, &r), GM_OK);
+    GM_ASSERT_REL(r.rate, 1e9 * (r.drive_contact + r.coast_contact), 1e-15);
+    GM_ASSERT_INT(gm_position_from_pinion_angle(&pair, 0.1, 0.0, -1e9, &position), GM_OK);
+    GM_ASSERT_INT(gm_penetration_simple_at(&pair, -1e18, -1e9, &r), GM_OK);
+    GM_ASSERT_REL(r.coast, 1e18, 1e-15);
+    GM_ASSERT_REL(r.rate, -1e9, 1e-15);
+    const gm_state state = {0.1, 0.1 * 45.0 / 41.0, 1e9, -1e9};
+    GM_ASSERT_INT(gm_penetration_simple(&pair, &state, &r), GM_OK);
+    GM_ASSERT_INT(gm_penetration_3d(&pair, NULL, NULL, &state, &r), GM_OK);
+    GM_ASSERT(isfinite(r.rate));
+}
+
 static void a_pair_that_failed_cannot_be_evaluated(void) {
     gm_pair_params params = reference_params(REFERENCE_FACE_WIDTH);
     params.normal_module = 0.0;
@@ -224,6 +277,7 @@ int main(int argc, char **argv) {
         GM_TEST(null_pointers_are_refused),
         GM_TEST(positions_out_of_range_are_refused),
         GM_TEST(simple_model_refuses_what_is_no_number),
+        GM_TEST(speeds_are_taken_up_to_1e9),
         GM_TEST(a_pair_that_failed_cannot_be_evaluated),
         GM_TEST(evaluation_writes_its_output_alone),
     };

@@ -398,7 +398,8 @@ static void all_lengths_scale_together(void) {
         gm_pair_params params;
         model_pair model;
         random_params(&seed, &params, &model);
-        const double scale = scales[i % 3];
+        /* Lengths below 1e-6 m are refused. */
+        const double scale = params.normal_module * scales[i % 3] < 2e-6 ? 1e3 : scales[i % 3];
         const gm_pair pair = make_pair(&params);
         double *const lengths[] = {&params.normal_module,
                                    &params.center_distance,

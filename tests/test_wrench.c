@@ -217,6 +217,27 @@ static void null_pointers_are_refused(void) {
     }
 }
 
+static void absurd_stiffness_and_damping_are_refused(void) {
+    const gm_pair pair = spur_pair();
+    gm_position position;
+    gm_wrench w;
+    GM_ASSERT_INT(gm_position_from_pinion_angle(&pair, 0.1, 40e-6, 0.0, &position), GM_OK);
+    static const double bad[] = {NAN, HUGE_VAL, -HUGE_VAL, 1.01e30, -1e300};
+    for (size_t k = 0; k < 2 * sizeof bad / sizeof bad[0]; k++) {
+        gm_test_context("%g, case %zu", bad[k / 2], k % 2);
+        memset(&w, 0, sizeof w);
+        GM_ASSERT_INT(gm_wrench_3d_at(&pair, NULL, NULL, &position, k % 2 ? bad[k / 2] : 1e8,
+                                      k % 2 ? 0.0 : bad[k / 2], &w),
+                      GM_ERR_PARAMETER);
+        for (int i = 0; i < 3; i++) {
+            GM_ASSERT_NAN(w.pinion_force[i]);
+            GM_ASSERT_NAN(w.wheel_moment[i]);
+        }
+    }
+    GM_ASSERT_INT(gm_wrench_3d_at(&pair, NULL, NULL, &position, 1e30, -1e30, &w), GM_OK);
+    GM_ASSERT(isfinite(w.wheel_moment[2]));
+}
+
 int main(int argc, char **argv) {
     static const gm_test tests[] = {
         GM_TEST(each_line_of_contact_pushes_where_it_is),
@@ -224,6 +245,7 @@ int main(int argc, char **argv) {
         GM_TEST(spur_wrench_acts_at_mid_face),
         GM_TEST(teeth_do_not_pull),
         GM_TEST(null_pointers_are_refused),
+        GM_TEST(absurd_stiffness_and_damping_are_refused),
     };
     return gm_test_main("unit.wrench", tests, GM_TEST_COUNT(tests), argc, argv);
 }

@@ -19,12 +19,11 @@
     { 0, HUGE_VAL, 1, 1 }
 #define NOT_NEGATIVE                                                                               \
     { 0, HUGE_VAL, 0, 1 }
-#define AT_LEAST(a)                                                                                \
-    { a, HUGE_VAL, 0, 1 }
 #define BETWEEN(a, b)                                                                              \
     { a, b, 0, 0 }
 #define WITHIN(a, b)                                                                               \
     { a, b, 1, 1 }
+#define UP_TO(size) BETWEEN(-(size), size) /* either way */
 
 #define NUMBER(key_unit, ...) .kind = KEY_NUMBER, .unit = (key_unit), .range = __VA_ARGS__
 #define COUNT(low, high)      .kind = KEY_COUNT, .range = BETWEEN(low, high)

@@ -28,10 +28,16 @@ typedef struct problem {
         resolution; /* of x: the rounding of the lengths that the lines of contact are clipped to (m) */
 } problem;
 
-/* Between `lower`, where the load is below the target, and `upper`, where it has reached it if that is known. */
+/* The load is below the target at `lower`; what is known of `upper`: */
+enum upper_end {
+    RANGE_ENDS, /* only that the travel must not go beyond */
+    LOAD_FALLS, /* the load is below the target there as well, its largest value lies between */
+    CARRIES     /* the target is reached there */
+};
+
 typedef struct bracket {
     double lower, upper;
-    int closed; /* upper is known to carry the load */
+    enum upper_end end;
 } bracket;
 
 /* Load less target at a travel, and the full result. Callers keep it below half a base pitch. */
@@ -66,8 +72,8 @@ static double clamp(double value, double limit) {
 }
 
 /*
- * From `travel` on: Newton's method within the bracket; as long as it is open, outwards by `reach` at most, which
- * doubles. Returns 0 if the travel leaves its range before the load is reached.
+ * From `travel` on: Newton's method within the bracket. Where nothing is known of its upper end, outwards by `reach` at
+ * most, which doubles. Returns 0 if the load is not reached.
  */
 static int solve(const problem *p, bracket within, double travel, double reach, double *found,
                  gm_penetration *result) {
@@ -79,23 +85,25 @@ static int solve(const problem *p, bracket within, double travel, double reach, 
             return 1;
         if (value >= 0.0) {
             within.upper = travel;
-            within.closed = 1;
+            within.end = CARRIES;
         } else if (travel >= within.upper) {
-            return within.closed;
+            return 0;
+        } else if (within.end == LOAD_FALLS && slope < 0.0) {
+            within.upper = travel;
         } else {
             within.lower = travel;
         }
 
-        if (within.closed && within.upper - within.lower <= p->resolution)
-            return 1; /* a step of the sum */
+        if (within.end != RANGE_ENDS && within.upper - within.lower <= p->resolution)
+            return within.end == CARRIES; /* a step of the sum */
         const double newton = k < NEWTON_STEPS && slope > 0.0 ? travel - value / slope : gmi_nan();
-        if (within.closed) {
+        if (within.end == RANGE_ENDS) {
+            travel = fmin(fmin(newton, travel + reach), within.upper);
+            reach *= 2.0;
+        } else {
             travel = newton > within.lower && newton < within.upper
                          ? newton
                          : within.lower + 0.5 * (within.upper - within.lower);
-        } else {
-            travel = fmin(fmin(newton, travel + reach), within.upper);
-            reach *= 2.0;
         }
     }
     return 0;
@@ -125,7 +133,7 @@ static int solve_before_departure(const problem *p, double lower, double reached
     gm_penetration there;
     if (!can_fall || !(before > lower && before < reached) || residual(p, before, &there) < 0.0)
         return 0;
-    const bracket within = {lower, before, 1};
+    const bracket within = {lower, before, CARRIES};
     return solve(p, within, before, 0.0, found, result);
 }
 
@@ -137,11 +145,14 @@ static int find_loaded(const problem *p, double guess, double *found, gm_penetra
     const double reach = fmax(p->target + 3.0 * fmax(peak, 0.0), p->resolution);
     const double start = fmin(lower + reach, limit);
     const int guessed = guess > lower && guess < limit;
-    const bracket within = {lower, limit, 0};
+    const bracket open = {lower, limit, RANGE_ENDS};
+    const bracket bent = {lower, limit, LOAD_FALLS};
 
-    int carried = guessed && solve(p, within, guess, reach, found, result);
+    int carried = guessed && solve(p, open, guess, reach, found, result);
     if (!carried)
-        carried = solve(p, within, start, reach, found, result);
+        carried = solve(p, open, start, reach, found, result);
+    if (!carried)
+        carried = solve(p, bent, start, reach, found, result);
     const double reached = carried ? *found : limit;
     if (solve_before_departure(p, lower, reached, found, result))
         carried = 1;
@@ -155,7 +166,7 @@ static int find_unloaded(const problem *p, double guess, double *found, gm_penet
     const bracket within = {
         clamp(half_backlash - sum_peak(p, GM_DRIVE), limit),  /* below: no drive contact */
         clamp(-half_backlash + sum_peak(p, GM_COAST), limit), /* above: no coast contact */
-        1,
+        CARRIES,
     };
     if (!(within.lower < within.upper))
         return GM_UNDETERMINED;
@@ -180,7 +191,8 @@ int gm_static_equilibrium_near(const gm_pair *pair, const gm_flanks *pinion_flan
     *offset = gmi_nan();
     if (pair == NULL)
         return GM_ERR_NULL;
-    if (!(stiffness > 0.0) || !gmi_is_finite(stiffness) || !gmi_is_finite(wheel_torque))
+    if (!(stiffness >= GMI_SMALLEST_STIFFNESS && stiffness <= GMI_LARGEST_STIFFNESS) ||
+        !gmi_is_finite(wheel_torque))
         return GM_ERR_PARAMETER;
 
     problem p = {pair, pinion_flanks, wheel_flanks, {0, 0, 0.0, 0.0, 0.0}, 1.0, 0.0, 0.0};

@@ -8,6 +8,7 @@
  */
 #include "internal.h"
 
+#include <math.h>
 #include <stdint.h>
 #include <string.h>
 
@@ -127,10 +128,15 @@ static void update_peak(const gm_flanks *flanks, gm_flank_tables *side, int toot
         side->peak = now;
 }
 
+/* Negated elsewhere, so that NaN is caught. */
+static int is_deviation(double deviation) {
+    return fabs(deviation) <= GMI_LARGEST_DEVIATION;
+}
+
 static int check_deviation(const gm_flank_tables *side, const double *deviation, double factor) {
     const size_t nodes = (size_t)side->face_nodes * (size_t)side->profile_nodes;
     for (size_t k = 0; k < nodes; ++k) {
-        if (!gmi_is_finite(deviation[k] * factor))
+        if (!is_deviation(deviation[k] * factor))
             return 0;
     }
     return 1;
@@ -200,7 +206,7 @@ int gm_flanks_set_pitch(gm_flanks *flanks, int side, int tooth, double deviation
     gm_flank_tables *tables = side_of(flanks, side);
     if (tables == NULL || tooth < GM_ALL_TEETH || tooth >= flanks->teeth)
         return GM_ERR_TOOTH;
-    if (!gmi_is_finite(deviation))
+    if (!is_deviation(deviation))
         return GM_ERR_DEVIATION;
 
     const double before = tooth == GM_ALL_TEETH ? 0.0 : tooth_peak(tables, tooth);
@@ -228,8 +234,8 @@ int gm_flanks_set_ramps(gm_flanks *flanks, int side, const gm_flank_ramp *ramps,
     for (int k = 0; k < count; ++k) {
         const gm_flank_ramp ramp = {factor * ramps[k].offset, factor * ramps[k].per_t1,
                                     factor * ramps[k].per_t2};
-        if (!gmi_is_finite(ramp.offset) || !gmi_is_finite(ramp.per_t1) ||
-            !gmi_is_finite(ramp.per_t2))
+        if (!(fabs(ramp.offset) <= GMI_LARGEST_RAMP && fabs(ramp.per_t1) <= GMI_LARGEST_RAMP &&
+              fabs(ramp.per_t2) <= GMI_LARGEST_RAMP))
             return GM_ERR_DEVIATION;
         scaled[k] = ramp;
     }

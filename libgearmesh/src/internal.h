@@ -20,6 +20,19 @@
 /* Angles beyond this are refused: at 1e9 rad one rounding already moves the flank by nanometres. */
 #define GMI_LARGEST_ANGLE 1e9
 
+/*
+ * Numbers beyond these are refused where they come in. Nobody means them, and within them no product in an evaluation
+ * overflows, so that nothing is looked for on the way.
+ */
+#define GMI_LARGEST_SPEED      1e9   /* of a gear (rad/s), and of approach (m/s) */
+#define GMI_LARGEST_OFFSET     1e18  /* of the simple model, which takes any other x (m) */
+#define GMI_SMALLEST_LENGTH    1e-6  /* of a pair (m) */
+#define GMI_LARGEST_LENGTH     1e9   /* (m) */
+#define GMI_LARGEST_DEVIATION  1.0   /* of a flank (m) */
+#define GMI_LARGEST_RAMP       1e30  /* its parts (m): they are large where it is short */
+#define GMI_SMALLEST_STIFFNESS 1e-30 /* (N/m) */
+#define GMI_LARGEST_STIFFNESS  1e30  /* (N/m), and of damping (N s/m) */
+
 static inline double gmi_nan(void) {
     return (double)NAN;
 }

@@ -11,7 +11,10 @@
 #include <math.h>
 
 #define LARGEST_TEETH         100000
-#define LARGEST_CONTACT_RATIO 1000.0 /* keeps the work of an evaluation bounded */
+#define LARGEST_CONTACT_RATIO 1000.0 /* keeps the work of an evaluation bounded, */
+#define LARGEST_PLACE                                                                              \
+    1000.0 /* and so do so many base pitches from tooth 0 to the path of contact */
+#define LARGEST_SHIFT 1000.0
 
 /* Of the base pitch: what zero backlash may come out as. */
 #define BACKLASH_ROUNDING 1e-12
@@ -58,23 +61,23 @@ static int is_teeth(int teeth) {
     return teeth >= 3 && teeth <= LARGEST_TEETH;
 }
 
-static int is_positive(double value) {
-    return value > 0.0 && gmi_is_finite(value);
+static int is_length(double value) {
+    return value >= GMI_SMALLEST_LENGTH && value <= GMI_LARGEST_LENGTH;
 }
 
-static int is_optional(double value) {
-    return isnan(value) || gmi_is_finite(value);
+static int is_optional_length(double value) {
+    return isnan(value) || is_length(value);
 }
 
-static int is_optional_positive(double value) {
-    return isnan(value) || is_positive(value);
+static int is_optional_within(double value, double limit) {
+    return isnan(value) || fabs(value) <= limit;
 }
 
 /* Each parameter by itself. */
 static problem check_fields(const gm_pair_params *p) {
     static const char teeth[] = "a whole number from 3 to 100000";
-    static const char positive[] = "a number > 0";
-    static const char finite[] = "a finite number";
+    static const char length[] = "a length from 1e-6 to 1e9 m";
+    static const char shift[] = "a number from -1000 to 1000";
     const double degree = GMI_PI / 180.0;
     const struct {
         int valid;
@@ -85,22 +88,23 @@ static problem check_fields(const gm_pair_params *p) {
         {is_teeth(p->wheel_teeth), "wheel_teeth", teeth},
         {p->base_helix == GM_BASE_HELIX_ISO || p->base_helix == GM_BASE_HELIX_PAPER, "base_helix",
          "GM_BASE_HELIX_ISO or GM_BASE_HELIX_PAPER"},
-        {is_positive(p->normal_module), "normal_module", positive},
+        {is_length(p->normal_module), "normal_module", length},
         {p->normal_pressure_angle > 0.0 && p->normal_pressure_angle < 45.0 * degree,
          "normal_pressure_angle", "an angle between 0 and 45 degrees"},
         {fabs(p->helix_angle) < 60.0 * degree, "helix_angle",
          "an angle between -60 and 60 degrees"},
-        {is_positive(p->center_distance), "center_distance", positive},
-        {is_positive(p->face_width), "face_width", positive},
-        {is_optional(p->pinion_profile_shift), "pinion_profile_shift", finite},
-        {is_optional(p->wheel_profile_shift), "wheel_profile_shift", finite},
-        {is_optional(p->backlash), "backlash", finite},
-        {is_optional_positive(p->pinion_normal_thickness), "pinion_normal_thickness", positive},
-        {is_optional_positive(p->wheel_normal_thickness), "wheel_normal_thickness", positive},
-        {is_optional_positive(p->pinion_tip_radius), "pinion_tip_radius", positive},
-        {is_optional_positive(p->wheel_tip_radius), "wheel_tip_radius", positive},
-        {is_optional_positive(p->pinion_start_radius), "pinion_start_radius", positive},
-        {is_optional_positive(p->wheel_start_radius), "wheel_start_radius", positive},
+        {is_length(p->center_distance), "center_distance", length},
+        {is_length(p->face_width), "face_width", length},
+        {is_optional_within(p->pinion_profile_shift, LARGEST_SHIFT), "pinion_profile_shift", shift},
+        {is_optional_within(p->wheel_profile_shift, LARGEST_SHIFT), "wheel_profile_shift", shift},
+        {is_optional_within(p->backlash, GMI_LARGEST_LENGTH), "backlash",
+         "a length from -1e9 to 1e9 m"},
+        {is_optional_length(p->pinion_normal_thickness), "pinion_normal_thickness", length},
+        {is_optional_length(p->wheel_normal_thickness), "wheel_normal_thickness", length},
+        {is_optional_length(p->pinion_tip_radius), "pinion_tip_radius", length},
+        {is_optional_length(p->wheel_tip_radius), "wheel_tip_radius", length},
+        {is_optional_length(p->pinion_start_radius), "pinion_start_radius", length},
+        {is_optional_length(p->wheel_start_radius), "wheel_start_radius", length},
     };
     for (size_t k = 0; k < sizeof checks / sizeof checks[0]; ++k) {
         if (!checks[k].valid) {
@@ -166,36 +170,27 @@ static double derive_pose(gm_pair *pair, double center_distance) {
     return sin(difference) / (cos(alpha_w) * cos(alpha_t)) - difference;
 }
 
-/* What made a tooth too thin: what was given for it, else for its mate, else the centre distance. */
-static const char *thickness_field(double thickness, double shift, double mate_shift,
-                                   const char *const names[3]) {
-    if (!isnan(thickness))
-        return names[0];
-    if (!isnan(shift))
-        return names[1];
-    return isnan(mate_shift) ? "center_distance" : names[2];
+/* What the thickness of a tooth comes from: what was given for it, else for its mate, else the centre distance. */
+static const char *thickness_field(const gm_pair_params *p, int of_pinion) {
+    if (!isnan(of_pinion ? p->pinion_normal_thickness : p->wheel_normal_thickness))
+        return of_pinion ? "pinion_normal_thickness" : "wheel_normal_thickness";
+    if (isnan(p->pinion_profile_shift) && isnan(p->wheel_profile_shift))
+        return "center_distance";
+    const int own_given = !isnan(of_pinion ? p->pinion_profile_shift : p->wheel_profile_shift);
+    return own_given == of_pinion ? "pinion_profile_shift" : "wheel_profile_shift";
 }
 
 static problem check_thickness(const gm_pair *pair, const gm_pair_params *p) {
-    static const char requirement[] = "a value that leaves the teeth thicker than 0";
-    static const char *const pinion_names[] = {"pinion_normal_thickness", "pinion_profile_shift",
-                                               "wheel_profile_shift"};
-    static const char *const wheel_names[] = {"wheel_normal_thickness", "wheel_profile_shift",
-                                              "pinion_profile_shift"};
+    const int backlash_given = !isnan(p->backlash);
     const int pinion_fits = pair->pinion.normal_thickness > 0.0;
     const int wheel_fits = pair->wheel.normal_thickness > 0.0;
-    if (!(pinion_fits && wheel_fits) && !isnan(p->backlash))
-        return geometry_problem("backlash", requirement);
-    if (!pinion_fits)
-        return geometry_problem(thickness_field(p->pinion_normal_thickness, p->pinion_profile_shift,
-                                                p->wheel_profile_shift, pinion_names),
-                                requirement);
-    if (!wheel_fits)
-        return geometry_problem(thickness_field(p->wheel_normal_thickness, p->wheel_profile_shift,
-                                                p->pinion_profile_shift, wheel_names),
-                                requirement);
-    if (!isnan(p->backlash) && !(p->backlash > -pair->transverse_base_pitch))
-        return geometry_problem("backlash", "a value above minus one base pitch");
+    if (!(pinion_fits && wheel_fits))
+        return geometry_problem(backlash_given ? "backlash" : thickness_field(p, !pinion_fits),
+                                "a value that leaves the teeth thicker than 0");
+    const int pinion_thicker = pair->pinion.normal_thickness > pair->wheel.normal_thickness;
+    if (!(pair->backlash > -pair->transverse_base_pitch))
+        return geometry_problem(backlash_given ? "backlash" : thickness_field(p, pinion_thicker),
+                                "a value that leaves the backlash above minus one base pitch");
     return no_problem;
 }
 
@@ -307,6 +302,15 @@ static problem derive_path(gm_pair *pair) {
     return no_problem;
 }
 
+/* Absurd thicknesses and distances put the flanks of the teeth at zero angles far from where they meet. */
+static problem check_place(const gm_pair *pair, const gm_pair_params *p) {
+    if (fabs(pair->phase_origin - pair->path_start) <= LARGEST_PLACE * pair->transverse_base_pitch)
+        return no_problem;
+    return geometry_problem(thickness_field(p, 1),
+                            "a value with which the teeth at zero angles stand less than 1000 base "
+                            "pitches from their path of contact");
+}
+
 /* Finite parameters of absurd sizes overflow where they meet. */
 static problem check_finite(const gm_pair *pair) {
     const double derived[] = {
@@ -347,6 +351,8 @@ static problem derive(gm_pair *pair, const gm_pair_params *params) {
         found = derive_path(pair);
     if (found.field == NULL)
         found = check_finite(pair);
+    if (found.field == NULL)
+        found = check_place(pair, params);
     return found;
 }
 

@@ -10,7 +10,6 @@
  */
 #include "internal.h"
 
-#include <float.h>
 #include <math.h>
 
 /* Not inlined: a side that is clear then costs no stack frame. */
@@ -190,6 +189,8 @@ int gm_penetration_simple_at(const gm_pair *pair, double offset, double offset_r
         return GM_ERR_NULL;
     if (!gmi_is_finite(offset) || !gmi_is_finite(offset_rate))
         return GM_STATE_NOT_FINITE;
+    if (fabs(offset) > GMI_LARGEST_OFFSET || fabs(offset_rate) > GMI_LARGEST_SPEED)
+        return GM_STATE_OUT_OF_RANGE;
 
     const double drive = offset - 0.5 * pair->backlash;
     const double coast = -offset - 0.5 * pair->backlash;
@@ -221,7 +222,7 @@ int gmi_check_evaluation(const gm_pair *pair, const gm_flanks *pinion_flanks,
     /* Negated, so that NaN is caught; a phase may be rounded up to p_bt. */
     if (!(fabs(position->offset) < 0.5 * pair->transverse_base_pitch) ||
         !(fabs(position->phase) < 1.5 * pair->transverse_base_pitch) ||
-        !(fabs(position->offset_rate) <= DBL_MAX))
+        !(fabs(position->offset_rate) <= GMI_LARGEST_SPEED))
         return gmi_is_finite(position->offset) && gmi_is_finite(position->phase) &&
                        gmi_is_finite(position->offset_rate)
                    ? GM_STATE_OUT_OF_RANGE

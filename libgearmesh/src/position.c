@@ -45,6 +45,10 @@ static int is_angle(double angle) {
     return fabs(angle) <= GMI_LARGEST_ANGLE;
 }
 
+static int is_speed(double speed) {
+    return fabs(speed) <= GMI_LARGEST_SPEED;
+}
+
 static gm_position position_nan(void) {
     const gm_position position = {0, 0, gmi_nan(), gmi_nan(), gmi_nan()};
     return position;
@@ -72,13 +76,15 @@ static int check_state(const gm_state *state) {
     if (!gmi_is_finite(state->pinion_angle) || !gmi_is_finite(state->wheel_angle) ||
         !gmi_is_finite(state->pinion_speed) || !gmi_is_finite(state->wheel_speed))
         return GM_STATE_NOT_FINITE;
-    if (!is_angle(state->pinion_angle) || !is_angle(state->wheel_angle))
+    if (!is_angle(state->pinion_angle) || !is_angle(state->wheel_angle) ||
+        !is_speed(state->pinion_speed) || !is_speed(state->wheel_speed))
         return GM_STATE_OUT_OF_RANGE;
     return GM_OK;
 }
 
 static int finish(const gm_pair *pair, gm_position *position) {
-    if (fabs(position->offset) < 0.5 * pair->transverse_base_pitch)
+    if (fabs(position->offset) < 0.5 * pair->transverse_base_pitch &&
+        is_speed(position->offset_rate))
         return GM_OK;
     *position = position_nan();
     return GM_STATE_OUT_OF_RANGE;

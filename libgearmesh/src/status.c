@@ -11,8 +11,8 @@ const char *gm_status_text(int status) {
     case GM_STATE_NOT_FINITE:
         return "an angle, speed or coordinate is not finite";
     case GM_STATE_OUT_OF_RANGE:
-        return "the gears are turned against each other by half a base pitch or more, or an angle "
-               "exceeds 1e9 rad";
+        return "the gears are turned against each other by half a base pitch or more, an angle "
+               "exceeds 1e9 rad, or a speed 1e9 rad/s or m/s";
     case GM_NO_EQUILIBRIUM:
         return "no contact within half a base pitch carries the torque";
     case GM_UNDETERMINED:
@@ -28,7 +28,7 @@ const char *gm_status_text(int status) {
     case GM_ERR_TOOTH:
         return "no such tooth or flank, or the flanks have another number of teeth";
     case GM_ERR_DEVIATION:
-        return "a flank or pitch deviation is not finite";
+        return "a flank or pitch deviation is not finite, or beyond 1 m";
     default:
         return "unknown status";
     }

@@ -84,6 +84,8 @@ int gm_wrench_3d_at(const gm_pair *pair, const gm_flanks *pinion_flanks,
     const int status = gmi_check_evaluation(pair, pinion_flanks, wheel_flanks, position);
     if (status != GM_OK)
         return status;
+    if (!(fabs(stiffness) <= GMI_LARGEST_STIFFNESS) || !(fabs(damping) <= GMI_LARGEST_STIFFNESS))
+        return GM_ERR_PARAMETER;
 
     gmi_side_sum drive, coast;
     gmi_side_sum_3d(pair, pinion_flanks, wheel_flanks, GM_DRIVE, position, GMI_MOMENTS, &drive);

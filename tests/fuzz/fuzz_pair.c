@@ -48,7 +48,7 @@ static void take_params(fuzz_bytes *bytes, int how, gm_pair_params *params) {
     }
 
     /* Near a real pair; lengths scale with the module, optional fields are mostly left out. */
-    const double m = how & EXTREME ? pow(10.0, fuzz_between(bytes, -60.0, 60.0)) : 1e-3;
+    const double m = how & EXTREME ? pow(10.0, fuzz_between(bytes, -7.0, 7.0)) : 1e-3;
     const double helix = fuzz_byte(bytes) & 1 ? 0.0 : fuzz_between(bytes, -1.0, 1.0);
     const double rp = 0.5 * m * params->pinion_teeth / cos(helix);
     const double rw = 0.5 * m * params->wheel_teeth / cos(helix);
@@ -76,15 +76,6 @@ static void take_params(fuzz_bytes *bytes, int how, gm_pair_params *params) {
         params->pinion_normal_thickness = m * fuzz_between(bytes, 0.5, 2.5);
 }
 
-/*
- * Raw bits, but nothing finite beyond the limit: deviations of 1e100 modules and speeds of 1e300 rad/s are numbers, but
- * their products are not, and nobody asks for them.
- */
-static double take_within(fuzz_bytes *bytes, double limit) {
-    const double value = fuzz_any(bytes);
-    return isfinite(value) && fabs(value) > limit ? limit : value;
-}
-
 /* A few tables, pitch deviations and ramps; NULL if the bytes ask for ideal flanks. */
 static void *take_flanks(fuzz_bytes *bytes, int how, int teeth, double m, gm_flanks *flanks) {
     const gm_flanks_params params = {
@@ -105,8 +96,8 @@ static void *take_flanks(fuzz_bytes *bytes, int how, int teeth, double m, gm_fla
     for (int calls = fuzz_byte(bytes) % 8; calls > 0; --calls) {
         double values[25];
         for (int k = 0; k < 25; ++k)
-            values[k] = how & RAW_DEVIATIONS ? take_within(bytes, 1e6 * m)
-                                             : m * fuzz_between(bytes, -0.02, 0.02);
+            values[k] =
+                how & RAW_DEVIATIONS ? fuzz_any(bytes) : m * fuzz_between(bytes, -0.02, 0.02);
         const int side = fuzz_byte(bytes) % 3;
         const int tooth = fuzz_byte(bytes) - 1;
         const int status = fuzz_byte(bytes) & 1
@@ -121,8 +112,8 @@ static void *take_flanks(fuzz_bytes *bytes, int how, int teeth, double m, gm_fla
         for (int k = 0; k < count; ++k) {
             double *const fields[] = {&ramps[k].offset, &ramps[k].per_t1, &ramps[k].per_t2};
             for (int field = 0; field < 3; ++field)
-                *fields[field] = how & RAW_DEVIATIONS ? take_within(bytes, 1e6 * m)
-                                                      : m * fuzz_between(bytes, -0.1, 0.1);
+                *fields[field] =
+                    how & RAW_DEVIATIONS ? fuzz_any(bytes) : m * fuzz_between(bytes, -0.1, 0.1);
         }
         const int status = gm_flanks_set_ramps(flanks, side, ramps, count, 1.0);
         FUZZ_CLAIM(status == GM_OK || status == GM_ERR_DEVIATION);
@@ -184,8 +175,8 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size) {
     if (how & RAW_STATE) {
         state.pinion_angle = fuzz_any(&bytes);
         state.wheel_angle = fuzz_any(&bytes);
-        state.pinion_speed = take_within(&bytes, 1e50);
-        state.wheel_speed = take_within(&bytes, 1e50);
+        state.pinion_speed = fuzz_any(&bytes);
+        state.wheel_speed = fuzz_any(&bytes);
     } else {
         const double x = pair.transverse_base_pitch * fuzz_between(&bytes, -0.6, 0.6);
         state.pinion_angle = fuzz_between(&bytes, -100.0, 100.0);
@@ -219,11 +210,18 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size) {
                                                 torque, &offset, &result);
         claim_numbers(found, &offset, 1);
         claim_penetration(found, &result);
-        FUZZ_CLAIM(found == gm_static_equilibrium_near(&pair, pinion, wheel, state.pinion_angle,
-                                                       stiffness, torque, fuzz_any(&bytes), &offset,
-                                                       &result));
-        claim_numbers(found, &offset, 1);
-        claim_penetration(found, &result);
+        const int again =
+            gm_static_equilibrium_near(&pair, pinion, wheel, state.pinion_angle, stiffness, torque,
+                                       fuzz_any(&bytes), &offset, &result);
+        /* There is one for any guess or for none, unless it hangs on the rounding of the lengths, or teeth are
+         * pressed together or deviate by so much that the sum may fall again. */
+        const double length = fabs(torque) / (stiffness * pair.wheel.base_radius);
+        const double little = 0.02 * pair.transverse_base_pitch;
+        if (!(how & RAW_DEVIATIONS) && pair.transverse_contact_ratio > 0.5 &&
+            pair.backlash > -little && length < little && length > 1e-15 * pair.center_distance)
+            FUZZ_CLAIM(again == found);
+        claim_numbers(again, &offset, 1);
+        claim_penetration(again, &result);
     }
     free(pinion_memory);
     free(wheel_memory);

@@ -42,6 +42,10 @@
  * `[out]` nothing is written. Functions return a status: 0 done, > 0 the state is at fault (a solver
  * may try a smaller step), < 0 the call is at fault. On any other status than 0 outputs are NaN.
  *
+ * Numbers have ranges far beyond all gears, within which no result overflows; what lies outside, or is no
+ * number, is refused: lengths of a pair 1e-6 .. 1e9 m, profile shifts up to 1000, deviations of a flank up to
+ * 1 m, angles up to 1e9 rad, speeds up to 1e9 rad/s and dx/dt up to 1e9 m/s, stiffness 1e-30 .. 1e30 N/m.
+ *
  * ## Sources (equation by equation in libgearmesh/docs/equations.md)
  *
  * - [Paper] "Analytical gear mesh model using 3D gear geometry", Eqs. 1..25, with the corrections
@@ -88,7 +92,8 @@ enum gm_status {
 
     GM_STATE_NOT_FINITE = 1, /**< an angle, speed or coordinate is NaN or infinite */
     GM_STATE_OUT_OF_RANGE =
-        2,                 /**< |x| >= p_bt / 2 (a tooth would be skipped) or |angle| > 1e9 rad */
+        2, /**< |x| >= p_bt / 2 (a tooth would be skipped), |angle| > 1e9 rad, or a speed beyond
+                1e9 rad/s or m/s */
     GM_NO_EQUILIBRIUM = 3, /**< no contact within |x| < p_bt / 2 carries the torque */
     GM_UNDETERMINED = 4,   /**< no torque: any position within the backlash is in equilibrium */
 
@@ -97,7 +102,7 @@ enum gm_status {
     GM_ERR_GEOMETRY = -3,  /**< each parameter is fine, but together they give no gear pair */
     GM_ERR_MEMORY = -4,    /**< the memory provided is too small, or all table places are taken */
     GM_ERR_TOOTH = -5,    /**< no such tooth or flank, or the flanks have another number of teeth */
-    GM_ERR_DEVIATION = -6 /**< a flank or pitch deviation is not finite */
+    GM_ERR_DEVIATION = -6 /**< a flank or pitch deviation is not finite, or beyond 1 m */
 };
 
 /** Text of a status; never NULL, "unknown status" for any other integer. */
@@ -120,25 +125,26 @@ enum gm_base_helix {
 
 /**
  * What a drawing gives of a gear pair. Fill with gm_pair_params_default(), then set at least the
- * fields marked required. NaN in an optional field = derive it as stated.
+ * fields marked required. NaN in an optional field = derive it as stated. All lengths 1e-6 .. 1e9 m.
  */
 typedef struct gm_pair_params {
     int pinion_teeth;             /**< z_p, 3 .. 100000, required */
     int wheel_teeth;              /**< z_w, 3 .. 100000, required */
     int base_helix;               /**< enum gm_base_helix [GM_BASE_HELIX_ISO] */
-    double normal_module;         /**< m_n, m, > 0, required */
+    double normal_module;         /**< m_n, m, required */
     double normal_pressure_angle; /**< alpha_n, rad, 0 < alpha_n < 45 deg, required */
     double helix_angle;           /**< beta, rad, |beta| < 60 deg, > 0: right-handed pinion [0] */
     double center_distance;       /**< d, m, > r_bp + r_bw, required */
-    double face_width;            /**< b, common to both gears, m, > 0, required */
+    double face_width;            /**< b, common to both gears, m, required */
     double
-        pinion_profile_shift;   /**< x_p, 1 [NaN: half of the sum that gives zero backlash; the rest
+        pinion_profile_shift; /**< x_p, 1, |x_p| <= 1000 [NaN: half of the sum that gives zero backlash; the rest
                                         of that sum if only the wheel's is given] */
     double wheel_profile_shift; /**< x_w, 1 [NaN: as for the pinion] */
     double backlash;            /**< transverse, along the line of action, m [NaN: from the tooth
                                         thicknesses; else both normal thicknesses at the reference
-                                        circles are changed equally to give it]; may be negative */
-    double pinion_normal_thickness; /**< s_n at the reference circle, m, > 0 [NaN: from the profile
+                                        circles are changed equally to give it]; may be negative,
+                                        above -p_bt */
+    double pinion_normal_thickness; /**< s_n at the reference circle, m [NaN: from the profile
                                         shift]; where given it wins over the shift */
     double wheel_normal_thickness;  /**< as for the pinion */
     double pinion_tip_radius;       /**< r_ap, m [NaN: reference radius + m_n (1 + x_p)] */
@@ -335,7 +341,8 @@ GM_API int gm_flanks_init(gm_flanks *flanks, const gm_flanks_params *params, voi
  * @param[in]     side       GM_DRIVE or GM_COAST
  * @param[in]     tooth      0 .. teeth - 1, or GM_ALL_TEETH
  * @param[in]     deviation  [face_nodes][profile_nodes] node values at t1 = k1 / (face_nodes - 1),
- *                           t2 = k2 / (profile_nodes - 1), bilinear in between, > 0 material added (m)
+ *                           t2 = k2 / (profile_nodes - 1), bilinear in between, > 0 material added, at most
+ *                           1 m either way after multiplication by the factor (m)
  * @param[in]     factor     multiplies every node: pair.normal_to_transverse for deviations along the
  *                           surface normal (as measured), 1 for those in the transverse section
  * @return GM_OK, GM_ERR_NULL, GM_ERR_TOOTH, GM_ERR_MEMORY (no place left), GM_ERR_DEVIATION; on an
@@ -346,7 +353,7 @@ GM_API int gm_flanks_set_table(gm_flanks *flanks, int side, int tooth, const dou
 
 /**
  * Sets the pitch deviation of one tooth, or of all teeth: a shift of the whole flank in the
- * transverse section along the line of action, > 0 material added on that side (m).
+ * transverse section along the line of action, > 0 material added on that side, at most 1 m either way (m).
  *
  * A tooth displaced by f along +phi_p has drive +f and coast -f; a wheel tooth displaced by f along
  * +phi_w has drive -f and coast +f.
@@ -364,7 +371,7 @@ GM_API int gm_flanks_set_pitch(gm_flanks *flanks, int side, int tooth, double de
  * @param[in]     count   0 .. GM_FLANK_RAMPS_MAX
  * @param[in]     factor  multiplies every ramp, as with gm_flanks_set_table(); > 0
  * @return GM_OK, GM_ERR_NULL, GM_ERR_TOOTH (no such side), GM_ERR_PARAMETER (count or factor), GM_ERR_DEVIATION (not
- *         finite); on an error nothing is changed
+ *         finite, or beyond 1e30 m); on an error nothing is changed
  */
 GM_API int gm_flanks_set_ramps(gm_flanks *flanks, int side, const gm_flank_ramp *ramps, int count,
                                double factor);
@@ -571,7 +578,7 @@ GM_API int gm_position_from_pinion_angle(const gm_pair *pair, double pinion_angl
  * Simple model: a spring with backlash [Paper, Eqs. 9-11, with |x| in Eq. 10]. One pair, no tooth
  * engagement; drive = max(0, x - backlash / 2), coast = max(0, -x - backlash / 2).
  *
- * @return as gm_position_from_state(), but with any x
+ * @return as gm_position_from_state(), but with any |x| <= 1e18 m
  */
 GM_API int gm_penetration_simple(const gm_pair *pair, const gm_state *state,
                                  gm_penetration *result);
@@ -610,7 +617,7 @@ GM_API int gm_penetration_3d_sum_at(const gm_pair *pair, const gm_flanks *pinion
                                     const gm_flanks *wheel_flanks, const gm_position *position,
                                     gm_penetration *result);
 
-/** As gm_penetration_simple(), from x and dx/dt alone. */
+/** As gm_penetration_simple(), from x and dx/dt alone, in the same ranges. */
 GM_API int gm_penetration_simple_at(const gm_pair *pair, double offset, double offset_rate,
                                     gm_penetration *result);
 
@@ -625,7 +632,7 @@ GM_API int gm_penetration_simple_at(const gm_pair *pair, double offset, double o
  * @param[in] stiffness    K of one tooth pair over the full face width; K_simple for the simple model (N/m)
  * @param[in] damping      D likewise (N s/m)
  * @param[in] penetration  result of an evaluation
- * @return F (N), > 0 drives the wheel forward; NaN if penetration is NULL or not finite.
+ * @return F (N), > 0 drives the wheel forward; NaN if penetration is NULL, or the force is not finite.
  *         I_p phi_p'' = M_p - F r_bp and I_w phi_w'' = -M_w + F r_bw [Paper, Eqs. 1-2, base radii].
  */
 GM_API double gm_contact_force(double stiffness, double damping, const gm_penetration *penetration);
@@ -642,7 +649,7 @@ typedef struct gm_wrench {
  * Wrench of the contact forces, each line of contact taken where it is: with the tilting moments of
  * helical gears and of partly touching flanks. Frictionless: forces along the surface normal.
  *
- * @return as gm_penetration_3d_at()
+ * @return as gm_penetration_3d_at(), and GM_ERR_PARAMETER for stiffness or damping beyond 1e30 (N/m, N s/m)
  */
 GM_API int gm_wrench_3d_at(const gm_pair *pair, const gm_flanks *pinion_flanks,
                            const gm_flanks *wheel_flanks, const gm_position *position,
@@ -657,7 +664,7 @@ GM_API int gm_wrench_3d_at(const gm_pair *pair, const gm_flanks *pinion_flanks,
  * @param[in]  pinion_flanks  NULL = ideal
  * @param[in]  wheel_flanks   NULL = ideal
  * @param[in]  pinion_angle   phi_p (rad)
- * @param[in]  stiffness      K of one tooth pair (N/m), > 0
+ * @param[in]  stiffness      K of one tooth pair (N/m), 1e-30 .. 1e30
  * @param[in]  wheel_torque   load on the wheel, > 0 resists +phi_w and loads the drive flanks (N m)
  * @param[out] offset         x; the transmission error is -x (m)
  * @param[out] result         penetration there; may be NULL
