@@ -45,8 +45,9 @@ set style textbox opaque noborder fillcolor '#ffffff' margins 0.4,0.4
 unset key
 
 set label title_text at screen 0.025, screen 0.96 left font ',17' noenhanced
-set label 'Peak-to-peak transmission error; lines each ' . sprintf('%g µm', step) at screen 0.025, screen 0.92 left \
-    font ',12' textcolor rgb grey
+set label 'Peak-to-peak transmission error, lines each ' . sprintf('%g µm; dashed: the design load', step) \
+    . (has_chosen ? ', and the ' . chosen_text : '') at screen 0.025, screen 0.92 left noenhanced font ',12' \
+    textcolor rgb grey
 if (design_load >= torque_low && design_load <= torque_high) {
     set arrow from first design_load, graph 0 to first design_load, graph 1.015 nohead front lw 1.6 dt (8,5) \
         lc rgb '#202020'

@@ -20,7 +20,7 @@ set ylabel 'transmission error (0: ideal flanks just touch)' . um
 unset key
 
 set label title_text at screen 0.025, screen 0.96 left font ',17' noenhanced
-set label 'Quasi-static transmission error at several loads, relief ' . chosen_text at screen 0.025, screen 0.92 left \
+set label 'Quasi-static transmission error at several loads: ' . chosen_text at screen 0.025, screen 0.92 left \
     font ',12' textcolor rgb grey noenhanced
 do for [i = 0:curves - 1] {
     at = value(sprintf('label_at_%d', i))

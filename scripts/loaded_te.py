@@ -160,8 +160,8 @@ class Gears:
         self.flank = "drive" if self.mean_Nm > 0 else "coast"
         if self.differs_by_tooth() and self.parameters["analysis.period"] == "mesh":
             print(
-                f"{self.path}: warning: flanks of files, but one mesh cycle only: what other teeth do is not "
-                "seen; --set analysis.period=pinion or hunting shows it",
+                f"{self.path}: warning: flanks of files, but one mesh cycle only; all teeth of the pinion "
+                "take --set analysis.period=pinion --set analysis.positions=N, N some 50 for each",
                 file=sys.stderr,
             )
         self.mesh_cycles = table[:, 0] * int(self.parameters["gears.pinion_teeth"]) / (2 * math.pi)
@@ -228,10 +228,10 @@ class Gears:
     def periods(self, te_um):
         """Mesh cycles and curves [torque, position] to draw: two periods, so that one is seen whole wherever it begins.
 
-        One cycle of teeth that differ is no period, it is drawn as it is.
+        Less than the hunting period of teeth that differ is none, it is drawn as it is.
         """
         cycles = self.mesh_cycles
-        if self.differs_by_tooth() and self.parameters["analysis.period"] == "mesh":
+        if self.differs_by_tooth() and self.parameters["analysis.period"] != "hunting":
             return cycles, te_um
         period = cycles[-1] + cycles[1] if len(cycles) > 1 else 1.0
         return np.concatenate([cycles, cycles + period, [2 * period]]), np.hstack([te_um, te_um, te_um[:, :1]])

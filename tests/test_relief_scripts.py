@@ -147,7 +147,7 @@ class Harris(Case):
                        "torque on the wheel / N m", "peak-to-peak transmission error / µm"],
             "map": ["tip relief of both gears / µm", "peak-to-peak transmission error / µm", "design load"],
             "te": ["almost no load", "36.51 N m", "73.01 N m", "109.5 N m", "p-p 0.00 µm", "p-p 4.99 µm",
-                   "as in the file"],
+                   "design of the file"],
         }
         for name, texts in labels.items():
             shown = self.svg_text(f"params_{name}.svg")
