@@ -10,6 +10,8 @@ import numpy as np
 
 FLANK_COLUMNS = ("tooth", "flank", "t1", "t2", "deviation_um")
 PITCH_COLUMNS = ("tooth", "flank", "deviation_um")
+TRACE_COLUMNS = ("tooth", "flank", "trace", "face_mm", "roll_length_mm", "deviation_um")
+DIAMETER_COLUMNS = TRACE_COLUMNS[:4] + ("diameter_mm", "deviation_um")
 SIDES = ("drive", "coast")
 ALL = -1
 POSITION_TOLERANCE = 1e-5
@@ -19,6 +21,15 @@ LINE_LENGTH = 1000
 
 NUMBER = r"[+-]?(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:[eE][+-]?[0-9]+)?"
 FIELD_PATTERNS = {"tooth": r"[0-9]+|\*", "flank": r"drive|coast|\*"}
+TRACE_PATTERNS = {"tooth": r"[0-9]+", "flank": r"left|right|drive|coast", "trace": r"profile|helix"}
+RIGHT = {
+    FIELD_PATTERNS["tooth"]: "a whole number from 0 on, or *",
+    FIELD_PATTERNS["flank"]: "drive, coast or *",
+    TRACE_PATTERNS["tooth"]: "a whole number from 0 on",
+    TRACE_PATTERNS["flank"]: "left, right, drive or coast",
+    TRACE_PATTERNS["trace"]: "profile or helix",
+    NUMBER: "a number like 1.5 or -2e-3",
+}
 
 
 class FlankFileError(Exception):
@@ -75,7 +86,7 @@ def _check_header(path, number, line, columns):
     _fail(path, number, f"the header is '{line[:60].strip()}'; {','.join(columns)} is right{hint}")
 
 
-def _fail_row(path, number, line, columns):
+def _fail_row(path, number, line, columns, patterns):
     """Say what is wrong with a row that does not match."""
     if len(line) > LINE_LENGTH:
         _fail(path, number, f"the line is longer than {LINE_LENGTH} characters")
@@ -87,10 +98,10 @@ def _fail_row(path, number, line, columns):
         hint = " (a decimal comma makes two fields of one number: write 1.5)" if len(fields) > len(columns) else ""
         wanted = f"{len(columns)} are right: {','.join(columns)}"
         _fail(path, number, f"the row has {len(fields)} fields, {wanted}{hint}")
-    right = {"tooth": "a whole number from 0 on, or *", "flank": "drive, coast or *"}
     for column, field in zip(columns, fields):
-        if not re.fullmatch(FIELD_PATTERNS.get(column, NUMBER), field):
-            wanted = right.get(column, "a number like 1.5 or -2e-3")
+        pattern = patterns.get(column, NUMBER)
+        if not re.fullmatch(pattern, field):
+            wanted = RIGHT[pattern]
             _fail(path, number, f"{column} is '{field[:40]}'; {wanted} is right")
 
 
@@ -105,33 +116,44 @@ class Rows:
         self.values = np.array(values, dtype=float)  # [row, column behind tooth and flank]
 
 
-def _read_rows(path, columns, teeth):
-    """All rows below the header; `teeth` is None or the number that tooth must stay below."""
-    patterns = [FIELD_PATTERNS.get(column, NUMBER) for column in columns]
-    row = re.compile(",".join(rf"[ \t]*({pattern})[ \t]*" for pattern in patterns)).fullmatch
-    sides = {"drive": 0, "coast": 1, "*": ALL}
+def _is_content(line):
+    return bool(line.strip(" \t")) and not line.lstrip(" \t").startswith("#")
+
+
+def _matched_rows(path, columns, patterns):
+    """Line number and fields of all rows below the header."""
+    fields = [patterns.get(column, NUMBER) for column in columns]
+    row = re.compile(",".join(rf"[ \t]*({pattern})[ \t]*" for pattern in fields)).fullmatch
     found = []
     header = None
     lines = _read_lines(path)
     for number, line in enumerate(lines, 1):
         match = row(line) if header is not None else None
         if match and len(line) <= LINE_LENGTH:
-            tooth, flank, *numbers = match.groups()
-            index = ALL if tooth == "*" else int(tooth)
-            if index >= (teeth or MAX_TEETH):
-                _fail(path, number, f"tooth is {tooth}; 0 to {(teeth or MAX_TEETH) - 1}, or *, is right")
-            found.append((number, index, sides[flank], *map(float, numbers)))
-        elif not line.strip(" \t") or line.lstrip(" \t").startswith("#"):
+            found.append((number, match.groups()))
+        elif not _is_content(line):
             continue
         elif header is None:
             _check_header(path, number, line, columns)
             header = number
         else:
-            _fail_row(path, number, line, columns)
+            _fail_row(path, number, line, columns, patterns)
     if header is None:
         _fail(path, len(lines), f"the file is empty; the header {','.join(columns)} and rows below it are right")
     if not found:
         _fail(path, header, "there are no rows below the header")
+    return found
+
+
+def _read_rows(path, columns, teeth):
+    """All rows below the header; `teeth` is None or the number that tooth must stay below."""
+    sides = {"drive": 0, "coast": 1, "*": ALL}
+    found = []
+    for number, (tooth, flank, *numbers) in _matched_rows(path, columns, FIELD_PATTERNS):
+        index = ALL if tooth == "*" else int(tooth)
+        if index >= (teeth or MAX_TEETH):
+            _fail(path, number, f"tooth is {tooth}; 0 to {(teeth or MAX_TEETH) - 1}, or *, is right")
+        found.append((number, index, sides[flank], *map(float, numbers)))
     number, tooth, side, *values = zip(*found)
     rows = Rows(path, number, tooth, side, np.column_stack(values))
     _check_finite(rows)
@@ -280,3 +302,45 @@ def single_pitch_um(pitch_um):
 def total_pitch_um(pitch_um):
     """F_p: the largest difference of the positions of any two flanks."""
     return float(pitch_um.max() - pitch_um.min())
+
+
+# ----------------------------------------------------------------------------------------------------
+# Traces as they were measured (libgearmesh/docs/measured-flanks.md)
+# ----------------------------------------------------------------------------------------------------
+
+
+class Trace:
+    """One trace: `along` is face_mm of a helix, roll length or diameter of a profile."""
+
+    def __init__(self, tooth, flank, kind, points):
+        self.tooth, self.flank, self.kind = tooth, flank, kind
+        self.along_mm, self.deviation_um = np.array(sorted(points)).T
+
+
+def _header_of(path):
+    return next((_fields(line) for line in _read_lines(path) if _is_content(line)), ())
+
+
+def is_trace_file(path):
+    return _header_of(path)[:3] == TRACE_COLUMNS[:3]
+
+
+def read_traces(path):
+    """(name of the profile's coordinate, traces in the order of the file); a trace goes on while its place stays."""
+    columns = DIAMETER_COLUMNS if _header_of(path) == DIAMETER_COLUMNS else TRACE_COLUMNS
+    groups = []
+    previous = None
+    for number, (tooth, flank, kind, *numbers) in _matched_rows(path, columns, TRACE_PATTERNS):
+        face, profile, deviation = map(float, numbers)
+        if not np.isfinite([face, profile, deviation]).all():
+            _fail(path, number, "a number is too large; a finite one like 1.5 is right")
+        place, along = (face, profile) if kind == "profile" else (profile, face)
+        key = (int(tooth), flank, kind)
+        if previous is None or key != previous[0] or abs(place - previous[1]) > 0.01:
+            previous = (key, place)
+            groups.append((number, key, []))
+        groups[-1][2].append((along, deviation))
+    for number, key, points in groups:
+        if len(points) < 2:
+            _fail(path, number, f"the {key[2]} trace of tooth {key[0]}, flank {key[1]} has 1 point; 2 or more are right")
+    return columns[4], [Trace(*key, points) for _, key, points in groups]

@@ -1,8 +1,8 @@
 # SPDX-FileCopyrightText: The gearmesh authors
 # SPDX-License-Identifier: BSD-3-Clause
 #
-# Profile and helix traces of some teeth, each on its nominal line, material added to the outside: drive flanks at
-# the left, coast flanks at the right. scripts/flanks sets the variables used here before it loads this file.
+# Profile and helix traces of some teeth, each on its nominal line, material added to the outside: drive (or left)
+# flanks at the left, coast (or right) flanks at the right. scripts/flanks sets the variables used here before it loads this file.
 
 load scripts . '/flanks_style.gp'
 
@@ -15,7 +15,6 @@ from_top(y) = 1.0 - 1.0 * y / height # pixels of the png
 set xrange [-width:width]
 set yrange [0:1]
 unset xtics
-set ytics 0.25 format '%g'
 set border 0
 unset key
 half(side, x) = side eq 'drive' ? -x : x
@@ -34,25 +33,20 @@ do for [format in 'png svg'] {
         unset arrow
         if (kind eq 'profile') {
             set label title_text at screen 0.025, screen from_top(40) left font ',17' noenhanced
-            set label subtitle_text . '; tip up, seen against +z; numbers of the whole trace in µm' \
-                at screen 0.025, screen from_top(80) left font ',11' textcolor rgb grey noenhanced
-            set ytics add ('start' 0, 'tip' 1)
-        } else {
-            set ytics add ('0' 0, '1' 1)
+            set label subtitle_text at screen 0.025, screen from_top(80) left font ',11' textcolor rgb grey noenhanced
         }
-        set label (kind eq 'profile' ? 'Profile traces at mid face (t1 = 0.5), over t2' : \
-            'Helix traces at mid profile (t2 = 0.5), over t1 (0 and 1: face ends)') \
-            at screen 0.025, screen from_top(top - 85) left font ',14'
+        eval 'set ytics (' . value(kind . '_tics') . ')'
+        set label value(kind . '_title') at screen 0.025, screen from_top(top - 85) left font ',14'
         heading = top - 35
-        set label '← + material     drive flanks' at first -0.5 * slots - gap, screen from_top(heading) center \
+        set label '← + material     ' . left_flanks . ' flanks' at first -0.5 * slots - gap, screen from_top(heading) center \
             font ',12' textcolor rgb drive_colour
-        set label 'coast flanks     + material →' at first 0.5 * slots + gap, screen from_top(heading) center \
+        set label right_flanks . ' flanks     + material →' at first 0.5 * slots + gap, screen from_top(heading) center \
             font ',12' textcolor rgb coast_colour
         bar = value(kind . '_bar')
         set arrow from first -bar / 2, screen from_top(heading + 18) to first bar / 2, screen from_top(heading + 18) \
             heads size screen 0.004, 90 lw 2
         set label value(kind . '_bar_text') at first 0, screen from_top(heading - 4) center font ',12'
-        do for [line in '0 0.25 0.5 0.75 1'] {
+        do for [line in value(kind . '_lines')] {
             rim = line eq '0' || line eq '1'
             set arrow from first -width, first line + 0 to first width, first line + 0 nohead back \
                 lw (rim ? 1.0 : 0.5) lc rgb (rim ? '#909090' : '#d8d8d8')

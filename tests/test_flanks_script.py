@@ -254,7 +254,9 @@ class Summary(Folder):
         self.assertIn("gear.csv: one tooth for all, 1 set", self.lines_of("gear.csv")[0][0])
 
 
-class Pictures(Folder):
+class Drawn(Folder):
+    """What is in a picture."""
+
     def png_size(self, name):
         with open(self.path(name), "rb") as file:
             head = file.read(24)
@@ -269,6 +271,8 @@ class Pictures(Folder):
         found = re.findall(r"<text[^>]*>(.*?)</text>", svg, re.DOTALL)
         return " ".join(re.sub(r"<[^>]*>|\s+", " ", text).strip() for text in found)
 
+
+class Pictures(Drawn):
     def write_gear(self):
         """7 teeth; tooth 5 deviates most, on its coast flank."""
         flanks = rows("*", "*", lambda t1, t2: -4 * (2 * t1 - 1) ** 2) + rows(5, "coast", lambda t1, t2: 9 * t2 - 2)
@@ -353,6 +357,79 @@ class Pictures(Folder):
         self.assertEqual(sorted(os.listdir(self.folder)), ["gear.csv", "gnuplot", "pitch.csv"])
 
 
+class Measured(Drawn):
+    """Traces as a measuring machine prints them."""
+
+    HEADER = "tooth,flank,trace,face_mm,diameter_mm,deviation_um\n"
+
+    def write_traces(self, shape=lambda t: -4 * t):
+        lines = [self.HEADER]
+        for tooth in (1, 4):
+            for flank in ("left", "right"):
+                places = [0, 0.05, 0.2, 0.5, 0.8, 0.95, 1]
+                lines += [f"{tooth},{flank},profile,8,{20 + 4 * t},{shape(t) * tooth + 50}\n" for t in places]
+                lines += [f"{tooth},{flank},helix,{17 - 16 * t},22,{2 * (t - 0.5) ** 2}\n" for t in places]
+        self.write("".join(lines), "t.csv")
+
+    def test_the_chart_shows_teeth_flanks_and_places(self):
+        self.write_traces()
+        result = self.flanks("t.csv")
+        self.assertEqual((result.returncode, result.stderr), (0, ""))
+        self.assertEqual(sorted(os.listdir(self.folder)), ["t.csv", "t_traces.png", "t_traces.svg"])
+        self.assertIn("8 traces of 2 teeth", result.stdout)
+        self.assertIn("right profile: 2 traces, largest range 16.000 um (tooth 4)", result.stdout)
+        self.assertGreater(min(self.png_size("t_traces.png")), 600)
+        shown = self.svg_text("t_traces.svg")
+        for text in ("left flanks", "right flanks", "over diameter / mm", "distance from the datum face / mm",
+                     " 22 ", " 15 ", "8 traces as measured", " 16.0 -16.0 0.0 ", " 4.0 -4.0 0.0 ", " 0.5 +0.0 0.5 "):
+            self.assertIn(text, shown)
+
+    def test_chosen_teeth(self):
+        self.write_traces()
+        self.assertEqual(self.flanks("t.csv", "--teeth", "4").returncode, 0)
+        self.assertNotIn(" -4.0 ", self.svg_text("t_traces.svg"))
+        self.assertIn(" -16.0 ", self.svg_text("t_traces.svg"))
+
+    def test_left_is_left(self):
+        self.write_traces()
+        self.assertEqual(self.flanks("t.csv").returncode, 0)
+        shown = self.svg_text("t_traces.svg")
+        self.assertLess(shown.index("left flanks"), shown.index("right flanks"))
+        column, traces = flankfile.read_traces(self.path("t.csv"))
+        self.assertEqual((column, len(traces)), ("diameter_mm", 8))
+        self.assertEqual(traces[1].along_mm[0], 1)  # was measured from 17 down to 1
+
+    def test_a_trace_ends_where_its_place_changes(self):
+        place = "5,left,profile,8,20,1\n5,left,profile,8.005,21,1\n5,left,profile,{},22,1\n5,left,profile,{},23,1\n"
+        for at, expected in ((8, 1), (12, 2)):
+            self.write(self.HEADER + place.format(at, at), "t.csv")
+            self.assertEqual(len(flankfile.read_traces(self.path("t.csv"))[1]), expected)
+
+    def test_refusals(self):
+        self.write_traces()
+        self.write(PITCH_HEADER + "0,drive,1\n", "p.csv")
+        bad = {
+            "5,left,profile,8,20\n": "2: the row has 5 fields",
+            "5,L,profile,8,20,1\n": "2: flank is 'L'; left, right, drive or coast is right",
+            "5,left,lead,8,20,1\n": "2: trace is 'lead'; profile or helix is right",
+            "*,left,helix,8,20,1\n": "2: tooth is '*'; a whole number from 0 on is right",
+            "5,left,helix,8,20,x\n": "2: deviation_um is 'x'; a number like 1.5",
+            "5,left,helix,8,20,1\n": "2: the helix trace of tooth 5, flank left has 1 point",
+            "5,left,helix,8,20,1e999\n": "2: a number is too large",
+            "": "1: there are no rows",
+        }
+        for row, said in bad.items():
+            self.write(self.HEADER + row, "bad.csv")
+            result = self.flanks("bad.csv")
+            self.assertEqual(result.returncode, 2)
+            self.assertIn("bad.csv:" + said, result.stderr)
+        for option in (("p.csv",), ("--tooth", "1"), ("--flank", "drive"), ("--overlay",), ("--gear-teeth", "45")):
+            result = self.flanks("t.csv", *option)
+            self.assertEqual(result.returncode, 2)
+            self.assertIn("there is no use for", result.stderr)
+        self.assertIn("no trace of tooth 2", self.flanks("t.csv", "--teeth", "1,2").stderr)
+
+
 class Traces(Folder):
     """Where the curves of the trace picture stand."""
 
@@ -381,6 +458,10 @@ class Traces(Folder):
             self.assertAlmostEqual((x[1] - x[0]) * outwards * panel.slot_um, 3.0)
             self.assertGreater(x[0] * outwards, panel.GAP)
             self.assertLess(x[1] * outwards, panel.GAP + 1)
+
+    def test_the_level_of_a_measured_trace_goes(self):
+        trace = flankfile.Trace(1, "left", "helix", [(0, 5), (2, 60), (1, 7)])
+        self.assertEqual(list(self.script.levelled_um(trace)), [-2, 0, 53])
 
     def test_numbers_of_a_trace(self):
         t = np.linspace(0, 1, 101)
