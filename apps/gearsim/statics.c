@@ -127,7 +127,7 @@ static int interrupted(output_file *output, double load, double angle) {
 /* The period under one load; 0, or an exit code and the file is closed. */
 static int write_period(const config *conf, const gearbox *gears, double load,
                         output_file *output) {
-    sweep before = {load, 0.0, NAN, 0.0};
+    sweep before = {load, 0.0, (double)NAN, 0.0};
 
     for (int position = 0; position < conf->positions; ++position) {
         const double angle = pinion_angle(conf, position);
