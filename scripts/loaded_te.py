@@ -245,6 +245,15 @@ class Gears:
         own = f"modifications.{gear}_{self.flank}_{name}"
         return own if own in self.parameters else f"modifications.{gear}_{name}"
 
+    def varied_key(self, name):
+        """`section.key` of a key to vary, which must not be one that another replaces on the loaded flank."""
+        key = full_key(name)
+        for gear in GEARS:
+            own = key.replace(f"modifications.{gear}_", f"modifications.{gear}_{self.flank}_")
+            if own != key and own in self.parameters:
+                raise InputError(f"--vary {name}: {short_key(own)} replaces it on the loaded flank, vary that")
+        return key
+
     def value(self, key):
         """Number of a key, None if the file does not say."""
         text = self.parameters.get(key)
