@@ -12,10 +12,12 @@ import math
 import os
 import subprocess
 import sys
-import tempfile
-import unittest
 
-GEARFLANKS = os.environ.get("GEARFLANKS", "gearflanks")
+sys.dont_write_bytecode = True
+
+import gearflanks_case  # noqa: E402
+from gearflanks_case import Case, main, rows_of  # noqa: E402
+
 DATA = os.path.join(os.path.dirname(os.path.abspath(__file__)), os.pardir, "data", "paper")
 PARAMS = os.path.join(DATA, "fig14.ini")
 KINDS = ["f_p", "F_p", "F_r", "f_H_alpha", "f_f_alpha", "F_alpha", "f_H_beta", "f_f_beta", "F_beta"]
@@ -37,39 +39,8 @@ def table(text):
 
 
 def file_rows(name):
-    with open(os.path.join(DATA, name), encoding="ascii", newline="") as file:
-        return list(csv.DictReader(line for line in file if not line.startswith("#")))
+    return rows_of(os.path.join(DATA, name))
 
-
-class Case(unittest.TestCase):
-    def setUp(self):
-        folder = tempfile.TemporaryDirectory()
-        self.addCleanup(folder.cleanup)
-        self.folder = folder.name
-
-    def path(self, name):
-        return os.path.join(self.folder, name)
-
-    def write(self, name, text):
-        with open(self.path(name), "w", encoding="ascii") as file:
-            file.write(text)
-        return self.path(name)
-
-    def run_it(self, *arguments):
-        return subprocess.run(
-            [GEARFLANKS, *arguments], cwd=self.folder, capture_output=True, text=True, check=False, timeout=60
-        )
-
-    def accepted(self, *arguments):
-        result = self.run_it(*arguments)
-        self.assertEqual((result.returncode, result.stderr), (0, ""), arguments)
-        return result.stdout
-
-    def refused(self, said, *arguments, code=2):
-        result = self.run_it(*arguments)
-        self.assertEqual(result.returncode, code, result.stderr)
-        self.assertIn(said, result.stderr)
-        self.assertEqual(result.stdout, "")
 
 
 class Make(Case):
@@ -372,11 +343,9 @@ class Informative(Case):
 
     def test_a_full_disk_is_noticed(self):
         with open("/dev/full", "w", encoding="ascii") as full:
-            result = subprocess.run([GEARFLANKS, "--help"], stdout=full, stderr=subprocess.PIPE, check=False)
+            result = subprocess.run([gearflanks_case.program, "--help"], stdout=full, stderr=subprocess.PIPE, check=False)
         self.assertEqual(result.returncode, 1)
 
 
 if __name__ == "__main__":
-    if len(sys.argv) > 1 and not sys.argv[1].startswith("-"):
-        GEARFLANKS = os.path.abspath(sys.argv.pop(1))
-    unittest.main()
+    main()

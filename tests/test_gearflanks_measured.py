@@ -12,12 +12,12 @@ import csv
 import math
 import os
 import re
-import subprocess
 import sys
-import tempfile
-import unittest
 
-GEARFLANKS = os.environ.get("GEARFLANKS", "gearflanks")
+sys.dont_write_bytecode = True
+
+from gearflanks_case import Case, main, rows_of  # noqa: E402
+
 DATA = os.path.join(os.path.dirname(os.path.abspath(__file__)), os.pardir, "data", "measured")
 PARAMS = os.path.join(DATA, "params.ini")
 TRACES = os.path.join(DATA, "traces.csv")
@@ -34,43 +34,6 @@ ALPHA_T = math.atan(math.tan(math.radians(16)) / math.cos(math.radians(33)))
 
 TRACE_HEADER = "tooth,flank,trace,face_mm,roll_length_mm,deviation_um\n"
 PITCH_HEADER = "tooth,flank,cumulative_pitch_um\n"
-
-
-def rows_of(path):
-    with open(path, encoding="ascii", newline="") as file:
-        return list(csv.DictReader(line for line in file if not line.startswith("#")))
-
-
-class Case(unittest.TestCase):
-    def setUp(self):
-        folder = tempfile.TemporaryDirectory()
-        self.addCleanup(folder.cleanup)
-        self.folder = folder.name
-
-    def path(self, name):
-        return os.path.join(self.folder, name)
-
-    def write(self, name, text):
-        with open(self.path(name), "w", encoding="utf-8") as file:
-            file.write(text)
-        return self.path(name)
-
-    def run_it(self, *arguments):
-        return subprocess.run(
-            [GEARFLANKS, *arguments], cwd=self.folder, capture_output=True, text=True, check=False, timeout=60
-        )
-
-    def accepted(self, *arguments):
-        result = self.run_it(*arguments)
-        self.assertEqual((result.returncode, result.stderr), (0, ""), arguments)
-        return result.stdout
-
-    def refused(self, said, *arguments, code=2):
-        result = self.run_it(*arguments)
-        self.assertEqual(result.returncode, code, result.stderr)
-        for text in [said] if isinstance(said, str) else said:
-            self.assertIn(text, result.stderr)
-        self.assertEqual(result.stdout, "")
 
 
 EXAMPLE = (
@@ -367,6 +330,4 @@ class Allowances(Case):
 
 
 if __name__ == "__main__":
-    if len(sys.argv) > 1 and not sys.argv[1].startswith("-"):
-        GEARFLANKS = os.path.abspath(sys.argv.pop(1))
-    unittest.main()
+    main()
