@@ -365,6 +365,14 @@ static void wrong_set_ups_are_refused(void) {
         GM_ASSERT(strstr(error.text, cases[i].said) != NULL);
         GM_ASSERT(strstr(error.text, "must be") != NULL);
     }
+    measured.count = 0;
+    setup = cases[0].setup;
+    setup.datum_face = GM_FACE_I;
+    GM_ASSERT_INT(gm_measured_pitch_build(&pitch, NULL, &measured, &setup, &pair, 0, &error),
+                  GM_IO_ERR_FORMAT);
+    GM_ASSERT(strstr(error.text, "there is no pitch") != NULL);
+    GM_ASSERT_INT(gm_measurement_side(NULL, GM_COAST), GM_COAST);
+    GM_ASSERT_INT(gm_measurement_tooth(NULL, &pair, 0, 1), -1);
     GM_ASSERT_INT(gm_measurement_side(&setup, 7), -1);
     GM_ASSERT_INT(gm_measurement_side(NULL, GM_LEFT), -1);
     GM_ASSERT_INT(gm_measurement_tooth(&setup, &pair, 0, 46), -1);

@@ -231,6 +231,54 @@ static void a_twist_comes_back_from_two_traces_each_way(void) {
     end();
 }
 
+/* The twist itself is curved along the face. */
+static double curved_twist(int tooth, int side, double t1, double t2) {
+    return additive(tooth, side, t1, t2) + 40e-6 * (t1 - 0.3) * (t1 - 0.3) * (t2 - 0.4);
+}
+
+static void three_profiles_are_met_and_the_surface_is_linear_in_between(void) {
+    static const int places[] = {0, 8, 20};
+    begin();
+    for (int i = 0; i < 3; i++) {
+        add_profile(curved_twist, 2, 0, places[i] / 20.0, 1e-6 * i);
+    }
+    add_helix(curved_twist, 2, 0, 0.2, 0.0);
+    GM_ASSERT_INT(build(), GM_IO_OK);
+    const double *table = table_of(2, 0);
+    for (int k = 0; table != NULL && k < PROFILE_NODES; k++) {
+        const double t2 = (double)k / (PROFILE_NODES - 1);
+        double rise[3]; /* from where the helix is */
+        for (int i = 0; i < 3; i++) {
+            const double *row = table + places[i] * PROFILE_NODES;
+            rise[i] = row[k] - row[6];
+            GM_ASSERT_ABS(rise[i],
+                          curved_twist(2, 0, places[i] / 20.0, t2) -
+                              curved_twist(2, 0, places[i] / 20.0, 0.2),
+                          1e-16);
+            GM_ASSERT_ABS(row[6] - table[6],
+                          curved_twist(2, 0, places[i] / 20.0, 0.2) - curved_twist(2, 0, 0.0, 0.2),
+                          1e-16);
+        }
+        const double *low = table + 4 * PROFILE_NODES;
+        const double *high = table + 17 * PROFILE_NODES;
+        GM_ASSERT_ABS(low[k] - low[6], 0.5 * (rise[0] + rise[1]), 1e-16);
+        GM_ASSERT_ABS(high[k] - high[6], 0.25 * rise[1] + 0.75 * rise[2], 1e-16);
+    }
+    end();
+}
+
+static void too_many_traces_of_a_flank_are_refused(void) {
+    begin();
+    for (int i = 0; i <= 100; i++) {
+        add_profile(additive, 2, 0, i / 100.0, 0.0);
+    }
+    GM_ASSERT_INT(build(), GM_IO_ERR_FORMAT);
+    assert_error(&error, "traces.csv", 0, "101 profiles", "up to 100 are right");
+    traces.traces[0].flank = flank_of(1); /* 100 on one, 1 on the other */
+    GM_ASSERT_INT(build(), GM_IO_OK);
+    end();
+}
+
 static void beyond_close_traces_the_surface_does_not_run_away(void) {
     begin();
     /* Profiles at 0.5 and 0.6: straight on from 0.4 to 0.7, held beyond. */
@@ -775,6 +823,8 @@ int main(int argc, char **argv) {
     static const gm_test tests[] = {
         GM_TEST(profile_and_helix_come_back_as_their_sum),
         GM_TEST(a_twist_comes_back_from_two_traces_each_way),
+        GM_TEST(three_profiles_are_met_and_the_surface_is_linear_in_between),
+        GM_TEST(too_many_traces_of_a_flank_are_refused),
         GM_TEST(beyond_close_traces_the_surface_does_not_run_away),
         GM_TEST(one_kind_alone_is_constant_the_other_way),
         GM_TEST(resampling_is_linear_and_its_error_is_told),
