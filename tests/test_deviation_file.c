@@ -2,7 +2,7 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 
 /*
- * Deviation files: sets, grids, files that are none, round trip, time. Lines, fields and numbers are tested
+ * Deviation files: sets, grids, files that are none, round trip, size. Lines, fields and numbers are tested
  * in test_pitch_file.c; both kinds of files are read by the same code.
  */
 #define _POSIX_C_SOURCE 200809L
@@ -10,7 +10,6 @@
 #include "io_test.h"
 
 #include <sys/stat.h>
-#include <time.h>
 #include <unistd.h>
 
 #define TEETH  45
@@ -337,10 +336,7 @@ static void two_gigabytes_of_zeros_are_refused_at_the_first_byte(void) {
     if (!GM_ASSERT_INT(truncate(path, 2147483647L), 0)) {
         return;
     }
-    const clock_t start = clock();
     refused_path(path, GM_IO_ERR_FORMAT, 1, "a zero byte", "UTF-8 text");
-    /* Reading all of it takes seconds. */
-    GM_ASSERT_ABS((double)(clock() - start) / CLOCKS_PER_SEC, 0.0, 0.25);
     GM_ASSERT_INT(remove(path), 0);
 }
 
@@ -488,18 +484,8 @@ static void a_call_without_a_required_pointer_is_refused(void) {
 }
 
 /* ---------------------------------------------------------------------------------------------
- * Time
+ * Size
  * ------------------------------------------------------------------------------------------- */
-
-/* Times tell nothing without optimisation, with sanitizers and within valgrind. */
-static int time_counts(void) {
-#if defined(__OPTIMIZE__) && !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)
-    const char *preload = getenv("LD_PRELOAD");
-    return preload == NULL || strstr(preload, "vgpreload") == NULL;
-#else
-    return 0;
-#endif
-}
 
 static void write_large_file(const char *path, int teeth, int face_nodes, int profile_nodes) {
     FILE *file = fopen(path, "wb");
@@ -520,22 +506,14 @@ static void write_large_file(const char *path, int teeth, int face_nodes, int pr
     GM_ASSERT_INT(fclose(file), 0);
 }
 
-static void a_file_of_45_teeth_and_21_x_31_nodes_loads_in_less_than_0_1_s(void) {
+static void a_file_of_a_whole_gear_is_loaded(void) {
     static const char path[] = IO_TEST_PATH("large.csv");
     write_large_file(path, 45, 21, 31);
-    double best = (double)INFINITY;
-    for (int trial = 0; trial < 5; trial++) {
-        const clock_t start = clock();
-        GM_ASSERT_INT(gm_deviations_read(&deviations, path, TEETH, &error), GM_IO_OK);
-        best = fmin(best, (double)(clock() - start) / CLOCKS_PER_SEC);
-        GM_ASSERT_INT(deviations.set_count, 90);
-        GM_ASSERT_INT(deviations.face_nodes, 21);
-        GM_ASSERT_INT(deviations.profile_nodes, 31);
-        gm_deviations_free(&deviations);
-    }
-    if (time_counts()) {
-        GM_ASSERT_ABS(best, 0.0, 0.1);
-    }
+    GM_ASSERT_INT(gm_deviations_read(&deviations, path, TEETH, &error), GM_IO_OK);
+    GM_ASSERT_INT(deviations.set_count, 90);
+    GM_ASSERT_INT(deviations.face_nodes, 21);
+    GM_ASSERT_INT(deviations.profile_nodes, 31);
+    gm_deviations_free(&deviations);
     GM_ASSERT_INT(remove(path), 0);
 }
 
@@ -573,7 +551,7 @@ int main(int argc, char **argv) {
         GM_TEST(a_file_that_cannot_be_written_is_an_error),
         GM_TEST(what_could_not_be_read_back_is_not_written),
         GM_TEST(a_call_without_a_required_pointer_is_refused),
-        GM_TEST(a_file_of_45_teeth_and_21_x_31_nodes_loads_in_less_than_0_1_s),
+        GM_TEST(a_file_of_a_whole_gear_is_loaded),
     };
     return gm_test_main("unit.deviation_file", tests, GM_TEST_COUNT(tests), argc, argv);
 }

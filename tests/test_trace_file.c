@@ -5,12 +5,8 @@
  * Trace files: what is read, and every text that must be refused. Lines, fields and numbers in general are tested in
  * test_pitch_file.c; all files are read by the same code.
  */
-#define _POSIX_C_SOURCE 200809L
-
 #include "io_test.h"
 #include "reference_gear.h"
-
-#include <time.h>
 
 #define ROLL     "tooth,flank,trace,face_mm,roll_length_mm,deviation_um\n"
 #define DIAMETER "tooth,flank,trace,face_mm,diameter_mm,deviation_um\n"
@@ -133,43 +129,11 @@ static void bad_calls_are_refused(void) {
     gm_measured_pitch_free(NULL);
 }
 
-/* Seconds for 200 traces of so many points. */
-static double time_of(int points) {
-    static const char path[] = IO_TEST_PATH("long.csv");
-    FILE *file = fopen(path, "wb");
-    struct timespec before;
-    struct timespec after;
-    fputs(ROLL, file);
-    for (int trace = 0; trace < 200; trace++) {
-        for (int i = 0; i < points; i++) {
-            fprintf(file, "%d,left,profile,8.75,%.4f,%.2f\n", trace, 9.0 + 12.0 * i / points,
-                    0.1 * i);
-        }
-    }
-    fclose(file);
-    clock_gettime(CLOCK_MONOTONIC, &before);
-    GM_ASSERT_INT(gm_traces_read(&traces, path, &pair, 0, &error), GM_IO_OK);
-    clock_gettime(CLOCK_MONOTONIC, &after);
-    GM_ASSERT_INT(traces.count, 200);
-    gm_traces_free(&traces);
-    remove(path);
-    return (double)(after.tv_sec - before.tv_sec) + 1e-9 * (double)(after.tv_nsec - before.tv_nsec);
-}
-
-static void time_grows_with_the_rows(void) {
-    /* Ten times the rows: quadratic work would take a hundred times as long. */
-    const double few = time_of(100);
-    const double many = time_of(1000);
-    gm_test_context("%g s and %g s", few, many);
-    GM_ASSERT(many < 40.0 * few);
-}
-
 int main(int argc, char **argv) {
     static const gm_test tests[] = {
         GM_TEST(rows_become_traces_in_metres), GM_TEST(a_diameter_is_a_roll_length),
         GM_TEST(headers_say_what_is_wrong),    GM_TEST(rows_say_what_is_wrong),
         GM_TEST(a_trace_goes_one_way),         GM_TEST(bad_calls_are_refused),
-        GM_TEST(time_grows_with_the_rows),
     };
     return gm_test_main("unit.trace_file", tests, GM_TEST_COUNT(tests), argc, argv);
 }
