@@ -385,13 +385,17 @@ class Static(Case):
             angles = self.static(f"analysis.period={period}", "analysis.positions=7")["pinion_angle_rad"]
             self.assert_all_close(angles, [2 * math.pi / 45 * passes * k / 7 for k in range(7)], relative=4e-16)
 
+    def test_one_load_is_not_repeated_in_each_row(self):
+        self.assertEqual(list(self.static()), ["pinion_angle_rad", "te_um", "mesh_stiffness_N_per_um",
+                                               "contact_length_mm", "pairs_in_contact"])
+
     def test_several_loads_are_the_runs_of_each_one_after_the_other(self):
         loads = [20, 12.5, 5]
         together = self.static("analysis.loads=3", "load.end_Nm=5")
         one_by_one = [self.static(f"load.mean_Nm={load}") for load in loads]
-        for name, values in together.items():
-            self.assertEqual(values, [value for run in one_by_one for value in run[name]])
-        self.assertEqual(together["load_torque_Nm"], [load for load in loads for _ in range(60)])
+        self.assertEqual(together.pop("load_torque_Nm"), [load for load in loads for _ in range(60)])
+        self.assertEqual(together, {name: [value for run in one_by_one for value in run[name]]
+                                    for name in one_by_one[0]})
         self.assertGreater(max(together["te_um"][120:]) - max(together["te_um"][:60]), 1)
 
     def test_coast_side_mirrors_the_drive_side(self):
@@ -456,6 +460,20 @@ class Ends(Case):
         self.assertEqual(result.returncode, 1, result.stderr)
         self.assertEqual(self.text("run.csv"), OLD_RESULT)
         self.assertTrue(self.text("run.csv.part").endswith("\n"))
+
+    def test_absurd_speeds_and_loads_have_a_reason_and_no_result(self):
+        """Both may be any finite number; deviations that are scaled beyond all teeth are bad input."""
+        static = "analysis.type=static"
+        for settings, code, reason in [(["drive.start_rpm=1e300", "drive.end_rpm=1e300"], 1, "1e9 rad/s"),
+                                       (["drive.end_rpm=-1e308"], 1, "no quasi-static start"),
+                                       (["load.mean_Nm=1e300"], 1, "carries the torque"),
+                                       ([static, "load.mean_Nm=-1e300"], 1, "carries the torque"),
+                                       ([static, "analysis.loads=2", "load.end_Nm=1e308"], 1, "carries the torque"),
+                                       ([*MEASURED, "flanks.scale=1e300"], 2, "beyond 1 m")]:
+            result = self.gearsim(["analysis.duration_s=0.01", *settings], "--output", "absurd.csv")
+            self.assertEqual(result.returncode, code, settings)
+            self.assertIn(reason, result.stderr)
+            self.assertFalse(os.path.exists(self.path("absurd.csv")), settings)
 
     def test_skipped_tooth_fails_with_time_and_reason(self):
         result = self.gearsim(["load.noise_amplitude_Nm=1e6", "analysis.duration_s=1"], "--output", "run.csv")

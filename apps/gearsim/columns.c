@@ -15,10 +15,15 @@ const char *const dynamic_columns[] = {
 const int dynamic_column_count = sizeof dynamic_columns / sizeof dynamic_columns[0];
 
 const char *const static_columns[] = {
-    "load_torque_Nm",          "pinion_angle_rad",  "te_um",
-    "mesh_stiffness_N_per_um", "contact_length_mm", "pairs_in_contact",
+    "pinion_angle_rad", "te_um",          "mesh_stiffness_N_per_um", "contact_length_mm",
+    "pairs_in_contact", "load_torque_Nm",
 };
-const int static_column_count = sizeof static_columns / sizeof static_columns[0];
+
+/* The load tells rows apart only where there are several. */
+int static_column_count(const config *conf) {
+    const int all = sizeof static_columns / sizeof static_columns[0];
+    return conf->loads > 1 ? all : all - 1;
+}
 
 static const char blanks[] = " \t";
 

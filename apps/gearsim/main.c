@@ -20,7 +20,7 @@
 
 static int check_output(const config *conf) {
     return conf->analysis == ANALYSIS_STATIC
-               ? output_check(conf, static_columns, static_column_count)
+               ? output_check(conf, static_columns, static_column_count(conf))
                : output_check(conf, dynamic_columns, dynamic_column_count);
 }
 

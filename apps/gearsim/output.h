@@ -36,6 +36,6 @@ int output_close(output_file *output, const char *incomplete);
 extern const char *const dynamic_columns[];
 extern const int dynamic_column_count;
 extern const char *const static_columns[];
-extern const int static_column_count;
+int static_column_count(const config *conf); /* the last one is there under several loads only */
 
 #endif

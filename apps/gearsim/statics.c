@@ -11,7 +11,7 @@
 #include <math.h>
 
 /* Places of static_columns. */
-enum column { LOAD, PINION_ANGLE, TE, MESH_STIFFNESS, CONTACT_LENGTH, PAIRS, COLUMNS };
+enum column { PINION_ANGLE, TE, MESH_STIFFNESS, CONTACT_LENGTH, PAIRS, LOAD, COLUMNS };
 
 static const double two_pi = 6.283185307179586;
 
@@ -81,12 +81,12 @@ static int write_position(const config *conf, const gearbox *gears, double angle
     /* Of the face width, summed over the pairs and both flanks. */
     const double touching = mesh.drive_contact + mesh.coast_contact;
     const double values[COLUMNS] = {
-        [LOAD] = before->load,
         [PINION_ANGLE] = angle,
         [TE] = -offset * 1e6,
         [MESH_STIFFNESS] = conf->stiffness * touching * 1e-6,
         [CONTACT_LENGTH] = touching * pair->face_width / cos(pair->base_helix_angle) * 1e3,
         [PAIRS] = mesh.drive_pairs + mesh.coast_pairs,
+        [LOAD] = before->load,
     };
     return output_row(output, values);
 }
@@ -157,7 +157,8 @@ int statics_run(const config *conf, const gearbox *gears) {
     int exit_code = 0;
 
     interrupt_watch();
-    output_file *const output = output_open(conf, static_columns, static_column_count, &exit_code);
+    output_file *const output =
+        output_open(conf, static_columns, static_column_count(conf), &exit_code);
     if (output != NULL) {
         exit_code = write_all(conf, gears, output);
     }
