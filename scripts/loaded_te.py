@@ -1,6 +1,7 @@
 # SPDX-FileCopyrightText: The gearmesh authors
 # SPDX-License-Identifier: BSD-3-Clause
 """Loaded transmission error from gearsim: one parameter file, many torques, many values of its keys."""
+import bisect
 import concurrent.futures
 import math
 import os
@@ -179,6 +180,8 @@ class Gears:
             raise KeyboardInterrupt
         if result.returncode == 2:
             raise InputError(result.stderr.strip())
+        if result.returncode != 0 and "no equilibrium" in result.stderr:
+            raise NoEquilibrium(result.stderr.strip())
         if result.returncode != 0:
             raise RunFailed(result.stderr.strip() or f"gearsim ended with {result.returncode}")
         return result.stdout
@@ -200,10 +203,9 @@ class Gears:
             loads["load.end_Nm"] = float(torques_Nm[-1])
         try:
             return np.reshape(self._run({**values, **loads})[1][:, 0], (len(torques_Nm), -1))
-        except RunFailed as error:
+        except (NoEquilibrium, RunFailed) as error:
             given = "".join(f"{short_key(key)} = {value:.6g}: " for key, value in values.items())
-            kind = NoEquilibrium if "no equilibrium" in str(error) else RunFailed
-            raise kind(f"{given}{error}") from error
+            raise type(error)(f"{given}{error}") from error
 
     def each(self, designs, torques_Nm):
         """Transmission error [torque, position] of each {key: value}, in this order, several at a time."""
@@ -220,6 +222,22 @@ class Gears:
     def curves_um(self, designs, torques_Nm):
         """The same of all: [design, torque, position]."""
         return np.array(list(self.each(designs, torques_Nm)))
+
+    def carried(self, designs, torques_Nm):
+        """Those of the torques, lowest first, that each {key: value} can carry; tells of the others."""
+
+        def is_too_much(torque_Nm):
+            try:
+                self.curves_um(designs, [torque_Nm])
+            except NoEquilibrium:
+                return True
+            return False
+
+        if not is_too_much(torques_Nm[-1]):
+            return torques_Nm
+        count = bisect.bisect_left(torques_Nm, True, key=is_too_much)
+        print(f"{self.path}: torques end below {abs(torques_Nm[count]):.4g} N m, which the gears cannot carry")
+        return torques_Nm[:count]
 
     def touching_um(self):
         """What added to a transmission error makes it 0 where ideal flanks just touch."""

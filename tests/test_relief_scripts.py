@@ -36,6 +36,11 @@ STIFFNESS_N_PER_M = 1.05e8
 WHEEL_BASE_RADIUS_M = 37 * 2e-3 / 2 * math.cos(math.radians(20))
 DESIGN_NM = DEFLECTION_UM * 1e-6 * STIFFNESS_N_PER_M * WHEEL_BASE_RADIUS_M
 LENGTH_UM = 3694.959
+# A thousandth of its stiffness: more than half a base pitch less the backlash is never pressed in.
+SOFT = ["--set", "modifications.pinion_tip_relief_um=0", "--set", "modifications.wheel_tip_relief_um=0",
+        "--set", "mesh.stiffness_N_per_m=1.05e6", "--set", "load.mean_Nm=80", "--set", "analysis.positions=20"]
+HALF_BASE_PITCH_M = math.pi * 2e-3 * math.cos(math.radians(20)) / 2
+SOFT_CAPACITY_NM = WHEEL_BASE_RADIUS_M * 1.05e6 * (HALF_BASE_PITCH_M - 30e-6)
 BOTH_RELIEFS = "pinion_tip_relief_um,wheel_tip_relief_um"
 
 
@@ -53,6 +58,11 @@ def long_relief_um(amount_um, torque_Nm):
 def length_error_um(amount_um, torque_Nm):
     """The way that two pairs share depends on the deflection, the length fits 20 um: what the misfit can do."""
     return 0.02 + amount_um * abs(torque_Nm / DESIGN_NM - 1) * DEFLECTION_UM / LENGTH_UM
+
+
+def heed_interrupts():
+    """What shells start in the background ignores them, and so would the scripts."""
+    signal.signal(signal.SIGINT, signal.SIG_DFL)
 
 
 class Case(unittest.TestCase):
@@ -113,6 +123,7 @@ class Case(unittest.TestCase):
         process = subprocess.Popen(
             [os.path.join(SCRIPTS, script), *arguments, "--gearsim", counted],
             cwd=self.folder, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, start_new_session=True,
+            preexec_fn=heed_interrupts,
         )
         while process.poll() is None and (not os.path.exists(self.path("count")) or len(self.read("count")) < runs):
             time.sleep(0.05)
@@ -186,6 +197,16 @@ class Harris(Case):
         self.assertGreater(abs(drive_um[2] - drive_um[5]), 3)  # 5 or 20 um at 90 N m
         for one, other in zip(coast_um[:3], coast_um[3:]):  # the pinion's drive flank does not touch
             self.assertEqual(one, other)
+
+    def test_torques_end_where_the_gears_cannot_carry_more(self):
+        self.accepted("harris", SPUR, *SOFT, "--vary", "pinion_crowning_um=0:10:2", "--output", "h")
+        torques_Nm = sorted({row["torque_Nm"] for row in self.table("h_harris.csv")})
+        self.assertAlmostEqual(torques_Nm[-1], SOFT_CAPACITY_NM - 1.25, delta=1.25)  # steps of 120 N m / 48
+        self.assertEqual(list(self.table("h_te.csv")[0]), ["mesh_cycles", "te_um at 0.08 N m", "te_um at 40 N m",
+                                                           "te_um at 80 N m"])
+        self.assertIn("80 N m", self.svg_text("h_te.svg"))
+        for script in ("harris", "relief"):
+            self.refused(script, SPUR, *SOFT, "--set", "load.mean_Nm=200", fragments=["no equilibrium", "200 N m"])
 
     def test_flanks_of_files_are_not_repeated_and_warned_of(self):
         result = self.accepted("harris", REAL_FLANKS, "--vary", "pinion_crowning_um=0:5:2", "--torques", "10:20:2",
@@ -326,6 +347,20 @@ class Relief(Case):
         self.assertIn("the file's own is kept", text)
         self.assertEqual(found["pinion_tip_relief_um"], 20)
 
+    def test_the_tolerance_is_that_of_modifications_which_are_not_there_too(self):
+        # Over the pinion's profile, t2 in 0 .. 1, one pair is alone from 1 - 1 / eps to 1 / eps, delta = d - S (t2 - 1/2).
+        # Two have delta = d / 2 - S (2 t2 - 1 / eps - 1) / 2, t2 of the leaving one: peak-to-peak d / 2 + S / (2 eps).
+        none = ["--set", "modifications.pinion_tip_relief_um=0", "--set", "modifications.wheel_tip_relief_um=0"]
+        text, found = self.search(SPUR, *none, "--vary", "pinion_profile_slope_um=0:0.01", "--torques", f"{DESIGN_NM}",
+                                  "--starts", "1")
+        self.assertNotIn("pinion_profile_slope_um", found)
+        before, after, within = self.worst_um(text)
+        self.assertAlmostEqual(before, DEFLECTION_UM / 2, delta=0.01)
+        self.assertEqual(after, before)
+        base_pitch_um = 2e6 * HALF_BASE_PITCH_M
+        contact_ratio = (LENGTH_UM + DEFLECTION_UM + base_pitch_um) / base_pitch_um
+        self.assertAlmostEqual(within, DEFLECTION_UM / 2 + 2 / (2 * contact_ratio), delta=0.02)
+
     def test_mean_objective_is_lower_in_the_mean_and_higher_at_the_worst(self):
         numbers = {}
         for objective in ("worst", "mean"):
@@ -353,6 +388,34 @@ class Relief(Case):
             self.assertIn(text, self.svg_text("r_relief.svg"))
         for text in ("before", "after", "36 N m", "73 N m", "mesh cycles of the pinion"):
             self.assertIn(text, self.svg_text("r_relief_te.svg"))
+
+    def test_torques_end_where_the_gears_cannot_carry_more(self):
+        self.accepted("relief", SPUR, *SOFT, "--vary", "pinion_crowning_um=0:10", "--starts", "1", "--output", "r")
+        names = [f"r_relief{name}" for name in (".csv", ".ini", ".png", ".svg", "_te.png", "_te.svg")]
+        self.assertEqual(sorted(os.listdir(self.folder)), names)
+        self.assertAlmostEqual(self.table("r_relief.csv")[-1]["torque_Nm"], SOFT_CAPACITY_NM - 1.25, delta=1.25)
+
+    def test_a_tolerance_that_the_gears_cannot_carry_is_told(self):
+        # A crowning of 3 mm takes a third of that off what 2.9 mm can press in.
+        most_Nm = f"{0.8 * SOFT_CAPACITY_NM}"
+        text, _ = self.search(SPUR, *SOFT, "--vary", "pinion_crowning_um=0:10", "--starts", "1", "--torques",
+                              most_Nm, "--tolerance", "3000")
+        self.assertEqual(self.worst_um(text)[2], math.inf)
+
+    def test_an_interruption_of_the_tolerance_leaves_the_design(self):
+        gearsim = self.write("gearsim", '#!/bin/sh\ncase "$*" in *pinion_tip_relief_um=20.123*)\n'
+                             f'trap "" INT; mkdir "{self.folder}/once" && kill -INT 0;; esac\nexec "{GEARSIM}" "$@"\n')
+        os.chmod(gearsim, 0o755)
+        result = subprocess.run(
+            [os.path.join(SCRIPTS, "relief"), SPUR, *self.AMOUNTS, "--torques", f"{DESIGN_NM}", "--starts", "1",
+             "--tolerance", "0.123", "--output", "r", "--no-pictures", "--gearsim", gearsim],
+            cwd=self.folder, capture_output=True, text=True, start_new_session=True, preexec_fn=heed_interrupts,
+        )
+        self.assertEqual(result.returncode, 130, result.stderr)
+        self.assertIn("interrupted; the design found, without its tolerance", result.stderr)
+        self.assertEqual(self.found()["pinion_tip_relief_um"], 20)
+        self.assertTrue(math.isnan(self.worst_um(result.stdout)[2]))
+        self.assertEqual([row for row in self.table("r_relief.csv") if len(row) > 3], [])
 
     def test_an_interrupted_search_reports_its_best_design(self):
         stdout, stderr, files = self.interrupted("relief", SPUR, "--output", "r", "--no-pictures", *self.ELSEWHERE,
