@@ -15,7 +15,6 @@ set yrange [number_low:number_high]
 set cbrange [0:step * steps]
 dx = (torque_high - torque_low) / (fine - 1.0)
 dy = (number_high - number_low) / (fine - 1.0)
-number_at = 30 # point of a contour line where its number stands
 contours = folder . '/contours.dat'
 
 # Contour lines, once for both formats.
@@ -28,10 +27,10 @@ splot folder . '/map.bin' binary array=(fine, fine) format='%float32' endian=lit
 unset table
 unset contour
 set surface
-# Never without a line that is long enough for a number, which gnuplot would complain of: one outside.
+# Never without a line, of which gnuplot would complain: one outside.
 set print contours append
 print ''
-do for [point = 0:number_at] { print sprintf('%g %g 0', torque_low - 1, number_low - 1) }
+print sprintf('%g %g 0', torque_low - 1, number_low - 1)
 unset print
 
 set palette @palette_of_steps negative
@@ -64,6 +63,6 @@ do for [format in 'png svg'] {
     plot folder . '/map.bin' binary array=(fine, fine) format='%float32' endian=little \
             origin=(torque_low, number_low) dx=dx dy=dy with image, \
         contours using 1:2 with lines lw 1.4 lc rgb '#202020', \
-        contours using 1:2:(sprintf('%g', $3)) every ::number_at::number_at with labels boxed font ',10'
+        folder . '/labels.dat' using 1:2:(sprintf('%g', $3)) with labels boxed font ',10'
     unset output
 }

@@ -251,7 +251,7 @@ class Gears:
         cycles = self.mesh_cycles
         if self.differs_by_tooth() and self.parameters["analysis.period"] != "hunting":
             return cycles, te_um
-        period = cycles[-1] + cycles[1] if len(cycles) > 1 else 1.0
+        period = max(1, round(cycles[-1] + cycles[1])) if len(cycles) > 1 else 1  # angles have some digits only
         return np.concatenate([cycles, cycles + period, [2 * period]]), np.hstack([te_um, te_um, te_um[:, :1]])
 
     # ------------------------------------------------------------------------------------------------
@@ -394,6 +394,11 @@ def apart(positions, distance):
     for first, count, middle in groups:
         placed[order[first : first + count]] = middle + distance * (np.arange(count) - (count - 1) / 2)
     return placed
+
+
+def peak_to_peak_text(te_um):
+    width_um = np.ptp(te_um)
+    return f"p-p {width_um:.{2 if width_um >= 1 else 3}f} µm"
 
 
 def write_blocks(path, blocks):

@@ -12,7 +12,7 @@ um = ' / µm'
 
 set encoding utf8
 set border lw 1.2
-set tics out nomirror
+set tics out nomirror format '%g'
 
 # eval terminal(...): png or svg, of so many pixels of the png
 terminal(format, name, width, height) = format eq 'png' \

@@ -7,6 +7,8 @@ scripts/harris and scripts/relief against the closed form of the long tip relief
     test_relief_scripts.py GEARSIM [-v] [name of a test]...
 """
 import csv
+import importlib.machinery
+import importlib.util
 import math
 import os
 import re
@@ -157,7 +159,7 @@ class Harris(Case):
             "harris": ["0 µm", "20 µm", "30 µm", "tip relief of both gears", f"design load {DESIGN_NM:.4g} N m",
                        "torque on the wheel / N m", "peak-to-peak transmission error / µm"],
             "map": ["tip relief of both gears / µm", "peak-to-peak transmission error / µm", "design load"],
-            "te": ["almost no load", "36.51 N m", "73.01 N m", "109.5 N m", "p-p 0.00 µm", "p-p 4.99 µm",
+            "te": ["almost no load", "36.51 N m", "73.01 N m", "109.5 N m", "p-p 0.000 µm", "p-p 4.99 µm",
                    "design of the file"],
         }
         for name, texts in labels.items():
@@ -474,6 +476,28 @@ class Parts(unittest.TestCase):
         np.testing.assert_allclose(loaded_te.apart(np.array([5.0, 5, 1]), 2), [4, 6, 1])
         placed = loaded_te.apart(np.array([0.0, 1.0, 1.5, 9]), 2)
         np.testing.assert_allclose(placed, [-7 / 6, 5 / 6, 17 / 6, 9])
+
+    def test_two_mesh_cycles_are_no_more(self):
+        with loaded_te.Gears(HELICAL, ["analysis.positions=200"], GEARSIM) as gears:  # steps of rounded angles
+            cycles, te_um = gears.periods(np.arange(200.0)[np.newaxis])
+        self.assertEqual((cycles[-1], cycles.shape, te_um.shape), (2, (401,), (1, 401)))
+
+    def test_numbers_on_contour_lines_are_clear_of_all_else(self):
+        loader = importlib.machinery.SourceFileLoader("harris", os.path.join(SCRIPTS, "harris"))
+        harris = importlib.util.module_from_spec(importlib.util.spec_from_loader("harris", loader))
+        loader.exec_module(harris)
+        x, y = np.meshgrid(np.linspace(0, 1, 241), np.linspace(0, 1, 241))
+        half_height = 0.013  # of what gnuplot draws: 20 of 720 pixels; the width is 9 of 1022 for each digit
+        for slope in (5, 40):  # so steep that lines stand closer than their numbers are wide
+            labels = harris.contour_labels(slope * x + 3 * y, np.arange(1.0, slope + 3), (0.5, 0.4))
+            self.assertGreater(len(set(labels[:, 2])), slope / 2)
+            np.testing.assert_allclose(slope * labels[:, 0] + 3 * labels[:, 1], labels[:, 2], atol=1e-9)
+            half = [(0.0045 * len(f"{level:g}"), half_height) for level in labels[:, 2]]
+            for number, (at, own) in enumerate(zip(labels[:, :2], half)):
+                self.assertTrue(np.all((at > own) & (at < 1 - np.array(own))))
+                self.assertTrue(np.all(np.abs(at - (0.5, 0.4)) > own))
+                for other, its in zip(labels[:number, :2], half):
+                    self.assertTrue(np.any(np.abs(at - other) > np.add(own, its)))
 
     def test_ranges(self):
         np.testing.assert_allclose(loaded_te.span("1:3:5"), [1, 1.5, 2, 2.5, 3])
