@@ -19,6 +19,7 @@ import results
 ROOT = os.path.join(os.path.dirname(os.path.abspath(__file__)), os.pardir)
 GEARS = ("pinion", "wheel")
 UNITS = {"um": "µm", "mm": "mm", "deg": "°", "Nm": "N m"}  # by the end of a key
+MADE = ("gears", "flanks", "modifications", "mesh")  # sections that act on the error under a given load
 NO_LOAD = 1e-3  # of the mean load: gearsim needs a load, as without one the gears may stand anywhere in the backlash
 FLANK_FILES = ("pinion", "wheel", "pinion_pitch", "wheel_pitch")
 
@@ -158,7 +159,7 @@ class Gears:
         names = "pinion_angle_rad,te_um"
         self.parameters, table = self._run({"output.columns": names, "analysis.loads": 1})
         self.mean_Nm = float(self.parameters["load.mean_Nm"])
-        self.flank = "drive" if self.mean_Nm > 0 else "coast"
+        self.flank, self.other_flank = ("drive", "coast") if self.mean_Nm > 0 else ("coast", "drive")
         if self.differs_by_tooth() and self.parameters["analysis.period"] == "mesh":
             print(
                 f"{self.path}: warning: flanks of files, but one mesh cycle only; all teeth of the pinion "
@@ -264,9 +265,16 @@ class Gears:
         return own if own in self.parameters else f"modifications.{gear}_{name}"
 
     def varied_key(self, name):
-        """`section.key` of a key to vary, which must not be one that another replaces on the loaded flank."""
+        """`section.key` of a key to vary, which must act on the loaded flank."""
         key = full_key(name)
+        if key.partition(".")[0] not in MADE:
+            raise InputError(
+                f"--vary {name}: is not what a gear is made to, a key of [modifications] is right; "
+                "--torques gives torques, --set all else"
+            )
         for gear in GEARS:
+            if key.startswith(f"modifications.{gear}_{self.other_flank}_"):
+                raise InputError(f"--vary {name}: the {self.other_flank} flank does not carry the load")
             own = key.replace(f"modifications.{gear}_", f"modifications.{gear}_{self.flank}_")
             if own != key and own in self.parameters:
                 raise InputError(f"--vary {name}: {short_key(own)} replaces it on the loaded flank, vary that")
