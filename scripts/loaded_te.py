@@ -353,9 +353,9 @@ def write_params(gears, path, values):
     for name in FLANK_FILES:
         key = f"flanks.{name}"
         if gears.parameters.get(key):
-            beside = os.path.dirname(os.path.abspath(gears.path))
+            beside = os.path.dirname(gears.path) if key not in gears.settings else ""  # --set: the working folder
             target = os.path.join(beside, gears.parameters[key])
-            moved[key] = os.path.relpath(target, os.path.dirname(os.path.abspath(path)))
+            moved[key] = os.path.relpath(target, os.path.dirname(path) or ".")
     with open(gears.path, encoding="utf-8") as file:
         text = file.read()
     with open(path, "w", encoding="utf-8") as file:

@@ -505,6 +505,19 @@ class Parts(unittest.TestCase):
             check = subprocess.run([GEARSIM, os.path.join(folder, "x.ini"), "--check"], capture_output=True, text=True)
             self.assertEqual(check.returncode, 0, check.stderr)
 
+    def test_flank_files_of_the_command_line_are_those_of_the_working_folder(self):
+        with tempfile.TemporaryDirectory() as folder:
+            self.addCleanup(os.chdir, os.getcwd())
+            os.chdir(os.path.dirname(REAL_FLANKS))
+            given = ["analysis.positions=1", "flanks.wheel=wheel_flanks.csv"]
+            elsewhere = os.path.join(folder, "params.ini")
+            with open(SPUR, encoding="utf-8") as file, open(elsewhere, "w", encoding="utf-8") as copy:
+                copy.write(file.read().replace("= 37", "= 41"))
+            with loaded_te.Gears(elsewhere, given, GEARSIM) as gears:
+                loaded_te.write_params(gears, os.path.join(folder, "x.ini"), {})
+            check = subprocess.run([GEARSIM, os.path.join(folder, "x.ini"), "--check"], capture_output=True, text=True)
+            self.assertEqual(check.returncode, 0, check.stderr)
+
     def test_labels_stand_apart_in_their_order_and_near_their_place(self):
         np.testing.assert_allclose(loaded_te.apart(np.array([0.0, 5, 10]), 2), [0, 5, 10])
         np.testing.assert_allclose(loaded_te.apart(np.array([5.0, 5, 1]), 2), [4, 6, 1])
