@@ -470,6 +470,8 @@ class Relief(Case):
             (["--vary", "analysis.positions=5:90"], ["--vary analysis.positions: is not what a gear is made to"]),
             (["--vary", "pinion_tip_releif_um=0:9"], ["modifications.pinion_tip_releif_um: unknown key"]),
             (["--vary", "pinion_tip_relief_um=-9:9"], ["pinion_tip_relief_um", "must be >= 0"]),
+            (["--vary", "wheel_tip_relief_um=0:9", "--vary", "wheel_tip_relief_length_mm=0:3", "--tolerance", "0"],
+             ["wheel_tip_relief_length_mm", "(got 0)"]),
             (["--set", "modifications.pinion_drive_tip_relief_um=3", "--vary", "pinion_tip_relief_um=0:9"],
              ["--vary pinion_tip_relief_um: pinion_drive_tip_relief_um replaces it"]),
             (["--vary", "pinion_tip_relief_shape=0:9"], ["pinion_tip_relief_shape", "not a number"]),
