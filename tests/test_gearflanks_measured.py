@@ -12,6 +12,7 @@ import csv
 import math
 import os
 import re
+import stat
 import sys
 
 sys.dont_write_bytecode = True
@@ -280,6 +281,9 @@ class Refusals(Case):
         self.refused("missing is --measured-pitch", *EXAMPLE[:7], *EXAMPLE[7:11], "--pitch", "p.csv")
         self.refused("same file: f.csv", *EXAMPLE, "--pitch", "f.csv")
         self.refused("an input would be overwritten", *EXAMPLE, "--pitch", TRACES)
+        os.symlink(TRACES, self.path("link.csv"))
+        self.refused("an input would be overwritten", *EXAMPLE, "--pitch", "link.csv")
+        self.refused("same file: f.csv", *EXAMPLE, "--pitch", "./f.csv")
         self.refused("not together with --traces or --measured-pitch: --class", *EXAMPLE, "--class", "5")
         self.refused("not together with --evaluate: --remove-spikes", *some, "--evaluate", "--remove-spikes")
         self.refused(
@@ -305,6 +309,13 @@ class Refusals(Case):
         self.refused("no.csv: cannot be opened", *EXAMPLE, "--traces", "no.csv")
         self.refused("no.csv: cannot be opened", *EXAMPLE, "--measured-pitch", "no.csv")
         self.refused("no/f.csv: cannot be", *EXAMPLE, "--flanks", "no/f.csv", code=1)
+
+    def test_no_regular_file_is_replaced(self):
+        os.mkfifo(self.path("pipe"))
+        os.mkdir(self.path("folder"))
+        self.refused("pipe: cannot be written: it is not a regular file", *EXAMPLE, "--flanks", "pipe")
+        self.refused("folder: cannot be written: it is a folder", *EXAMPLE, "--pitch", "folder")
+        self.assertTrue(stat.S_ISFIFO(os.stat(self.path("pipe")).st_mode))
 
 
 class Allowances(Case):

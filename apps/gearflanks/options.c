@@ -2,6 +2,7 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 
 #include "options.h"
+#include "output.h"
 #include "scatter.h"
 
 #include <errno.h>
@@ -386,12 +387,19 @@ static int check_outputs(const flanks_options *options) {
                                   options->measured_pitch};
     const char *const outputs[] = {options->deviations, options->pitch};
 
-    if (outputs[0] != NULL && outputs[1] != NULL && strcmp(outputs[0], outputs[1]) == 0)
+    if (outputs[0] != NULL && outputs[1] != NULL && is_same_file(outputs[0], outputs[1]))
         return refuse("--flanks and --pitch are the same file: ", outputs[0]);
     for (int i = 0; i < 2; ++i)
         for (int k = 0; k < 4; ++k)
-            if (outputs[i] != NULL && inputs[k] != NULL && strcmp(outputs[i], inputs[k]) == 0)
+            if (outputs[i] != NULL && inputs[k] != NULL && is_same_file(outputs[i], inputs[k]))
                 return refuse("an input would be overwritten: ", inputs[k]);
+    for (int i = 0; i < 2; ++i) {
+        const char *reason = outputs[i] != NULL ? output_obstacle(outputs[i]) : NULL;
+        if (reason != NULL) {
+            fprintf(stderr, "%s: cannot be written: it %s\n", outputs[i], reason);
+            return EXIT_BAD_INPUT;
+        }
+    }
     return 0;
 }
 

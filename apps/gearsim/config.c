@@ -236,7 +236,7 @@ static int check_dynamic(const config *conf) {
     return faults;
 }
 
-static int is_same_file(const char *a, const char *b) {
+int is_same_file(const char *a, const char *b) {
     struct stat status_a, status_b;
 
     if (strcmp(a, b) == 0)

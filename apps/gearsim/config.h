@@ -135,6 +135,9 @@ int config_load(config *config, const config_request *request);
 
 void config_free(config *config);
 
+/* Whether two paths lead to one file, also by links. 0 or 1. */
+int is_same_file(const char *a, const char *b);
+
 /* Where a key was set, for messages about its value that only a later step can find: prints
  * "file:line: section.key: " (or "--set section.key: ") and then the formatted message and a newline. */
 void config_complain(const config *config, const char *section_and_key, const char *format, ...);

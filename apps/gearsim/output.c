@@ -68,25 +68,26 @@ static char *resolved(const char *path) {
     return target != NULL ? target : copy_of(path, "");
 }
 
-/* Why the result cannot go there, NULL if it can. A device or pipe would be replaced by a file. */
-static const char *obstacle(const char *path, const char *part) {
-    const char *const places[] = {path, part};
+const char *output_obstacle(const char *path) {
     struct stat status;
 
-    for (int i = 0; i < 2; ++i) {
-        if (stat(places[i], &status) == 0) {
-            if (S_ISDIR(status.st_mode)) {
-                return "is a folder; name a file";
-            }
-            if (!S_ISREG(status.st_mode)) {
-                return "is not a regular file; name a file";
-            }
-            if (access(places[i], W_OK) != 0) {
-                return "is write-protected";
-            }
-        }
+    if (stat(path, &status) != 0) {
+        return NULL;
     }
-    return NULL;
+    if (S_ISDIR(status.st_mode)) {
+        return "is a folder; name a file";
+    }
+    if (!S_ISREG(status.st_mode)) {
+        return "is not a regular file; name a file";
+    }
+    return access(path, W_OK) != 0 ? "is write-protected" : NULL;
+}
+
+/* The same for the result or the file that it grows in. */
+static const char *obstacle(const char *path, const char *part) {
+    const char *const reason = output_obstacle(path);
+
+    return reason != NULL ? reason : output_obstacle(part);
 }
 
 /* The folder must be there and take new files. NULL if so. */
