@@ -71,6 +71,24 @@ static void a_diameter_is_a_roll_length(void) {
     gm_traces_free(&traces);
 }
 
+/* Near the base circle the roll length grows faster than the diameter. */
+static void a_diameter_may_wander_as_a_face_may(void) {
+    pair = reference_pair(REFERENCE_FACE_WIDTH);
+    char text[400];
+    const double base = 2e3 * pair.pinion.base_radius;
+    sprintf(text, DIAMETER "1,left,helix,1,%.3f,0\n1,left,helix,16,%.3f,1\n", base + 0.1,
+            base + 0.109);
+    GM_ASSERT_INT(read_traces(text), GM_IO_OK);
+    GM_ASSERT_INT(traces.count, 1);
+    GM_ASSERT_INT(traces.traces[0].count, 2);
+    gm_traces_free(&traces);
+    sprintf(text, DIAMETER "1,left,helix,1,%.3f,0\n1,left,helix,16,%.3f,1\n", base + 0.1,
+            base + 0.111);
+    GM_ASSERT_INT(read_traces(text), GM_IO_OK);
+    GM_ASSERT_INT(traces.count, 2);
+    gm_traces_free(&traces);
+}
+
 static void headers_say_what_is_wrong(void) {
     refused("tooth,flank,trace,face_mm,roll_length_mm,deviation\n", 1, "'deviation' has no unit",
             "deviation_um");
@@ -131,9 +149,13 @@ static void bad_calls_are_refused(void) {
 
 int main(int argc, char **argv) {
     static const gm_test tests[] = {
-        GM_TEST(rows_become_traces_in_metres), GM_TEST(a_diameter_is_a_roll_length),
-        GM_TEST(headers_say_what_is_wrong),    GM_TEST(rows_say_what_is_wrong),
-        GM_TEST(a_trace_goes_one_way),         GM_TEST(bad_calls_are_refused),
+        GM_TEST(rows_become_traces_in_metres),
+        GM_TEST(a_diameter_is_a_roll_length),
+        GM_TEST(a_diameter_may_wander_as_a_face_may),
+        GM_TEST(headers_say_what_is_wrong),
+        GM_TEST(rows_say_what_is_wrong),
+        GM_TEST(a_trace_goes_one_way),
+        GM_TEST(bad_calls_are_refused),
     };
     return gm_test_main("unit.trace_file", tests, GM_TEST_COUNT(tests), argc, argv);
 }

@@ -61,6 +61,7 @@ static const double place_tolerance = 1e-5;
 /* What a row says. */
 typedef struct trace_row {
     gm_trace trace;  /* what it belongs to, without arrays */
+    double place;    /* of that trace, as in the file: diameters are not roll lengths (m) */
     double position; /* along it (m) */
     double deviation;
     long line;
@@ -82,17 +83,14 @@ typedef struct loader {
     point *points; /* of all traces, one after the other */
     int point_count;
     int point_capacity;
-    int direction; /* along the trace last read: 1, -1, 0 = not known yet */
+    double place;  /* of the trace last read, as in the file (m) */
+    int direction; /* along it: 1, -1, 0 = not known yet */
     gm_io_error *error;
 } loader;
 
 /* The roll length of a diameter. */
-static int read_diameter(const loader *load, const gmi_table *table, double *roll) {
-    double diameter = 0.0;
-    const int status = gmi_table_number(table, ROLL, MILLI, &diameter);
-    if (status != GM_IO_OK) {
-        return status;
-    }
+static int roll_of_diameter(const loader *load, const gmi_table *table, double diameter,
+                            double *roll) {
     const double base = load->gear->base_radius;
     const double square = 0.25 * diameter * diameter - base * base;
     /* A file has few digits: the base circle may come out just below itself. */
@@ -114,6 +112,7 @@ static int read_diameter(const loader *load, const gmi_table *table, double *rol
 static int read_trace_row(const loader *load, const gmi_table *table, trace_row *row) {
     gm_trace *trace = &row->trace;
     double face = 0.0;
+    double length = 0.0; /* roll length or diameter */
     double roll = 0.0;
     memset(row, 0, sizeof *row);
     int status = gmi_table_whole(table, TOOTH, &trace->tooth);
@@ -127,21 +126,30 @@ static int read_trace_row(const loader *load, const gmi_table *table, trace_row 
         status = gmi_table_number(table, FACE, MILLI, &face);
     }
     if (status == GM_IO_OK) {
-        status = load->by_diameter ? read_diameter(load, table, &roll)
-                                   : gmi_table_number(table, ROLL, MILLI, &roll);
+        status = gmi_table_number(table, ROLL, MILLI, &length);
+        roll = length;
+    }
+    if (status == GM_IO_OK && load->by_diameter) {
+        status = roll_of_diameter(load, table, length, &roll);
     }
     if (status == GM_IO_OK) {
         status = gmi_table_number(table, DEVIATION, MICRO, &row->deviation);
     }
     trace->at = trace->kind == GM_TRACE_PROFILE ? face : roll;
+    row->place = trace->kind == GM_TRACE_PROFILE ? face : length;
     row->position = trace->kind == GM_TRACE_PROFILE ? roll : face;
     row->line = table->line;
     return status;
 }
 
-static int is_same_trace(const gm_trace *a, const gm_trace *b) {
-    return a->tooth == b->tooth && a->flank == b->flank && a->kind == b->kind &&
-           fabs(a->at - b->at) <= place_tolerance;
+/* Whether a row belongs to the trace last read. */
+static int goes_on(const loader *load, const trace_row *row) {
+    if (load->trace_count == 0) {
+        return 0;
+    }
+    const gm_trace *last = &load->traces[load->trace_count - 1];
+    return row->trace.tooth == last->tooth && row->trace.flank == last->flank &&
+           row->trace.kind == last->kind && fabs(row->place - load->place) <= place_tolerance;
 }
 
 /* Checks that a row goes on in the direction of its trace. */
@@ -161,14 +169,15 @@ static int check_direction(loader *load, const gmi_table *table, const trace_row
     return GM_IO_OK;
 }
 
-static int begin_trace(loader *load, const gm_trace *trace) {
+static int begin_trace(loader *load, const trace_row *row) {
     gm_trace *grown =
         gmi_array_grow(load->traces, sizeof *grown, load->trace_count, &load->trace_capacity);
     if (grown == NULL) {
         return fail_memory(load->error);
     }
     load->traces = grown;
-    load->traces[load->trace_count++] = *trace;
+    load->traces[load->trace_count++] = row->trace;
+    load->place = row->place;
     load->direction = 0;
     return GM_IO_OK;
 }
@@ -187,9 +196,8 @@ static int append_point(loader *load, const trace_row *row) {
 }
 
 static int place_row(loader *load, const gmi_table *table, const trace_row *row) {
-    const int goes_on =
-        load->trace_count > 0 && is_same_trace(&row->trace, &load->traces[load->trace_count - 1]);
-    const int status = goes_on ? check_direction(load, table, row) : begin_trace(load, &row->trace);
+    const int status =
+        goes_on(load, row) ? check_direction(load, table, row) : begin_trace(load, row);
     return status == GM_IO_OK ? append_point(load, row) : status;
 }
 
