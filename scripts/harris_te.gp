@@ -16,7 +16,8 @@ set grid xtics ytics lt 1 lw 0.6 lc rgb '#d8d8d8'
 set xrange [0:cycles]
 set yrange [low:high]
 set xlabel 'mesh cycles of the pinion'
-set ylabel 'transmission error (0: ideal flanks just touch)' . um
+set ylabel (moved ? 'transmission error, loads moved together' \
+    : 'transmission error (0: ideal flanks just touch)') . um
 unset key
 
 set label title_text at screen 0.025, screen 0.96 left font ',17' noenhanced

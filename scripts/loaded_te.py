@@ -21,6 +21,8 @@ GEARS = ("pinion", "wheel")
 UNITS = {"um": "µm", "mm": "mm", "deg": "°", "Nm": "N m"}  # by the end of a key
 MADE = ("gears", "flanks", "modifications", "mesh")  # sections that act on the error under a given load
 NO_LOAD = 1e-3  # of the mean load: gearsim needs a load, as without one the gears may stand anywhere in the backlash
+SHAPE_SHARE = 0.1  # of the scale: what is flatter shows no shape
+NO_SHAPE_UM = 1e-3  # what is flatter has none
 FLANK_FILES = ("pinion", "wheel", "pinion_pitch", "wheel_pitch")
 
 
@@ -385,6 +387,19 @@ def round_step(range_, steps):
     raw = max(range_, 1e-9) / steps
     power = 10.0 ** math.floor(math.log10(raw) + 1e-9)
     return next(power * digit for digit in (1, 2, 5, 10) if power * digit >= raw * (1 - 1e-9))
+
+
+def moved_together(groups_um):
+    """Curves [curve, position] of each picture at one scale: as they are, or, where the loads are so far apart that no
+    curve would show its shape, each moved beside its neighbours; and whether they were moved."""
+    shape_um = max(np.ptp(curve_um) for group_um in groups_um for curve_um in group_um)
+    if not NO_SHAPE_UM < shape_um < SHAPE_SHARE * np.ptp(groups_um):
+        return groups_um, False
+    ranks = [np.argsort(np.argsort(group_um.mean(axis=1))) for group_um in groups_um]
+    return [
+        group_um - group_um.mean(axis=1, keepdims=True) + 1.3 * shape_um * rank[:, np.newaxis]
+        for group_um, rank in zip(groups_um, ranks)
+    ], True
 
 
 def apart(positions, distance):

@@ -24,7 +24,7 @@ do for [format in 'png svg'] {
     do for [panel = 0:1] {
         unset label
         unset arrow
-        left = 0.08 + 0.465 * panel
+        left = 0.085 + 0.465 * panel
         set lmargin at screen left
         set rmargin at screen left + 0.355
         set label word(names, panel + 1) at screen left, screen 0.855 left font ',14'
@@ -33,7 +33,8 @@ do for [format in 'png svg'] {
             set label 'Quasi-static transmission error over the mesh cycle' at screen 0.02, screen 0.91 left \
                 font ',12' textcolor rgb grey
             set format y '%g'
-            set ylabel 'transmission error (0: ideal flanks just touch)' . um
+            set ylabel (moved ? 'transmission error, loads moved together' \
+                : 'transmission error (0: ideal flanks just touch)') . um offset 0.6,0
         } else {
             unset ylabel
             set format y '' # as at the left

@@ -520,6 +520,23 @@ class Parts(unittest.TestCase):
             check = subprocess.run([GEARSIM, os.path.join(folder, "x.ini"), "--check"], capture_output=True, text=True)
             self.assertEqual(check.returncode, 0, check.stderr)
 
+    def test_flat_curves_are_moved_together_and_keep_shape_and_order(self):
+        wave_um = np.sin(np.linspace(0, 2 * np.pi, 50))
+        steep = [np.array([0.0, -10.0])[:, np.newaxis] + wave_um]
+        same, moved = loaded_te.moved_together(steep)
+        self.assertFalse(moved)
+        np.testing.assert_array_equal(same, steep)
+        flat = [np.array([[0.0], [-90.0], [-50.0]]) + amplitude * wave_um for amplitude in (1.0, 0.5)]
+        together, moved = loaded_te.moved_together(flat)
+        self.assertTrue(moved)
+        for before, after in zip(flat, together):
+            np.testing.assert_allclose(np.diff(after), np.diff(before), atol=1e-12)
+            self.assertGreater(after[0].min(), after[2].max())
+            self.assertGreater(after[2].min(), after[1].max())
+        self.assertLess(np.ptp(together), 10)
+        self.assertFalse(loaded_te.moved_together([np.zeros((2, 5))])[1])  # no shape at all
+        self.assertFalse(loaded_te.moved_together([np.array([[0.0, 1e-9], [-20, -20]])])[1])
+
     def test_labels_stand_apart_in_their_order_and_near_their_place(self):
         np.testing.assert_allclose(loaded_te.apart(np.array([0.0, 5, 10]), 2), [0, 5, 10])
         np.testing.assert_allclose(loaded_te.apart(np.array([5.0, 5, 1]), 2), [4, 6, 1])
