@@ -224,7 +224,7 @@ class Refusals(Case):
             path = self.write("t.csv", "".join(self.each(5, lambda um, factor=factor: factor * um)))
             self.refused(["t.csv:", said], *EXAMPLE, "--traces", path)
         self.traces = self.each(5, lambda um: -um)
-        self.bad_traces(0, ["16 of 16 traces stand out", "> 0 for material added is right"])
+        self.bad_traces(0, ["16 of 16 traces stand out", "> 0 for material added is right", "(see --hollow)"])
 
     def test_lengths(self):
         rows = self.traces
@@ -243,7 +243,11 @@ class Refusals(Case):
     def test_spikes_teeth_and_text(self):
         rows = list(self.traces)
         self.traces[40] = re.sub(r"[^,]*\n$", "25\n", self.traces[40])
-        self.bad_traces(41, ["the profile trace of tooth 1, flank left", "a spike"])
+        self.bad_traces(41, ["the profile trace of tooth 1, flank left", "a spike", "(see --remove-spikes)"])
+        self.traces = rows
+        self.bad_traces(5, ["may be missing at either end", "(see --held)"], "--held", "0.01")
+        self.traces = self.change(rows, "^1,", "0,")
+        self.bad_traces(5, ["no tooth 0", "(see --first-number)"])
         self.traces = rows + rows[4:101]
         self.bad_traces(len(rows) + 1, ["twice", "begins in line 5", "two teeth with the number 1"])
         self.traces = self.change(rows, "^34,", "46,")
@@ -297,9 +301,9 @@ class Refusals(Case):
             ("--count", "left", "clockwise or counterclockwise"),
             ("--first-number", "2", "0 or 1"),
             ("--first-tooth", "-1", "0 or more"),
-            ("--first-tooth", "45", "from 0 to 44"),
+            ("--first-tooth", "45", "from 0 to 44 (see --first-tooth)"),
             ("--pitch-diameter", "x", "in mm"),
-            ("--pitch-diameter", "80", "(base) to"),
+            ("--pitch-diameter", "80", "(tip) (see --pitch-diameter)"),
             ("--held", "0.5", "0 to 0.45"),
             ("--nodes", "1x9", "2 to 1000"),
         ):
@@ -330,6 +334,16 @@ class Allowances(Case):
         del hollow[40]
         path = self.write("t.csv", "".join(hollow))
         self.assertIn("16 of 16 traces stand out", self.accepted(*EXAMPLE, "--traces", path, "--hollow"))
+
+    def test_single_pitches_that_close_leave_nothing_to_spread(self):
+        places = {"left": [], "right": []}
+        for row in rows_of(PITCH):
+            places[row["flank"]].append(float(row["cumulative_pitch_um"]))
+        rows = [
+            f"{i + 1},{flank},{at[i] - at[i - 1]:.1f}\n" for flank, at in places.items() for i in range(len(at))
+        ]
+        path = self.write("m.csv", "tooth,flank,single_pitch_um\n" + "".join(rows))
+        self.assertNotIn("spread", self.accepted(*EXAMPLE, "--measured-pitch", path))
 
     def test_help_names_all_options(self):
         text = self.accepted("--help")

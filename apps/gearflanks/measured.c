@@ -111,7 +111,7 @@ static void print_pitch(const measured_gear *of, FILE *file) {
         }
         fprintf(file, "# %s, pitch: mean of %.3f um taken out", side_names[side],
                 1e6 * of->pitch_report.level[side]);
-        if (of->pitch_report.sum[side] != 0.0)
+        if (fabs(of->pitch_report.sum[side]) >= 0.5e-9) /* what is shown of it */
             fprintf(file, ", sum of the single pitches of %.3f um spread over all",
                     1e6 * of->pitch_report.sum[side]);
         fputc('\n', file);

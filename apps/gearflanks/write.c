@@ -82,12 +82,29 @@ int write_file(const char *path, const written *what) {
     return status;
 }
 
+/* What the command line calls a field of the library's options; empty if it has no name for it. */
+static const char *see_option(const char *field) {
+    static const char *const names[][2] = {{"first_number", " (see --first-number)"},
+                                           {"first_tooth", " (see --first-tooth)"},
+                                           {"pitch_diameter", " (see --pitch-diameter)"},
+                                           {"held_limit", " (see --held)"},
+                                           {"hollow", " (see --hollow)"},
+                                           {"remove_spikes", " (see --remove-spikes)"}};
+
+    for (size_t i = 0; field != NULL && i < sizeof names / sizeof names[0]; ++i)
+        if (strcmp(field, names[i][0]) == 0)
+            return names[i][1];
+    return "";
+}
+
 int refuse_input(int status, const gm_io_error *error) {
+    const char *option = see_option(error->option);
+
     if (error->file[0] == '\0')
-        fprintf(stderr, "gearflanks: %s\n", error->text);
+        fprintf(stderr, "gearflanks: %s%s\n", error->text, option);
     else if (error->line > 0)
-        fprintf(stderr, "%s:%ld: %s\n", error->file, error->line, error->text);
+        fprintf(stderr, "%s:%ld: %s%s\n", error->file, error->line, error->text, option);
     else
-        fprintf(stderr, "%s: %s\n", error->file, error->text);
+        fprintf(stderr, "%s: %s%s\n", error->file, error->text, option);
     return status == GM_IO_ERR_MEMORY ? EXIT_RUN_FAILED : EXIT_BAD_INPUT;
 }

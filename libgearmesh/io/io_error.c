@@ -16,6 +16,7 @@ void gmi_error_begin(gm_io_error *error, const char *path) {
     }
     error->line = 0;
     error->text[0] = '\0';
+    error->option = NULL;
     snprintf(error->file, sizeof error->file, "%s", path != NULL ? path : "");
 }
 
@@ -28,6 +29,12 @@ int gmi_error_set(gm_io_error *error, int status, long line, const char *format,
         error->line = line;
     }
     return status;
+}
+
+void gmi_error_option(gm_io_error *error, const char *option) {
+    if (error != NULL) {
+        error->option = option;
+    }
 }
 
 int gmi_error_file(gm_io_error *error, long line, const char *action, int error_number) {

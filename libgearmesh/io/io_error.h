@@ -28,6 +28,9 @@ void gmi_error_begin(gm_io_error *error, const char *path);
 int gmi_error_set(gm_io_error *error, int status, long line, const char *format, ...)
     GMI_PRINTF_LIKE(4, 5);
 
+/** Names the field of the options that decides about the error: a string that stays. The error may be NULL. */
+void gmi_error_option(gm_io_error *error, const char *option);
+
 /** Says why a file cannot be opened, read or written, from the errno of the failed call. */
 int gmi_error_file(gm_io_error *error, long line, const char *action, int error_number);
 

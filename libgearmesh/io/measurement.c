@@ -85,6 +85,7 @@ int gmi_measurement_check(const gm_measurement *measurement, const gm_pair *pair
                              measurement->first_number);
     }
     if (measurement->first_tooth < 0 || measurement->first_tooth >= teeth) {
+        gmi_error_option(error, "first_tooth");
         return gmi_error_set(error, GM_IO_ERR_OPTION, 0,
                              "the first tooth measured is tooth %d; it must be from 0 to %d",
                              measurement->first_tooth, teeth - 1);
@@ -96,6 +97,7 @@ int gmi_measurement_check(const gm_measurement *measurement, const gm_pair *pair
         char got[GMI_NUMBER_SIZE];
         char low[GMI_NUMBER_SIZE];
         char high[GMI_NUMBER_SIZE];
+        gmi_error_option(error, "pitch_diameter");
         return gmi_error_set(error, GM_IO_ERR_OPTION, 0,
                              "the measuring circle of the pitch is %s mm in diameter; it must be "
                              "from %s (base) to %s (tip)",
@@ -119,6 +121,7 @@ int gmi_measurement_place(const gm_measurement *measurement, const gm_pair *pair
     if (*tooth < 0) {
         const int mate = gmi_gear_of(pair, !wheel)->teeth;
         const int first = measurement->first_number;
+        gmi_error_option(error, number == 0 ? "first_number" : NULL);
         return gmi_error_set(error, GM_IO_ERR_FORMAT, line,
                              "there is no tooth %d; %d to %d is right, as the gear has %d teeth%s",
                              number, first, first + teeth - 1, teeth,

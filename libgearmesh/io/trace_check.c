@@ -114,6 +114,7 @@ static int fail_spike(const gmi_measured *trace, int k, double height, gm_io_err
     const int index = trace->turned ? from->count - 1 - k : k;
     char name[GMI_TRACE_NAME_SIZE];
     char text[GMI_NUMBER_SIZE];
+    gmi_error_option(error, "remove_spikes");
     return gmi_error_set(error, GM_IO_ERR_FORMAT, from->line != NULL ? from->line[index] : 0,
                          "%s has a spike of %s um here; a trace without dust is right (spikes can "
                          "be left out if that is asked for)",
@@ -233,6 +234,7 @@ static int check_sign(const gmi_measured *traces, int count, const gm_traces_opt
     }
     char profile_text[GMI_NUMBER_SIZE];
     char helix_text[GMI_NUMBER_SIZE];
+    gmi_error_option(error, "hollow");
     return gmi_error_set(
         error, GM_IO_ERR_FORMAT, 0,
         "%d of %d traces stand out at their ends (profile by %s um, helix by %s um "

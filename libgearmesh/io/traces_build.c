@@ -63,6 +63,7 @@ static int check_options(const gm_traces_options *options, gm_io_error *error) {
                              options->face_nodes, options->profile_nodes, LEAST_NODES, MOST_NODES);
     }
     if (!(options->held_limit >= 0.0 && options->held_limit <= most_held)) {
+        gmi_error_option(error, "held_limit");
         return gmi_error_set(error, GM_IO_ERR_OPTION, 0,
                              "the part of a flank that traces may leave out at an end must be from "
                              "0 to 0.45");
@@ -238,6 +239,9 @@ static int check_cover(const builder *build, const gmi_measured *trace) {
     char got[2][GMI_NUMBER_SIZE];
     char right[2][GMI_NUMBER_SIZE];
     char share[GMI_NUMBER_SIZE];
+    if (from <= most_held && to >= 1.0 - most_held) { /* else no limit helps */
+        gmi_error_option(build->error, "held_limit");
+    }
     return gmi_error_set(
         build->error, GM_IO_ERR_FORMAT, gmi_measured_line(trace),
         "%s reaches from %s to %s mm %s only; %s to %s mm is right, of which %s may be missing at "

@@ -37,6 +37,9 @@ typedef struct gm_io_error {
     long line;       /**< line in the file, from 1; 0 = the file as a whole */
     char file[1024]; /**< path as given (cut if longer), empty if no file is concerned */
     char text[512];  /**< what is wrong, and what would be right; empty if all is well */
+    /** Field of gm_traces_options or gm_measurement that decides about it, as `hollow`: so that a program can say
+     *  what it calls that; NULL = none */
+    const char *option;
 } gm_io_error;
 
 /** One set of rows of a deviation file: the nodes of one tooth and flank, or of all (-1). */
