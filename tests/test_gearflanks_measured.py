@@ -12,6 +12,7 @@ import csv
 import math
 import os
 import re
+import shutil
 import stat
 import sys
 
@@ -322,13 +323,37 @@ class Refusals(Case):
         self.assertTrue(stat.S_ISFIFO(os.stat(self.path("pipe")).st_mode))
 
 
+class Together(Case):
+    def test_flanks_and_pitch_are_both_replaced_or_none(self):
+        for name in ("f.csv", "p.csv"):
+            self.write(name, "old\n")
+        os.mkdir(self.path("p.csv.part"))
+        self.refused("p.csv.part: cannot be written", *EXAMPLE, code=1)
+        for name in ("f.csv", "p.csv"):
+            with open(self.path(name), encoding="ascii") as file:
+                self.assertEqual(file.read(), "old\n")
+        self.assertEqual(sorted(os.listdir(self.folder)), ["f.csv", "p.csv", "p.csv.part"])
+
+    def test_an_input_is_not_taken_for_a_file_on_the_way(self):
+        for ending in (".part", ".rows"):
+            shutil.copy(TRACES, self.path("f.csv" + ending))
+            self.refused("an input would be overwritten", *EXAMPLE, "--traces", "f.csv" + ending)
+            self.assertTrue(os.path.exists(self.path("f.csv" + ending)))
+
+    def test_one_tooth_stands_for_all(self):
+        with open(TRACES, encoding="ascii") as file:
+            rows = [row for row in file if not row[0].isdigit() or row.startswith("1,")]
+        told = self.accepted(*EXAMPLE, "--traces", self.write("t.csv", "".join(rows)))
+        self.assertIn("drive, profile: 1 trace of 1 tooth, which stands for all", told)
+
+
 class Allowances(Case):
     def test_spikes_can_be_left_out_and_hollow_flanks_be_meant(self):
         with open(TRACES, encoding="ascii") as file:
             rows = file.read().splitlines(keepends=True)
         rows[40] = re.sub(r"[^,]*\n$", "25\n", rows[40])
         path = self.write("t.csv", "".join(rows))
-        self.assertIn("1 points left out", self.accepted(*EXAMPLE, "--traces", path, "--remove-spikes"))
+        self.assertIn("1 point left out", self.accepted(*EXAMPLE, "--traces", path, "--remove-spikes"))
         hollow = [re.sub(r",(-?)(\d+\.\d\d)$", lambda m: f",{'' if m[1] else '-'}{m[2]}", row) for row in rows]
         hollow[40] = hollow[39]
         del hollow[40]

@@ -44,15 +44,13 @@ static int generate(making *of, const gm_pair *pair) {
 }
 
 static int make_and_write(making *of, const gm_pair *pair) {
-    const written deviations = {&of->deviations, NULL, print_head, of};
-    const written pitch = {NULL, &of->pitch, print_head, of};
+    const written files[] = {{of->options->deviations, &of->deviations, NULL, print_head, of},
+                             {of->options->pitch, NULL, &of->pitch, print_head, of}};
     int status = generate(of, pair);
 
     if (status != EXIT_DONE)
         return status;
-    status = write_file(of->options->deviations, &deviations);
-    if (status == EXIT_DONE)
-        status = write_file(of->options->pitch, &pitch);
+    status = write_files(files, 2);
     if (status == EXIT_DONE)
         status = report_quality(of->options, pair, &of->deviations, &of->pitch);
     gm_deviations_free(&of->deviations);

@@ -67,8 +67,11 @@ static void print_traces_of(const measured_gear *of, const char *kind, const int
         if (teeth[side] == 0)
             fprintf(file, "no traces, %s\n", without);
         else
-            fprintf(file, "%d trace%s of %d teeth, %d interpolated\n", traces[side],
-                    traces[side] == 1 ? "" : "s", teeth[side], of->gear->teeth - teeth[side]);
+            fprintf(file,
+                    teeth[side] == 1 ? "%d trace%s of %d tooth, which stands for all\n"
+                                     : "%d trace%s of %d teeth, %d interpolated\n",
+                    traces[side], traces[side] == 1 ? "" : "s", teeth[side],
+                    of->gear->teeth - teeth[side]);
     }
 }
 
@@ -97,7 +100,8 @@ static void print_traces(const measured_gear *of, FILE *file) {
                 "# where traces of a flank cross they contradict each other by %.3f um at most\n",
                 1e6 * found->crossing_error);
     if (found->spikes > 0)
-        fprintf(file, "# %d points left out as spikes\n", found->spikes);
+        fprintf(file, "# %d point%s left out: spikes\n", found->spikes,
+                found->spikes == 1 ? "" : "s");
     if (2 * found->hollow_traces > found->judged_traces)
         fprintf(file, "# %d of %d traces stand out at their ends: is material added counted > 0?\n",
                 found->hollow_traces, found->judged_traces);
@@ -213,15 +217,15 @@ static int read_pitch(measured_gear *of) {
 
 static int write_all(const measured_gear *of) {
     const flanks_options *options = of->options;
-    const written deviations = {&of->deviations, NULL, print_traces_head, of};
-    const written pitch = {NULL, &of->pitch, print_pitch_head, of};
-    int status = EXIT_DONE;
+    written files[WRITTEN_MAX];
+    int count = 0;
 
     if (options->traces != NULL)
-        status = write_file(options->deviations, &deviations);
-    if (status == EXIT_DONE && options->measured_pitch != NULL)
-        status = write_file(options->pitch, &pitch);
-    return status;
+        files[count++] =
+            (written){options->deviations, &of->deviations, NULL, print_traces_head, of};
+    if (options->measured_pitch != NULL)
+        files[count++] = (written){options->pitch, NULL, &of->pitch, print_pitch_head, of};
+    return write_files(files, count);
 }
 
 int build_measured(const flanks_options *options, const gm_pair *pair) {

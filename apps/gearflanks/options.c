@@ -382,6 +382,19 @@ static int check_way(const parsing *state) {
 }
 
 /* Two files are written, and none of those that are read. */
+/* By the file itself, or on the way to it. */
+static int would_overwrite(const char *output, const char *input) {
+    static const char *const endings[] = {"", ".part", ".rows"};
+    char name[4096];
+
+    for (int i = 0; i < 3; ++i) {
+        const int length = snprintf(name, sizeof name, "%s%s", output, endings[i]);
+        if (length > 0 && (size_t)length < sizeof name && is_same_file(name, input))
+            return 1;
+    }
+    return 0;
+}
+
 static int check_outputs(const flanks_options *options) {
     const char *const inputs[] = {options->parameters, options->scatter, options->traces,
                                   options->measured_pitch};
@@ -391,7 +404,7 @@ static int check_outputs(const flanks_options *options) {
         return refuse("--flanks and --pitch are the same file: ", outputs[0]);
     for (int i = 0; i < 2; ++i)
         for (int k = 0; k < 4; ++k)
-            if (outputs[i] != NULL && inputs[k] != NULL && is_same_file(outputs[i], inputs[k]))
+            if (outputs[i] != NULL && inputs[k] != NULL && would_overwrite(outputs[i], inputs[k]))
                 return refuse("an input would be overwritten: ", inputs[k]);
     for (int i = 0; i < 2; ++i) {
         const char *reason = outputs[i] != NULL ? output_obstacle(outputs[i]) : NULL;

@@ -7,6 +7,7 @@
 #include <errno.h>
 #include <stdlib.h>
 #include <string.h>
+#include <unistd.h>
 
 static int complain(const char *path, const char *action) {
     fprintf(stderr, "%s: cannot be %s: %s\n", path, action, strerror(errno));
@@ -52,21 +53,9 @@ static int join(const char *part, const char *rows, const written *what) {
     return whole ? EXIT_DONE : complain(part, "written");
 }
 
-/* Rows -> FILE.rows -> FILE.part with a head -> FILE, which is not touched before it is whole. */
-static int finish(const char *path, const char *rows, const written *what) {
-    char *part = with_ending(path, ".part");
-    int status = part != NULL ? join(part, rows, what) : EXIT_RUN_FAILED;
-
-    if (status == EXIT_DONE && rename(part, path) != 0)
-        status = complain(path, "written");
-    if (status != EXIT_DONE && part != NULL)
-        remove(part);
-    free(part);
-    return status;
-}
-
-int write_file(const char *path, const written *what) {
-    char *rows = with_ending(path, ".rows");
+/* What the library writes -> FILE.rows -> `part`, with its head. */
+static int write_part(const written *what, const char *part) {
+    char *rows = with_ending(what->path, ".rows");
     gm_io_error error;
     int status = EXIT_RUN_FAILED;
 
@@ -74,11 +63,31 @@ int write_file(const char *path, const written *what) {
         return status;
     if ((what->deviations != NULL ? gm_deviations_write(what->deviations, rows, &error)
                                   : gm_pitch_write(what->pitch, rows, &error)) == GM_IO_OK)
-        status = finish(path, rows, what);
+        status = join(part, rows, what);
     else
-        fprintf(stderr, "%s: %s\n", path, error.text);
-    remove(rows);
+        fprintf(stderr, "%s: %s\n", what->path, error.text);
+    unlink(rows);
     free(rows);
+    return status;
+}
+
+/* Flanks and pitch of a gear belong together: no file is touched before all are whole. */
+int write_files(const written files[], int count) {
+    char *parts[WRITTEN_MAX] = {NULL};
+    int status = EXIT_DONE;
+
+    for (int i = 0; i < count && status == EXIT_DONE; ++i) {
+        parts[i] = with_ending(files[i].path, ".part");
+        status = parts[i] != NULL ? write_part(&files[i], parts[i]) : EXIT_RUN_FAILED;
+    }
+    for (int i = 0; i < count && status == EXIT_DONE; ++i)
+        if (rename(parts[i], files[i].path) != 0)
+            status = complain(files[i].path, "written");
+    for (int i = 0; i < count; ++i) {
+        if (status != EXIT_DONE && parts[i] != NULL)
+            unlink(parts[i]); /* a folder stays */
+        free(parts[i]);
+    }
     return status;
 }
 

@@ -10,14 +10,17 @@
 
 /* What becomes a file: either deviations or pitch, and its head of comment lines. */
 typedef struct written {
+    const char *path;
     const gm_deviations *deviations; /* NULL = pitch is written */
     const gm_pitch *pitch;
     void (*print_head)(FILE *file, const void *context);
     const void *context;
 } written;
 
-/* Writes FILE.part and renames it when it is whole. Returns an exit code; messages go to stderr. */
-int write_file(const char *path, const written *what);
+enum { WRITTEN_MAX = 2 };
+
+/* Writes FILE.part of each and renames them when all are whole. Returns an exit code; messages go to stderr. */
+int write_files(const written files[], int count);
 
 /* Prints file, line and reason of an error in the input; returns EXIT_BAD_INPUT, or EXIT_RUN_FAILED if it is memory. */
 int refuse_input(int status, const gm_io_error *error);
