@@ -30,10 +30,6 @@ static const char *const columns[COLUMN_COUNT] = {"tooth", "flank", "t1", "t2", 
 /* Of t1 and t2 when written: nodes are told apart and found again with a tolerance of 1e-5. */
 #define PLACE_DIGITS 6
 
-static int fail_memory(gm_io_error *error) {
-    return gmi_error_set(error, GM_IO_ERR_MEMORY, 0, "out of memory");
-}
-
 static size_t node_count(const gm_deviations *deviations) {
     return (size_t)deviations->face_nodes * (size_t)deviations->profile_nodes;
 }
@@ -60,7 +56,7 @@ static int loader_init(loader *load, int teeth, gm_io_error *error) {
     load->error = error;
     load->row_count = calloc((size_t)load->slots, sizeof *load->row_count);
     load->values = calloc((size_t)load->slots, sizeof *load->values);
-    return load->row_count != NULL && load->values != NULL ? GM_IO_OK : fail_memory(error);
+    return load->row_count != NULL && load->values != NULL ? GM_IO_OK : gmi_error_memory(error);
 }
 
 /* Frees all that was not handed on. */
@@ -117,7 +113,7 @@ static int read_rows(loader *load, gmi_table *table) {
             return status;
         }
         if (!gmi_rows_append(&load->rows, &row)) {
-            return fail_memory(load->error);
+            return gmi_error_memory(load->error);
         }
         load->row_count[row.slot]++;
     }
@@ -146,7 +142,7 @@ static int make_deviations(loader *load, gm_deviations *deviations) {
     }
     deviations->sets = malloc((size_t)count * sizeof *deviations->sets);
     if (deviations->sets == NULL) {
-        return fail_memory(load->error);
+        return gmi_error_memory(load->error);
     }
     deviations->teeth = load->teeth;
     deviations->face_nodes = load->grid.nodes[GMI_FACE];
@@ -274,7 +270,7 @@ int gmi_deviations_index(const gm_deviations *deviations, int **set_of_slot, gm_
     const int slots = gmi_slot_count(deviations->teeth);
     int *index = malloc((size_t)slots * sizeof *index);
     if (index == NULL) {
-        return fail_memory(error);
+        return gmi_error_memory(error);
     }
     for (int slot = 0; slot < slots; slot++) {
         index[slot] = -1;

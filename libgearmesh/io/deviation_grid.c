@@ -17,10 +17,6 @@
 
 static const char *const axis_name[2] = {"t1", "t2"};
 
-static int fail_memory(gm_io_error *error) {
-    return gmi_error_set(error, GM_IO_ERR_MEMORY, 0, "out of memory");
-}
-
 static const char *position_text(char text[GMI_NUMBER_SIZE], double position) {
     return gmi_number_text(text, position, 0, SHOWN_DIGITS);
 }
@@ -141,7 +137,7 @@ static int find_axis(gmi_grid *grid, const gmi_rows *rows, int axis, gm_io_error
     positions seen = {NULL, NULL, NULL};
     seen.histogram = calloc(BUCKETS, sizeof *seen.histogram);
     if (seen.histogram == NULL) {
-        return fail_memory(error);
+        return gmi_error_memory(error);
     }
     count_positions(&seen, rows, grid->slot, axis);
     grid->nodes[axis] = count_grid_lines(seen.histogram);
@@ -238,7 +234,7 @@ static int explain_set(const gmi_grid *grid, const gmi_rows *rows, size_t row_co
                        gm_io_error *error) {
     unsigned char *seen = calloc(gmi_grid_size(grid), 1);
     if (seen == NULL) {
-        return fail_memory(error);
+        return gmi_error_memory(error);
     }
     int status = GM_IO_OK;
     const gmi_row *first_row = NULL;
@@ -310,7 +306,7 @@ int gmi_grid_fill(const gmi_grid *grid, const gmi_rows *rows, const size_t *row_
     for (int slot = 0; status == GM_IO_OK && slot < slots; slot++) {
         if (row_count[slot] != 0) {
             values[slot] = new_table(gmi_grid_size(grid));
-            status = values[slot] != NULL ? GM_IO_OK : fail_memory(error);
+            status = values[slot] != NULL ? GM_IO_OK : gmi_error_memory(error);
         }
     }
     /* As many rows as nodes and none repeated: none is missing. */

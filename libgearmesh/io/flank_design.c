@@ -66,7 +66,7 @@ int gmi_design_make(gmi_design *design, const gm_modifications *modifications,
     }
     design->values = calloc(node_count(design), sizeof *design->values);
     if (design->values == NULL) {
-        return gmi_error_set(error, GM_IO_ERR_MEMORY, 0, "out of memory");
+        return gmi_error_memory(error);
     }
     (void)gm_modifications_add(&rest, design->nodes[0], design->nodes[1], design->values);
     return GM_IO_OK;

@@ -10,6 +10,7 @@
 #include "flank_slot.h"
 #include "flank_trace.h"
 #include "io_error.h"
+#include "measurement.h"
 #include "pitch_file.h"
 
 static const double pi = 3.14159265358979323846;
@@ -25,10 +26,6 @@ const char *gm_quality_symbol(int kind) {
     static const char *const symbol[GM_QUALITY_KINDS] = {
         "f_p", "F_p", "F_r", "f_H_alpha", "f_f_alpha", "F_alpha", "f_H_beta", "f_f_beta", "F_beta"};
     return kind_exists(kind) ? symbol[kind] : "unknown";
-}
-
-static const gm_gear *gear_of(const gm_pair *pair, int wheel) {
-    return wheel ? &pair->wheel : &pair->pinion;
 }
 
 /* ---------------------------------------------------------------------------------------------
@@ -77,7 +74,7 @@ double gm_quality_tolerance(const gm_pair *pair, int wheel, int kind, int qualit
         quality_class > GM_QUALITY_WORST_CLASS) {
         return (double)NAN;
     }
-    const double diameter = 2e3 * gear_of(pair, wheel)->reference_radius;
+    const double diameter = 2e3 * gmi_gear_of(pair, wheel)->reference_radius;
     const double tolerance =
         base_tolerance(kind, diameter, 1e3 * pair->normal_module, 1e3 * pair->face_width);
     return rounded(tolerance * class_factor(quality_class - 5));
@@ -89,7 +86,7 @@ int gm_quality_is_in_scope(const gm_pair *pair, int wheel) {
     }
     /* Limits are meant to be reached: a rounding error must not count. */
     const double slack = 1e-12;
-    const gm_gear *gear = gear_of(pair, wheel);
+    const gm_gear *gear = gmi_gear_of(pair, wheel);
     const double value[] = {gear->teeth, 2.0 * gear->reference_radius, pair->normal_module,
                             pair->face_width, fabs(pair->helix_angle)};
     static const double low[] = {5.0, 5e-3, 0.5e-3, 4e-3, 0.0};
@@ -303,7 +300,7 @@ static int evaluate_deviations(const evaluation *of, const gm_deviations *deviat
     free(set_of_slot);
     const int has_memory = trace != NULL;
     free(trace);
-    return has_memory ? GM_IO_OK : gmi_error_set(error, GM_IO_ERR_MEMORY, 0, "out of memory");
+    return has_memory ? GM_IO_OK : gmi_error_memory(error);
 }
 
 /* ---------------------------------------------------------------------------------------------
@@ -358,7 +355,7 @@ static int evaluate(evaluation *of, const gm_deviations *deviations, const gm_pi
         of->flanks = own;
     }
     if (of->flanks == NULL) {
-        return gmi_error_set(error, GM_IO_ERR_MEMORY, 0, "out of memory");
+        return gmi_error_memory(error);
     }
     clear_flanks(of);
     if (deviations != NULL) {
@@ -386,7 +383,7 @@ int gm_quality_evaluate(gm_quality *quality, gm_flank_quality *flanks, const gm_
     evaluation of = {.quality = quality,
                      .flanks = flanks,
                      .pair = pair,
-                     .gear = gear_of(pair, wheel),
+                     .gear = gmi_gear_of(pair, wheel),
                      .wheel = wheel != 0};
     const int status =
         evaluate(&of, deviations, pitch, options != NULL ? options : &defaults, error);

@@ -34,10 +34,6 @@ void gm_generate_options_default(gm_generate_options *options) {
     }
 }
 
-static int fail_memory(gm_io_error *error) {
-    return gmi_error_set(error, GM_IO_ERR_MEMORY, 0, "out of memory");
-}
-
 /* ---------------------------------------------------------------------------------------------
  * Waves
  * ------------------------------------------------------------------------------------------- */
@@ -134,7 +130,7 @@ static int allocate_deviations(gmi_generator *make) {
     deviations->profile_nodes = make->options->profile_nodes;
     deviations->sets = calloc(flanks, sizeof *deviations->sets);
     if (deviations->sets == NULL) {
-        return fail_memory(make->error);
+        return gmi_error_memory(make->error);
     }
     for (size_t i = 0; i < flanks; i++) {
         gm_deviation_set *set = &deviations->sets[i];
@@ -143,7 +139,7 @@ static int allocate_deviations(gmi_generator *make) {
         set->values = malloc(nodes * sizeof *set->values);
         deviations->set_count++;
         if (set->values == NULL) {
-            return fail_memory(make->error);
+            return gmi_error_memory(make->error);
         }
     }
     return GM_IO_OK;
@@ -159,7 +155,7 @@ static int allocate_pitch(gmi_generator *make) {
     pitch->coast_set = malloc(teeth * sizeof *pitch->coast_set);
     return pitch->drive && pitch->coast && pitch->drive_set && pitch->coast_set
                ? GM_IO_OK
-               : fail_memory(make->error);
+               : gmi_error_memory(make->error);
 }
 
 static int allocate(gmi_generator *make) {
@@ -174,7 +170,7 @@ static int allocate(gmi_generator *make) {
         make->work = malloc(work * sizeof *make->work);
         make->wave_phase =
             malloc((2 * (size_t)make->options->wave_count + 1) * sizeof *make->wave_phase);
-        status = make->work && make->wave_phase ? GM_IO_OK : fail_memory(make->error);
+        status = make->work && make->wave_phase ? GM_IO_OK : gmi_error_memory(make->error);
     }
     return status;
 }

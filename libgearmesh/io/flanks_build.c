@@ -28,10 +28,6 @@ typedef struct builder {
     gm_io_error *error;
 } builder;
 
-static int fail_memory(gm_io_error *error) {
-    return gmi_error_set(error, GM_IO_ERR_MEMORY, 0, "out of memory");
-}
-
 void gm_flanks_options_default(gm_flanks_options *options) {
     if (options != NULL) {
         options->scale = 1.0;
@@ -235,7 +231,7 @@ static int make_ideal(const builder *build, int teeth, void **memory) {
     }
     *memory = malloc(size);
     if (*memory == NULL) {
-        return fail_memory(build->error);
+        return gmi_error_memory(build->error);
     }
     const int status = gm_flanks_init(build->flanks, &params, *memory, size);
     return status == GM_OK
@@ -248,7 +244,7 @@ static int allocate_table(double **table, size_t nodes, gm_io_error *error) {
     if (nodes > 0) {
         *table = malloc(nodes * sizeof **table);
     }
-    return nodes == 0 || *table != NULL ? GM_IO_OK : fail_memory(error);
+    return nodes == 0 || *table != NULL ? GM_IO_OK : gmi_error_memory(error);
 }
 
 static size_t design_size(const gmi_design *design) {

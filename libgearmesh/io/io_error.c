@@ -31,6 +31,10 @@ int gmi_error_set(gm_io_error *error, int status, long line, const char *format,
     return status;
 }
 
+int gmi_error_memory(gm_io_error *error) {
+    return gmi_error_set(error, GM_IO_ERR_MEMORY, 0, "out of memory");
+}
+
 void gmi_error_option(gm_io_error *error, const char *option) {
     if (error != NULL) {
         error->option = option;

@@ -28,6 +28,9 @@ void gmi_error_begin(gm_io_error *error, const char *path);
 int gmi_error_set(gm_io_error *error, int status, long line, const char *format, ...)
     GMI_PRINTF_LIKE(4, 5);
 
+/** Says that memory is out, for `return gmi_error_memory(...)`. The error may be NULL. */
+int gmi_error_memory(gm_io_error *error);
+
 /** Names the field of the options that decides about the error: a string that stays. The error may be NULL. */
 void gmi_error_option(gm_io_error *error, const char *option);
 

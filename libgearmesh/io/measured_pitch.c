@@ -28,10 +28,6 @@ typedef struct builder {
     gm_io_error *error;
 } builder;
 
-static int fail_memory(gm_io_error *error) {
-    return gmi_error_set(error, GM_IO_ERR_MEMORY, 0, "out of memory");
-}
-
 /* Which point is the flank that a machine measured as the index-th of a side; NULL = none. */
 static const gm_pitch_point *point_of(const builder *build, int side, int index) {
     const int row = build->row[side * build->gear->teeth + index];
@@ -175,16 +171,11 @@ static void take_out_mean(builder *build, int side, double *place) {
     build->report.level[side] = mean;
 }
 
-static double measuring_radius(const builder *build) {
-    const double diameter = build->measurement->pitch_diameter;
-    return isnan(diameter) ? build->gear->reference_radius : 0.5 * diameter;
-}
-
 /* From how far a flank stands ahead on the machine, as an arc, to the material added on it. */
 static double material_per_arc(const builder *build, int side) {
     const double ahead = (side == GM_DRIVE) == !build->wheel ? 1.0 : -1.0;
     return ahead * gmi_measurement_sense(build->measurement, build->wheel) *
-           build->gear->base_radius / measuring_radius(build);
+           build->gear->base_radius / gmi_measuring_radius(build->measurement, build->gear);
 }
 
 static int build_side(builder *build, gm_pitch *pitch, int side) {
@@ -194,7 +185,7 @@ static int build_side(builder *build, gm_pitch *pitch, int side) {
     }
     double *place = calloc((size_t)teeth, sizeof *place); /* in the machine's order */
     if (place == NULL) {
-        return fail_memory(build->error);
+        return gmi_error_memory(build->error);
     }
     for (int i = 0; i < teeth; i++) {
         place[i] = point_of(build, side, i)->value;
@@ -270,7 +261,8 @@ static void fit_displacement(builder *build, const gm_pitch *pitch) {
     if (build->present[GM_DRIVE] == 0 || build->present[GM_COAST] == 0) {
         return;
     }
-    const double radius = measuring_radius(build) / build->gear->base_radius;
+    const double radius =
+        gmi_measuring_radius(build->measurement, build->gear) / build->gear->base_radius;
     const double lean = 0.5 * pi + build->gear->base_half_thickness - sqrt(radius * radius - 1.0);
     const vector drive = first_order(build, pitch->drive);
     const vector coast = first_order(build, pitch->coast);
@@ -295,7 +287,7 @@ static int build_pitch(builder *build, gm_pitch *pitch) {
     }
     if (status == GM_IO_OK) {
         build->row = calloc(SIDES * (size_t)build->gear->teeth, sizeof *build->row);
-        status = build->row != NULL ? GM_IO_OK : fail_memory(build->error);
+        status = build->row != NULL ? GM_IO_OK : gmi_error_memory(build->error);
     }
     if (status == GM_IO_OK) {
         status = place_points(build);

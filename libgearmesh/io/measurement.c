@@ -30,6 +30,11 @@ const gm_gear *gmi_gear_of(const gm_pair *pair, int wheel) {
     return wheel ? &pair->wheel : &pair->pinion;
 }
 
+double gmi_measuring_radius(const gm_measurement *measurement, const gm_gear *gear) {
+    return isnan(measurement->pitch_diameter) ? gear->reference_radius
+                                              : 0.5 * measurement->pitch_diameter;
+}
+
 int gm_measurement_side(const gm_measurement *measurement, int flank) {
     if (flank == GM_DRIVE || flank == GM_COAST) {
         return flank;

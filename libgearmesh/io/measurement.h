@@ -19,6 +19,9 @@ int gmi_measurement_check(const gm_measurement *measurement, const gm_pair *pair
 
 const gm_gear *gmi_gear_of(const gm_pair *pair, int wheel);
 
+/** Radius of the circle on which the pitch was measured (m): that of reference unless another one is given. */
+double gmi_measuring_radius(const gm_measurement *measurement, const gm_gear *gear);
+
 /**
  * 1 if teeth are counted in the direction in which the gear's angle grows, -1 if against it: pinion
  * counter-clockwise, wheel clockwise, both seen from face II.

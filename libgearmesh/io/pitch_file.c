@@ -28,10 +28,6 @@ typedef struct entry {
     long line;        /* 0 = the file has no row for it */
 } entry;
 
-static int fail_memory(gm_io_error *error) {
-    return gmi_error_set(error, GM_IO_ERR_MEMORY, 0, "out of memory");
-}
-
 /* ---------------------------------------------------------------------------------------------
  * Reading
  * ------------------------------------------------------------------------------------------- */
@@ -105,7 +101,7 @@ int gmi_pitch_allocate(gm_pitch *pitch, int teeth, gm_io_error *error) {
         return GM_IO_OK;
     }
     gm_pitch_free(pitch);
-    return fail_memory(error);
+    return gmi_error_memory(error);
 }
 
 /* The most special row that serves a flank gives its deviation. */
@@ -146,7 +142,7 @@ int gm_pitch_read(gm_pitch *pitch, const char *path, int teeth, gm_io_error *err
     }
     entry *entries = calloc((size_t)gmi_slot_count(teeth), sizeof *entries);
     if (entries == NULL) {
-        return fail_memory(error);
+        return gmi_error_memory(error);
     }
     status = read_file(path, teeth, entries, error);
     if (status == GM_IO_OK) {

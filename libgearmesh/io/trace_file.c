@@ -24,10 +24,6 @@ static const char *const flank_words[] = {"drive", "coast", "left", "right"}; /*
 static const char *const kind_words[] = {"profile", "helix"};
 enum { FLANK_WORDS = 4, KIND_WORDS = 2 };
 
-static int fail_memory(gm_io_error *error) {
-    return gmi_error_set(error, GM_IO_ERR_MEMORY, 0, "out of memory");
-}
-
 static int fail_pointer(gm_io_error *error) {
     return gmi_error_set(error, GM_IO_ERR_NULL, 0, "a required pointer is NULL");
 }
@@ -173,7 +169,7 @@ static int begin_trace(loader *load, const trace_row *row) {
     gm_trace *grown =
         gmi_array_grow(load->traces, sizeof *grown, load->trace_count, &load->trace_capacity);
     if (grown == NULL) {
-        return fail_memory(load->error);
+        return gmi_error_memory(load->error);
     }
     load->traces = grown;
     load->traces[load->trace_count++] = row->trace;
@@ -186,7 +182,7 @@ static int append_point(loader *load, const trace_row *row) {
     point *grown =
         gmi_array_grow(load->points, sizeof *grown, load->point_count, &load->point_capacity);
     if (grown == NULL) {
-        return fail_memory(load->error);
+        return gmi_error_memory(load->error);
     }
     const point added = {row->position, row->deviation, row->line};
     load->points = grown;
@@ -247,7 +243,7 @@ static int make_traces(loader *load, gm_traces *traces) {
     for (int i = 0; i < traces->count; i++) {
         if (!fill_trace(&traces->traces[i], points)) {
             gm_traces_free(traces);
-            return fail_memory(load->error);
+            return gmi_error_memory(load->error);
         }
         points += traces->traces[i].count;
     }
@@ -336,7 +332,7 @@ static int read_pitch_rows(gm_measured_pitch *pitch, gmi_table *table) {
         gm_pitch_point *grown =
             gmi_array_grow(pitch->points, sizeof *grown, pitch->count, &capacity);
         if (grown == NULL) {
-            return fail_memory(table->error);
+            return gmi_error_memory(table->error);
         }
         pitch->points = grown;
         pitch->points[pitch->count++] = row;

@@ -256,7 +256,7 @@ int gmi_surface_make(double *table, const gm_traces_options *options, const gmi_
     family_init(&of.helix, traces + profiles, helices, options->face_nodes, t2_zero);
     double *memory = surface_memory(&of);
     if (memory == NULL) {
-        return gmi_error_set(error, GM_IO_ERR_MEMORY, 0, "out of memory");
+        return gmi_error_memory(error);
     }
     find_levels(&of);
     const double worst = find_crossings(&of);

@@ -47,10 +47,6 @@ typedef struct builder {
     gm_io_error *error;
 } builder;
 
-static int fail_memory(gm_io_error *error) {
-    return gmi_error_set(error, GM_IO_ERR_MEMORY, 0, "out of memory");
-}
-
 /* ---------------------------------------------------------------------------------------------
  * Arguments
  * ------------------------------------------------------------------------------------------- */
@@ -285,7 +281,8 @@ static int allocate_points(builder *build) {
     build->measured = calloc((size_t)build->traces->count, sizeof *build->measured);
     build->points = malloc(2 * all * sizeof *build->points);
     build->work = malloc(4 * longest * sizeof *build->work);
-    return build->measured && build->points && build->work ? GM_IO_OK : fail_memory(build->error);
+    return build->measured && build->points && build->work ? GM_IO_OK
+                                                           : gmi_error_memory(build->error);
 }
 
 static int map_traces(builder *build) {
@@ -432,7 +429,7 @@ static int add_set(const builder *build, gm_deviations *deviations, int tooth, i
     set->side = side;
     set->values = calloc(node_count(build), sizeof *set->values);
     if (set->values == NULL) {
-        return fail_memory(build->error);
+        return gmi_error_memory(build->error);
     }
     deviations->set_count++;
     return GM_IO_OK;
@@ -445,7 +442,7 @@ static int make_sets(const builder *build, gm_deviations *deviations) {
     deviations->face_nodes = build->options.face_nodes;
     deviations->profile_nodes = build->options.profile_nodes;
     deviations->sets = calloc(SIDES * (size_t)teeth, sizeof *deviations->sets);
-    int status = deviations->sets != NULL ? GM_IO_OK : fail_memory(build->error);
+    int status = deviations->sets != NULL ? GM_IO_OK : gmi_error_memory(build->error);
     for (int tooth = GMI_ALL; tooth < teeth; tooth++) {
         for (int side = 0; side < SIDES && status == GM_IO_OK; side++) {
             if (is_measured(build, side) && is_for_all(build, side) == (tooth == GMI_ALL)) {
@@ -588,7 +585,7 @@ static int build_side(builder *build, gm_deviations *deviations, int side) {
     }
     double *values = malloc(flanks * nodes * sizeof *values);
     part *list = malloc(2 * flanks * sizeof *list);
-    int status = values != NULL && list != NULL ? GM_IO_OK : fail_memory(build->error);
+    int status = values != NULL && list != NULL ? GM_IO_OK : gmi_error_memory(build->error);
     if (status == GM_IO_OK) {
         parts profile = {0, list};
         parts helix = {0, list + flanks};
@@ -621,8 +618,7 @@ static int check_arguments(builder *build) {
 }
 
 static void prepare(builder *build) {
-    const double diameter = build->measurement->pitch_diameter;
-    const double radius = isnan(diameter) ? build->gear->reference_radius : 0.5 * diameter;
+    const double radius = gmi_measuring_radius(build->measurement, build->gear);
     build->t2_zero =
         within(profile_place(build->gear, roll_length_at(build->gear, radius)), 0.0, 1.0);
     build->report.profile_range[0] = build->report.profile_range[1] = (double)NAN;
