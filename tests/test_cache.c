@@ -334,7 +334,7 @@ static void beyond_the_depth_it_is_exact(void) {
             gm_position position = random_position(&f, &seed);
             position.offset = offset_of(&f, 0.0);
             (void)looked_up_at(&f, &position);
-            const double *const starts = starts_around(&f, &position);
+            const double *starts = starts_around(&f, &position);
             const double end = fmin(starts[0], starts[1]) + 4e-6;
             position.offset = offset_of(
                 &f, end + 1e-12 + (i % 2 == 0 ? 0.0 : gm_test_uniform(&seed, 0.0, 0.4 * p_bt)));
@@ -365,7 +365,7 @@ static void assert_zero_below_first_touch(double depth) {
         /* ... and below that of its columns there is nothing either, nor in truth at the columns. */
         position.offset = offset_of(&f, 0.0);
         (void)looked_up_at(&f, &position);
-        const double *const starts = starts_around(&f, &position);
+        const double *starts = starts_around(&f, &position);
         GM_ASSERT(starts[0] > f.cache.lowest && starts[1] > f.cache.lowest);
         const double first = fmin(starts[0], starts[1]);
         position.offset = offset_of(&f, gm_test_uniform(&seed, f.cache.lowest, first));
@@ -624,7 +624,7 @@ typedef struct filler {
 } filler;
 
 static void *fill(void *argument) {
-    filler *const work = argument;
+    filler *work = argument;
     work->status = gm_cache_fill(work->cache, work->first, work->count);
     return NULL;
 }

@@ -18,7 +18,7 @@ static double sine(double frequency, double time) {
 /* Largest size of (filtered - gain * sine at the row's own time) over some rows in the middle of a run. */
 static double filtered_error(int factor, double frequency, double gain) {
     const int filtered[] = {1};
-    decimator *const filter = decimator_create(factor, 1, filtered);
+    decimator *filter = decimator_create(factor, 1, filtered);
     const int delay = decimator_delay(filter);
     double largest = 0.0;
 
@@ -70,7 +70,7 @@ static void a_constant_stays(void) {
     for (int i = 0; i < FACTORS; ++i) {
         const int filtered[] = {1, 0};
         const double values[] = {524.0666, 7.0};
-        decimator *const filter = decimator_create(factors[i], 2, filtered);
+        decimator *filter = decimator_create(factors[i], 2, filtered);
         double got[2];
 
         /* From the first sample on, as the past is held. */
@@ -89,9 +89,9 @@ static void a_constant_stays(void) {
 static void weights_are_symmetric_with_the_sum_one(void) {
     for (int i = 0; i < FACTORS; ++i) {
         const int filtered[] = {1};
-        decimator *const filter = decimator_create(factors[i], 1, filtered);
+        decimator *filter = decimator_create(factors[i], 1, filtered);
         const int half = decimator_delay(filter);
-        const double *const weights = decimator_weights(filter);
+        const double *weights = decimator_weights(filter);
         double sum = 0.0;
 
         GM_ASSERT_INT(half % factors[i], 0);
@@ -107,7 +107,7 @@ static void weights_are_symmetric_with_the_sum_one(void) {
 /* What is not filtered comes out at the same row, bit for bit. */
 static void plain_channels_are_delayed_alike(void) {
     const int filtered[] = {0, 1};
-    decimator *const filter = decimator_create(4, 2, filtered);
+    decimator *filter = decimator_create(4, 2, filtered);
     const int delay = decimator_delay(filter);
 
     for (int j = 0; j < 1000; ++j) {
@@ -126,7 +126,7 @@ static void plain_channels_are_delayed_alike(void) {
 
 static void factor_one_is_the_identity(void) {
     const int filtered[] = {1};
-    decimator *const filter = decimator_create(1, 1, filtered);
+    decimator *filter = decimator_create(1, 1, filtered);
 
     GM_ASSERT_INT(decimator_delay(filter), 0);
     for (int j = 0; j < 100; ++j) {

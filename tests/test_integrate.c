@@ -35,7 +35,7 @@ static double oscillator_error(enum solver_method method, double tolerance, long
     const double decay = 0.5 * gears.simple_damping * mobility;
     const double wd = sqrt(w0 * w0 - decay * decay);
 
-    integrator *const solver = create(&model, method, 0.0, tolerance * micrometre, start);
+    integrator *solver = create(&model, method, 0.0, tolerance * micrometre, start);
     GM_ASSERT(solver != NULL);
     for (int i = 0; i <= 1000; ++i) {
         const double t = i * 10.0 * 2.0 * pi / w0 / 1000.0;
@@ -88,7 +88,7 @@ static void bouncing_keeps_energy_and_period(void) {
         const double w0 = model.natural_frequency, gap = 100.0, speed = 30.0; /* um, um w0 */
         const double period = 2.0 * gap / (speed * w0) + 2.0 * pi / w0;
         const double start[STATES_MAX] = {0.0, speed};
-        integrator *const solver = create(&model, methods[m], 0.0, 1e-8 * micrometre, start);
+        integrator *solver = create(&model, methods[m], 0.0, 1e-8 * micrometre, start);
         double state[STATES_MAX];
         int touched = 0;
 
@@ -239,7 +239,7 @@ static void values_within_a_step_are_as_good_as_its_ends(void) {
     model_quasi_static_start(&model, start);
     const double w0 = model.natural_frequency, rest = start[STATE_OFFSET];
     start[STATE_OFFSET] += 1.0;
-    integrator *const solver = create(&model, METHOD_ERK, 0.0, 1e-5 * micrometre, start);
+    integrator *solver = create(&model, METHOD_ERK, 0.0, 1e-5 * micrometre, start);
 
     for (double begin = 0.0, end; begin * w0 < 30.0; begin = end) {
         undamped_error(solver, w0, rest, begin, from);
@@ -272,7 +272,7 @@ static void the_first_sample_is_the_start(void) {
     model_quasi_static_start(&model, start);
 
     for (int m = 0; m < METHODS; ++m) {
-        integrator *const solver = create(&model, methods[m], 1e-4, 1e-10, start);
+        integrator *solver = create(&model, methods[m], 1e-4, 1e-10, start);
         GM_ASSERT_INT(integrator_advance(solver, 0.0, state), 0);
         for (int i = 0; i < STATES_MAX; ++i) {
             GM_ASSERT(state[i] == start[i]);
@@ -294,7 +294,7 @@ static void a_skipped_tooth_is_a_failure_with_its_reason(void) {
     const double start[STATES_MAX] = {0.0, 2.0 * 0.5e6 * gears.pair.transverse_base_pitch};
     double state[STATES_MAX];
     for (int m = 0; m < METHODS; ++m) {
-        integrator *const solver = create(&model, methods[m], 1e-4, 1e-10, start);
+        integrator *solver = create(&model, methods[m], 1e-4, 1e-10, start);
         gm_test_context("method %d", m);
         GM_ASSERT_INT(integrator_advance(solver, 1e-2, state), EXIT_RUN_FAILED);
         gm_test_context("method %d: %s", m, integrator_failure(solver));
@@ -323,7 +323,7 @@ static void no_tooth_is_stepped_over(void) {
         model_init(&model, &conf, &gears);
         model_quasi_static_start(&model, state);
 
-        integrator *const solver = integrator_create(&model, &options, state);
+        integrator *solver = integrator_create(&model, &options, state);
         GM_ASSERT_INT(integrator_advance(solver, 0.1, state), 0);
         /* 100 rad/s: 71.6 teeth in 0.1 s. */
         GM_ASSERT(integrator_counts(solver).steps > 8 * 71);

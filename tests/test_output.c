@@ -45,7 +45,7 @@ static config case_of(const char *columns, int digits) {
 /* Text of a file, "" if it is not there. */
 static const char *text_of(const char *file) {
     static char text[1 << 20];
-    FILE *const stream = fopen(file, "rb");
+    FILE *stream = fopen(file, "rb");
     size_t size = 0;
 
     if (stream != NULL) {
@@ -57,7 +57,7 @@ static const char *text_of(const char *file) {
 }
 
 static void write_text(const char *file, const char *text) {
-    FILE *const stream = fopen(file, "wb");
+    FILE *stream = fopen(file, "wb");
     fputs(text, stream);
     fclose(stream);
 }
@@ -77,7 +77,7 @@ static void rows_come_back_as_written(void) {
     const config conf = case_of(NULL, 10);
     const double first[] = {0.0, -524.0666123456789, 4.0}, second[] = {3.90625e-05, -0.0, 3.0};
     int exit_code = -1;
-    output_file *const output = output_open(&conf, names, NAMES, &exit_code);
+    output_file *output = output_open(&conf, names, NAMES, &exit_code);
 
     GM_ASSERT(output != NULL);
     GM_ASSERT(exists(part) && !exists(path));
@@ -94,7 +94,7 @@ static void columns_come_as_asked_for(void) {
     const config conf = case_of("pairs , time_s", 3);
     const double row[] = {1.23456, 2.0, 5.0};
     int exit_code = -1;
-    output_file *const output = output_open(&conf, names, NAMES, &exit_code);
+    output_file *output = output_open(&conf, names, NAMES, &exit_code);
 
     GM_ASSERT(output != NULL);
     GM_ASSERT(output_wants(output, 0) && !output_wants(output, 1) && output_wants(output, 2));
@@ -107,7 +107,7 @@ static void columns_come_as_asked_for(void) {
 static void seventeen_digits_give_every_bit(void) {
     const config conf = case_of("force_N", 17);
     int exit_code = -1;
-    output_file *const output = output_open(&conf, names, NAMES, &exit_code);
+    output_file *output = output_open(&conf, names, NAMES, &exit_code);
     uint64_t seed = 3;
 
     for (int i = 0; i < 5000; ++i) {
@@ -133,7 +133,7 @@ static void an_incomplete_run_leaves_the_old_result(void) {
     int exit_code = -1;
     write_text(path, "an older result\n");
 
-    output_file *const output = output_open(&conf, names, NAMES, &exit_code);
+    output_file *output = output_open(&conf, names, NAMES, &exit_code);
     output_row(output, row);
     GM_ASSERT_INT(output_close(output, "interrupted at t = 0.7 s"), 0);
     GM_ASSERT_STRING(text_of(path), "an older result\n");
@@ -154,7 +154,7 @@ static void a_full_disk_leaves_whole_lines(void) {
     setrlimit(RLIMIT_FSIZE, &small);
     write_text(path, "an older result\n");
 
-    output_file *const output = output_open(&conf, names, NAMES, &exit_code);
+    output_file *output = output_open(&conf, names, NAMES, &exit_code);
     for (; rows < 1000000 && !failed; ++rows) {
         failed = output_row(output, row);
     }
@@ -162,12 +162,12 @@ static void a_full_disk_leaves_whole_lines(void) {
     GM_ASSERT_INT(output_close(output, "the disk is full"), EXIT_RUN_FAILED);
     setrlimit(RLIMIT_FSIZE, &before);
 
-    const char *const text = text_of(part);
+    const char *text = text_of(part);
     const size_t size = strlen(text);
     const char head[] = HEAD "time_s,force_N,pairs\n";
     GM_ASSERT(strncmp(text, head, strlen(head)) == 0);
     /* What fits of whole lines, each of them as it should be, and perhaps the reason. */
-    const char *const end = strstr(text, "# incomplete");
+    const char *end = strstr(text, "# incomplete");
     const size_t data = (end != NULL ? (size_t)(end - text) : size) - strlen(head);
     GM_ASSERT_INT(data % strlen(line), 0);
     for (size_t at = strlen(head); at < strlen(head) + data; at += strlen(line)) {
@@ -243,7 +243,7 @@ static void a_link_stays_a_link(void) {
     write_text(target, "an older result\n");
     GM_ASSERT_INT(symlink(target, path), 0);
 
-    output_file *const output = output_open(&conf, names, NAMES, &exit_code);
+    output_file *output = output_open(&conf, names, NAMES, &exit_code);
     output_row(output, row);
     GM_ASSERT_INT(output_close(output, NULL), 0);
     GM_ASSERT(lstat(path, &status) == 0 && S_ISLNK(status.st_mode));
@@ -361,7 +361,7 @@ static void hdf5_rows_come_back_as_written(void) {
     for (size_t i = 0; i < sizeof rows / sizeof rows[0]; ++i) {
         const config conf = hdf5_case(NULL);
         int exit_code = -1;
-        output_file *const output = output_open(&conf, names, NAMES, &exit_code);
+        output_file *output = output_open(&conf, names, NAMES, &exit_code);
         gm_test_context("%d rows", rows[i]);
         GM_ASSERT(output != NULL && exists(part_h5) && !exists(path_h5));
         GM_ASSERT_INT(put_random_rows(output, rows[i]), 0);
@@ -384,7 +384,7 @@ static void hdf5_columns_come_as_asked_for(void) {
     const config conf = hdf5_case("pairs , time_s");
     const double row[] = {1.25, 2.0, -0.0};
     int exit_code = -1;
-    output_file *const output = output_open(&conf, names, NAMES, &exit_code);
+    output_file *output = output_open(&conf, names, NAMES, &exit_code);
     GM_ASSERT(output != NULL);
     output_row(output, row);
     GM_ASSERT_INT(output_close(output, NULL), 0);
@@ -404,7 +404,7 @@ static void an_incomplete_hdf5_says_why(void) {
     int exit_code = -1;
     write_text(path_h5, "an older result\n");
 
-    output_file *const output = output_open(&conf, names, NAMES, &exit_code);
+    output_file *output = output_open(&conf, names, NAMES, &exit_code);
     GM_ASSERT_INT(put_random_rows(output, 5000), 0);
     GM_ASSERT_INT(output_close(output, "interrupted at t = 0.7 s"), 0);
     GM_ASSERT_STRING(text_of(path_h5), "an older result\n");
@@ -434,7 +434,7 @@ static void a_full_disk_leaves_an_hdf5_that_opens(void) {
         gm_test_context("room for %d bytes", limit);
 
         setrlimit(RLIMIT_FSIZE, &small);
-        output_file *const output = output_open(&conf, names, NAMES, &exit_code);
+        output_file *output = output_open(&conf, names, NAMES, &exit_code);
         if (output != NULL) {
             put_random_rows(output, HDF5_ROWS);
         }

@@ -27,7 +27,7 @@ static void it_solves_its_equation(void) {
         for (int r = 0; r < 3; ++r) {
             const double interval = intervals[i], e = 1e-3 * fmin(interval, 1e-5);
             const load_signal load = noise(interval);
-            response *const linear = response_create(&load, gain, frequency, ratios[r]);
+            response *linear = response_create(&load, gain, frequency, ratios[r]);
             gm_test_context("interval %g, ratio %g", interval, ratios[r]);
 
             for (int k = 0; k < 1000; ++k) {
@@ -52,7 +52,7 @@ static void it_solves_its_equation(void) {
 static void it_is_smooth_across_the_noise_values(void) {
     const double interval = 1e-5;
     const load_signal load = noise(interval);
-    response *const linear = response_create(&load, gain, frequency, 0.05);
+    response *linear = response_create(&load, gain, frequency, 0.05);
 
     for (int k = 1; k < 2000; ++k) {
         const double e = 1e-9 * interval;
@@ -68,7 +68,7 @@ static void it_is_smooth_across_the_noise_values(void) {
 
 static void it_starts_at_rest(void) {
     const load_signal load = noise(1e-5);
-    response *const linear = response_create(&load, gain, frequency, 0.05);
+    response *linear = response_create(&load, gain, frequency, 0.05);
     const response_value start = response_at(linear, 0.0);
 
     /* Roundings of terms of the size gain * 10 / frequency^2 = 1e-6 m times 1e2. */
@@ -81,7 +81,7 @@ static void it_starts_at_rest(void) {
 static void it_may_be_asked_in_any_order(void) {
     enum { TIMES = 3000 };
     const load_signal load = noise(1e-5);
-    response *const linear = response_create(&load, gain, frequency, 0.05);
+    response *linear = response_create(&load, gain, frequency, 0.05);
     static response_value forward[TIMES];
     uint64_t seed = 8;
 

@@ -33,8 +33,9 @@ static int load_and_do(const flanks_options *options) {
     gearbox box;
     int status = config_load(&conf, &request);
 
-    if (status != 0)
+    if (status != 0) {
         return status;
+    }
     status = gearbox_open(&box, &conf);
     if (status == 0) {
         status = do_with_gears(options, &box.pair, &conf);
@@ -59,8 +60,9 @@ static int do_task(const flanks_options *options) {
 
 /* A full disk behind stdout shows only when the text is written out. */
 static int finish_stdout(int status) {
-    if (fflush(stdout) == 0 && !ferror(stdout))
+    if (fflush(stdout) == 0 && !ferror(stdout)) {
         return status;
+    }
     fprintf(stderr, "gearflanks: cannot write to stdout: %s\n", strerror(errno));
     return status == EXIT_DONE ? EXIT_RUN_FAILED : status;
 }
@@ -69,7 +71,8 @@ int main(int argc, char *argv[]) {
     flanks_options options;
     int status = options_parse(&options, argc, argv);
 
-    if (status == 0)
+    if (status == 0) {
         status = do_task(&options);
+    }
     return finish_stdout(status);
 }

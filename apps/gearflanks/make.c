@@ -22,17 +22,20 @@ static void print_head(FILE *file, const void *context) {
 
     fprintf(file, "# Made, not measured: gearflanks %s, %s of %d teeth, ", gm_version(),
             of->options->wheel ? "wheel" : "pinion", of->pitch.teeth);
-    if (generate->scatter != NULL)
+    if (generate->scatter != NULL) {
         fputs("scatter from tooth to tooth\n", file);
-    else
+    } else {
         fprintf(file, "ISO 1328-1 class %d, share %g\n", generate->quality_class, generate->share);
+    }
     fprintf(file, "# seed %llu, nodes %dx%d\n", (unsigned long long)generate->seed,
             generate->face_nodes, generate->profile_nodes);
-    if (generate->scatter != NULL)
+    if (generate->scatter != NULL) {
         scatter_print(&of->scatter, file);
-    for (int i = 0; i < generate->wave_count; ++i)
+    }
+    for (int i = 0; i < generate->wave_count; ++i) {
         fprintf(file, "# wave of order %d, %g um\n", generate->waves[i].order,
                 1e6 * generate->waves[i].amplitude);
+    }
 }
 
 static int generate(making *of, const gm_pair *pair) {
@@ -48,11 +51,13 @@ static int make_and_write(making *of, const gm_pair *pair) {
                              {of->options->pitch, NULL, &of->pitch, print_head, of}};
     int status = generate(of, pair);
 
-    if (status != EXIT_DONE)
+    if (status != EXIT_DONE) {
         return status;
+    }
     status = write_files(files, 2);
-    if (status == EXIT_DONE)
+    if (status == EXIT_DONE) {
         status = report_quality(of->options, pair, &of->deviations, &of->pitch);
+    }
     gm_deviations_free(&of->deviations);
     gm_pitch_free(&of->pitch);
     return status;
@@ -66,8 +71,9 @@ int make_flanks(const flanks_options *options, const gm_pair *pair) {
         status = scatter_read(&of.scatter, options->scatter);
         of.generate.scatter = &of.scatter.amounts;
     }
-    if (status == EXIT_DONE)
+    if (status == EXIT_DONE) {
         status = make_and_write(&of, pair);
+    }
     scatter_free(&of.scatter);
     return status;
 }

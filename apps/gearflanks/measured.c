@@ -29,10 +29,12 @@ static void print_sources(const measured_gear *of, FILE *file) {
 
     fprintf(file, "# %s of %d teeth, from measurements: gearflanks %s,",
             options->wheel ? "wheel" : "pinion", of->gear->teeth, gm_version());
-    if (options->traces != NULL)
+    if (options->traces != NULL) {
         fprintf(file, " traces %s", options->traces);
-    if (options->measured_pitch != NULL)
+    }
+    if (options->measured_pitch != NULL) {
         fprintf(file, "%s pitch %s", options->traces != NULL ? "," : "", options->measured_pitch);
+    }
     fputc('\n', file);
 }
 
@@ -44,8 +46,9 @@ static void print_mapping(const measured_gear *of, FILE *file) {
     const int first = how->first_number;
     int tooth[4];
 
-    for (int i = 0; i < 3; ++i)
+    for (int i = 0; i < 3; ++i) {
         tooth[i] = gm_measurement_tooth(how, of->pair, wheel, first + i);
+    }
     tooth[3] = gm_measurement_tooth(how, of->pair, wheel, first + of->gear->teeth - 1);
     fprintf(file, "# datum face %s (t1 = %d): left flanks are %s, right flanks are %s\n",
             from_one ? "I" : "II", from_one ? 0 : 1, side_names[gm_measurement_side(how, GM_LEFT)],
@@ -64,21 +67,23 @@ static void print_traces_of(const measured_gear *of, const char *kind, const int
                             const int teeth[2], const char *without, FILE *file) {
     for (int side = 0; side < 2; ++side) {
         fprintf(file, "# %s, %s: ", side_names[side], kind);
-        if (teeth[side] == 0)
+        if (teeth[side] == 0) {
             fprintf(file, "no traces, %s\n", without);
-        else
+        } else {
             fprintf(file,
                     teeth[side] == 1 ? "%d trace%s of %d tooth, which stands for all\n"
                                      : "%d trace%s of %d teeth, %d interpolated\n",
                     traces[side], traces[side] == 1 ? "" : "s", teeth[side],
                     of->gear->teeth - teeth[side]);
+        }
     }
 }
 
 static void print_range(const char *kind, const double range[2], const char *coordinate,
                         FILE *file) {
-    if (isnan(range[0]))
+    if (isnan(range[0])) {
         return;
+    }
     fprintf(file, "# %s from %s = %.3f to %.3f on all traces", kind, coordinate, range[0],
             range[1]);
     fputs(range[0] > 0.0 || range[1] < 1.0 ? ", last values held beyond\n" : "\n", file);
@@ -95,16 +100,19 @@ static void print_traces(const measured_gear *of, FILE *file) {
     print_range("helix", found->face_range, "t1", file);
     fprintf(file, "# %d x %d nodes: no measured point is off by more than %.3f um\n",
             of->deviations.face_nodes, of->deviations.profile_nodes, 1e6 * found->resampling_error);
-    if (found->crossing_error > 1e-12)
+    if (found->crossing_error > 1e-12) {
         fprintf(file,
                 "# where traces of a flank cross they contradict each other by %.3f um at most\n",
                 1e6 * found->crossing_error);
-    if (found->spikes > 0)
+    }
+    if (found->spikes > 0) {
         fprintf(file, "# %d point%s left out: spikes\n", found->spikes,
                 found->spikes == 1 ? "" : "s");
-    if (2 * found->hollow_traces > found->judged_traces)
+    }
+    if (2 * found->hollow_traces > found->judged_traces) {
         fprintf(file, "# %d of %d traces stand out at their ends: is material added counted > 0?\n",
                 found->hollow_traces, found->judged_traces);
+    }
 }
 
 static void print_pitch(const measured_gear *of, FILE *file) {
@@ -115,9 +123,10 @@ static void print_pitch(const measured_gear *of, FILE *file) {
         }
         fprintf(file, "# %s, pitch: mean of %.3f um taken out", side_names[side],
                 1e6 * of->pitch_report.level[side]);
-        if (fabs(of->pitch_report.sum[side]) >= 0.5e-9) /* what is shown of it */
+        if (fabs(of->pitch_report.sum[side]) >= 0.5e-9) { /* what is shown of it */
             fprintf(file, ", sum of the single pitches of %.3f um spread over all",
                     1e6 * of->pitch_report.sum[side]);
+        }
         fputc('\n', file);
     }
 }
@@ -126,19 +135,21 @@ static void print_pitch(const measured_gear *of, FILE *file) {
 static void print_displacement(const measured_gear *of, FILE *file) {
     const gm_measured_pitch_report *found = &of->pitch_report;
 
-    if (isnan(found->displacement))
+    if (isnan(found->displacement)) {
         return;
+    }
     fprintf(
         file,
         "# what the pitch varies once per revolution is that of a gear displaced by %.3f um, but "
         "for %.0f %%\n",
         1e6 * found->displacement, 100.0 * found->rest);
-    if (found->rest > 0.15 && found->mirrored_rest < 0.25 * found->rest)
+    if (found->rest > 0.15 && found->mirrored_rest < 0.25 * found->rest) {
         fprintf(file,
                 "# but for %.0f %% if left and right, or else the direction of counting, were the "
                 "other "
                 "way round: are they as said?\n",
                 100.0 * found->mirrored_rest);
+    }
 }
 
 /* In the file of the flanks. */
@@ -158,8 +169,9 @@ static void print_pitch_head(FILE *file, const void *context) {
 static void print_report(const measured_gear *of) {
     print_sources(of, stdout);
     print_mapping(of, stdout);
-    if (of->options->traces != NULL)
+    if (of->options->traces != NULL) {
         print_traces(of, stdout);
+    }
     if (of->options->measured_pitch != NULL) {
         print_pitch(of, stdout);
         print_displacement(of, stdout);
@@ -172,14 +184,16 @@ static void print_report(const measured_gear *of) {
 
 /* To 0.1 nm, far below what a machine can tell: short numbers in the file. */
 static void round_values(double *values, size_t count) {
-    for (size_t i = 0; i < count; ++i)
+    for (size_t i = 0; i < count; ++i) {
         values[i] = round(1e10 * values[i]) / 1e10;
+    }
 }
 
 static void round_deviations(gm_deviations *deviations) {
-    for (int i = 0; i < deviations->set_count; ++i)
+    for (int i = 0; i < deviations->set_count; ++i) {
         round_values(deviations->sets[i].values,
                      (size_t)deviations->face_nodes * (size_t)deviations->profile_nodes);
+    }
 }
 
 static int read_traces(measured_gear *of) {
@@ -220,11 +234,13 @@ static int write_all(const measured_gear *of) {
     written files[WRITTEN_MAX];
     int count = 0;
 
-    if (options->traces != NULL)
+    if (options->traces != NULL) {
         files[count++] =
             (written){options->deviations, &of->deviations, NULL, print_traces_head, of};
-    if (options->measured_pitch != NULL)
+    }
+    if (options->measured_pitch != NULL) {
         files[count++] = (written){options->pitch, NULL, &of->pitch, print_pitch_head, of};
+    }
     return write_files(files, count);
 }
 
@@ -236,12 +252,15 @@ int build_measured(const flanks_options *options, const gm_pair *pair) {
     of.options = options;
     of.pair = pair;
     of.gear = options->wheel ? &pair->wheel : &pair->pinion;
-    if (options->traces != NULL)
+    if (options->traces != NULL) {
         status = read_traces(&of);
-    if (status == EXIT_DONE && options->measured_pitch != NULL)
+    }
+    if (status == EXIT_DONE && options->measured_pitch != NULL) {
         status = read_pitch(&of);
-    if (status == EXIT_DONE)
+    }
+    if (status == EXIT_DONE) {
         status = write_all(&of);
+    }
     if (status == EXIT_DONE) {
         print_report(&of);
         status = report_quality(options, pair, options->traces != NULL ? &of.deviations : NULL,

@@ -94,15 +94,17 @@ static int all_of(const char *text, const char *characters) {
 }
 
 static int parse_count(const char *text, int *value) {
-    if (!all_of(text, "0123456789") || strlen(text) > 9)
+    if (!all_of(text, "0123456789") || strlen(text) > 9) {
         return 0;
+    }
     *value = atoi(text);
     return 1;
 }
 
 static int parse_seed(const char *text, uint64_t *value) {
-    if (!all_of(text, "0123456789"))
+    if (!all_of(text, "0123456789")) {
         return 0;
+    }
     errno = 0;
     const unsigned long long number = strtoull(text, NULL, 10);
     *value = (uint64_t)number;
@@ -113,8 +115,9 @@ static int parse_seed(const char *text, uint64_t *value) {
 static int parse_number(const char *text, double *value) {
     char *end = NULL;
 
-    if (!all_of(text, "0123456789.eE+-"))
+    if (!all_of(text, "0123456789.eE+-")) {
         return 0;
+    }
     *value = strtod(text, &end);
     return *end == '\0' && isfinite(*value);
 }
@@ -123,8 +126,9 @@ static int parse_number(const char *text, double *value) {
 static int split(const char *text, char mark, char parts[2][32]) {
     const char *at = strchr(text, mark);
 
-    if (at == NULL || at - text > 31 || strlen(at + 1) > 31)
+    if (at == NULL || at - text > 31 || strlen(at + 1) > 31) {
         return 0;
+    }
     memcpy(parts[0], text, (size_t)(at - text));
     parts[0][at - text] = '\0';
     strcpy(parts[1], at + 1);
@@ -154,8 +158,9 @@ static int take_nodes(parsing *state, const char *value) {
     gm_traces_options *from_traces = &state->options->from_traces;
 
     if (!split(value, 'x', parts) || !parse_count(parts[0], &generate->face_nodes) ||
-        !parse_count(parts[1], &generate->profile_nodes))
+        !parse_count(parts[1], &generate->profile_nodes)) {
         return 0;
+    }
     from_traces->face_nodes = generate->face_nodes;
     from_traces->profile_nodes = generate->profile_nodes;
     return 1;
@@ -167,8 +172,9 @@ static int take_wave(parsing *state, const char *value) {
     gm_flank_wave *wave = &state->options->waves[generate->wave_count];
 
     if (generate->wave_count == FLANKS_MOST_WAVES || !split(value, ':', parts) ||
-        !parse_count(parts[0], &wave->order) || !parse_number(parts[1], &wave->amplitude))
+        !parse_count(parts[0], &wave->order) || !parse_number(parts[1], &wave->amplitude)) {
         return 0;
+    }
     wave->amplitude *= 1e-6;
     generate->wave_count++;
     return 1;
@@ -238,8 +244,9 @@ static int take_first_tooth(parsing *state, const char *value) {
 static int take_pitch_diameter(parsing *state, const char *value) {
     double *diameter = &state->options->measurement.pitch_diameter;
 
-    if (!parse_number(value, diameter))
+    if (!parse_number(value, diameter)) {
         return 0;
+    }
     *diameter *= 1e-3;
     return 1;
 }
@@ -317,28 +324,33 @@ enum { FLAG_COUNT = sizeof flags / sizeof flags[0] };
 
 /* Notes for which tasks an option is odd. */
 static void note_use(parsing *state, const char *name, int use) {
-    for (int task = 0; task < FLANKS_TASKS; ++task)
-        if ((use >> task & 1) == 0)
+    for (int task = 0; task < FLANKS_TASKS; ++task) {
+        if ((use >> task & 1) == 0) {
             state->odd[task] = name;
+        }
+    }
 }
 
 static int find_valued(const char *text) {
     const size_t length = strcspn(text, "=");
 
-    for (int i = 0; i < VALUED_COUNT; ++i)
-        if (strlen(valued[i].name) == length && strncmp(valued[i].name, text, length) == 0)
+    for (int i = 0; i < VALUED_COUNT; ++i) {
+        if (strlen(valued[i].name) == length && strncmp(valued[i].name, text, length) == 0) {
             return i;
+        }
+    }
     return -1;
 }
 
 /* Takes a flag; 0 = there is none of this name. */
 static int take_flag(parsing *state, const char *text) {
-    for (int i = 0; i < FLAG_COUNT; ++i)
+    for (int i = 0; i < FLAG_COUNT; ++i) {
         if (strcmp(text, flags[i].name) == 0) {
             flags[i].take(state);
             note_use(state, flags[i].name, flags[i].use);
             return 1;
         }
+    }
     return 0;
 }
 
@@ -348,10 +360,12 @@ static int take_option(parsing *state, int count, char *const texts[], int *inde
     const char *value = strchr(text, '=');
     const int which = find_valued(text);
 
-    if (which < 0)
+    if (which < 0) {
         return take_flag(state, text) ? 0 : refuse("unknown option ", text);
-    if (value == NULL && *index + 1 >= count)
+    }
+    if (value == NULL && *index + 1 >= count) {
         return refuse("a value is missing behind ", text);
+    }
     value = value != NULL ? value + 1 : texts[++*index];
     if (!valued[which].take(state, value)) {
         fprintf(stderr, "gearflanks: %s: got '%s', must be %s\n", valued[which].name, value,
@@ -363,8 +377,9 @@ static int take_option(parsing *state, int count, char *const texts[], int *inde
 }
 
 static int take_parameters(parsing *state, const char *path) {
-    if (state->options->parameters != NULL)
+    if (state->options->parameters != NULL) {
         return refuse("a second INI file, expected one: ", path);
+    }
     state->options->parameters = path;
     return *path != '\0' ? 0 : refuse("the name of the INI file is empty", "");
 }
@@ -372,12 +387,15 @@ static int take_parameters(parsing *state, const char *path) {
 static int check_way(const parsing *state) {
     const flanks_options *options = state->options;
 
-    if (options->generate.quality_class == 0 && options->scatter == NULL)
+    if (options->generate.quality_class == 0 && options->scatter == NULL) {
         return refuse("--class or --scatter is missing", "");
-    if (options->generate.quality_class != 0 && options->scatter != NULL)
+    }
+    if (options->generate.quality_class != 0 && options->scatter != NULL) {
         return refuse("--class and --scatter exclude each other", "");
-    if (state->has_share && options->scatter != NULL)
+    }
+    if (state->has_share && options->scatter != NULL) {
         return refuse("not together with --scatter: ", "--share");
+    }
     return 0;
 }
 
@@ -389,8 +407,9 @@ static int would_overwrite(const char *output, const char *input) {
 
     for (int i = 0; i < 3; ++i) {
         const int length = snprintf(name, sizeof name, "%s%s", output, endings[i]);
-        if (length > 0 && (size_t)length < sizeof name && is_same_file(name, input))
+        if (length > 0 && (size_t)length < sizeof name && is_same_file(name, input)) {
             return 1;
+        }
     }
     return 0;
 }
@@ -400,12 +419,16 @@ static int check_outputs(const flanks_options *options) {
                                   options->measured_pitch};
     const char *const outputs[] = {options->deviations, options->pitch};
 
-    if (outputs[0] != NULL && outputs[1] != NULL && is_same_file(outputs[0], outputs[1]))
+    if (outputs[0] != NULL && outputs[1] != NULL && is_same_file(outputs[0], outputs[1])) {
         return refuse("--flanks and --pitch are the same file: ", outputs[0]);
-    for (int i = 0; i < 2; ++i)
-        for (int k = 0; k < 4; ++k)
-            if (outputs[i] != NULL && inputs[k] != NULL && would_overwrite(outputs[i], inputs[k]))
+    }
+    for (int i = 0; i < 2; ++i) {
+        for (int k = 0; k < 4; ++k) {
+            if (outputs[i] != NULL && inputs[k] != NULL && would_overwrite(outputs[i], inputs[k])) {
                 return refuse("an input would be overwritten: ", inputs[k]);
+            }
+        }
+    }
     for (int i = 0; i < 2; ++i) {
         const char *reason = outputs[i] != NULL ? output_obstacle(outputs[i]) : NULL;
         if (reason != NULL) {
@@ -419,31 +442,38 @@ static int check_outputs(const flanks_options *options) {
 static int check_making(const parsing *state) {
     const int status = check_way(state);
 
-    if (status == 0 && (state->options->deviations == NULL || state->options->pitch == NULL))
+    if (status == 0 && (state->options->deviations == NULL || state->options->pitch == NULL)) {
         return refuse("--flanks and --pitch are both needed to make flanks", "");
+    }
     return status == 0 ? check_outputs(state->options) : status;
 }
 
 /* What was measured and what is written belong together. */
 static int check_measured(const flanks_options *options) {
-    if ((options->traces != NULL) != (options->deviations != NULL))
+    if ((options->traces != NULL) != (options->deviations != NULL)) {
         return refuse("--traces and --flanks go together: missing is ",
                       options->traces != NULL ? "--flanks" : "--traces");
-    if ((options->measured_pitch != NULL) != (options->pitch != NULL))
+    }
+    if ((options->measured_pitch != NULL) != (options->pitch != NULL)) {
         return refuse("--measured-pitch and --pitch go together: missing is ",
                       options->pitch != NULL ? "--measured-pitch" : "--pitch");
-    if (options->measurement.datum_face == 0)
+    }
+    if (options->measurement.datum_face == 0) {
         return refuse("--datum-face is missing", "");
-    if (options->measurement.counting == 0)
+    }
+    if (options->measurement.counting == 0) {
         return refuse("--count is missing", "");
+    }
     return check_outputs(options);
 }
 
 static int refuse_odd(enum flanks_task task, const char *option) {
-    if (task == FLANKS_EVALUATE)
+    if (task == FLANKS_EVALUATE) {
         return refuse("not together with --evaluate: ", option);
-    if (task == FLANKS_MEASURED)
+    }
+    if (task == FLANKS_MEASURED) {
         return refuse("not together with --traces or --measured-pitch: ", option);
+    }
     return refuse(strcmp(option, "--teeth") == 0
                       ? "only together with --evaluate: "
                       : "only together with --traces or --measured-pitch: ",
@@ -453,14 +483,18 @@ static int refuse_odd(enum flanks_task task, const char *option) {
 static int check(const parsing *state) {
     const flanks_options *options = state->options;
 
-    if (options->parameters == NULL)
+    if (options->parameters == NULL) {
         return refuse("an INI file is missing", "");
-    if (!state->has_gear)
+    }
+    if (!state->has_gear) {
         return refuse("--gear is missing", "");
-    if (state->odd[options->task] != NULL)
+    }
+    if (state->odd[options->task] != NULL) {
         return refuse_odd(options->task, state->odd[options->task]);
-    if (options->task == FLANKS_MEASURED)
+    }
+    if (options->task == FLANKS_MEASURED) {
         return check_measured(options);
+    }
     return options->task == FLANKS_MAKE ? check_making(state) : 0;
 }
 
@@ -482,7 +516,8 @@ int options_parse(flanks_options *options, int count, char *const texts[]) {
                                     : take_parameters(&state, texts[i]);
     }
     if (options->task == FLANKS_MAKE &&
-        (options->traces != NULL || options->measured_pitch != NULL))
+        (options->traces != NULL || options->measured_pitch != NULL)) {
         options->task = FLANKS_MEASURED;
+    }
     return status == 0 ? check(&state) : status;
 }

@@ -40,8 +40,9 @@ static int open_files(measured *of, const flanks_options *options, const flank_f
     }
     if (deviations != NULL) {
         status = gm_deviations_read(&of->deviation_storage, deviations, teeth, &error);
-        if (status != GM_IO_OK)
+        if (status != GM_IO_OK) {
             return refuse_input(status, &error);
+        }
         of->deviations = &of->deviation_storage;
     }
     if (pitch != NULL) {
@@ -60,12 +61,13 @@ static int open_files(measured *of, const flanks_options *options, const flank_f
  * ------------------------------------------------------------------------------------------- */
 
 static const char *class_text(char text[16], int quality_class) {
-    if (quality_class == 0)
+    if (quality_class == 0) {
         strcpy(text, "-");
-    else if (quality_class > GM_QUALITY_WORST_CLASS)
+    } else if (quality_class > GM_QUALITY_WORST_CLASS) {
         snprintf(text, 16, ">%d", GM_QUALITY_WORST_CLASS);
-    else
+    } else {
         snprintf(text, 16, "%d", quality_class);
+    }
     return text;
 }
 
@@ -81,26 +83,30 @@ static void print_kind(const gm_pair *pair, int wheel, int kind, const gm_qualit
     char quality_class[16];
     char tooth[16] = "-";
 
-    if (worst->tooth >= 0)
+    if (worst->tooth >= 0) {
         snprintf(tooth, sizeof tooth, "%d", worst->tooth);
+    }
     class_text(quality_class, worst->quality_class);
-    if (worst->quality_class == 0)
+    if (worst->quality_class == 0) {
         printf("%-10s %9s %6s %6s %6s %13s\n", gm_quality_symbol(kind), "-", "-", "-", "-", "-");
-    else
+    } else {
         printf("%-10s %9.3f %6s %6s %6s %13.1f\n", gm_quality_symbol(kind), 1e6 * worst->value,
                tooth, flank_name(worst->side), quality_class, 1e6 * tolerance);
+    }
 }
 
 static void print_quality(const gm_quality *quality, const gm_pair *pair, int wheel, int teeth) {
     char text[16];
 
     printf("# %s of %d teeth, ISO 1328-1:2013\n", wheel ? "wheel" : "pinion", teeth);
-    if (!gm_quality_is_in_scope(pair, wheel))
+    if (!gm_quality_is_in_scope(pair, wheel)) {
         puts("# outside the ranges of the standard: its formulae are used all the same");
+    }
     printf("%-10s %9s %6s %6s %6s %13s\n", "quantity", "value_um", "tooth", "flank", "class",
            "tolerance_um");
-    for (int kind = 0; kind < GM_QUALITY_KINDS; ++kind)
+    for (int kind = 0; kind < GM_QUALITY_KINDS; ++kind) {
         print_kind(pair, wheel, kind, &quality->worst[kind]);
+    }
     printf("class %s\n", class_text(text, quality->quality_class));
 }
 
@@ -110,10 +116,11 @@ static void print_quality(const gm_quality *quality, const gm_pair *pair, int wh
 
 /* Nothing where nothing was evaluated. */
 static void print_value(double value) {
-    if (isnan(value))
+    if (isnan(value)) {
         putchar(',');
-    else
+    } else {
         printf(",%.4f", 1e6 * value);
+    }
 }
 
 static void print_teeth(const gm_flank_quality *flanks, int teeth) {
@@ -126,8 +133,9 @@ static void print_teeth(const gm_flank_quality *flanks, int teeth) {
                                  flank->helix_form,   flank->helix_total};
 
         printf("%d,%s", i % teeth, flank_name(i / teeth));
-        for (size_t k = 0; k < sizeof values / sizeof values[0]; ++k)
+        for (size_t k = 0; k < sizeof values / sizeof values[0]; ++k) {
             print_value(values[k]);
+        }
         putchar('\n');
     }
 }
@@ -145,12 +153,13 @@ int report_quality(const flanks_options *options, const gm_pair *pair,
     int status = gm_quality_evaluate(&quality, flanks, pair, options->wheel, deviations, pitch,
                                      NULL, &error);
 
-    if (status != GM_IO_OK)
+    if (status != GM_IO_OK) {
         status = refuse_input(status, &error);
-    else if (options->teeth)
+    } else if (options->teeth) {
         print_teeth(flanks, teeth);
-    else
+    } else {
         print_quality(&quality, pair, options->wheel, teeth);
+    }
     free(flanks);
     return status;
 }

@@ -64,8 +64,9 @@ static int check_range(const key_reader *reader, const char *section, const char
     const int index = key_find(&scatter_keys, section, most);
     const key_entry *entry = &reader->entries[index];
 
-    if (range->low <= range->high)
+    if (range->low <= range->high) {
         return 0;
+    }
     key_print_place(reader->path, entry->origin, entry->line);
     fprintf(stderr, "%s: is below %s (got %s), must not be\n", keys[index].full_name, least,
             entry->text != NULL ? entry->text : keys[index].standard);
@@ -85,19 +86,23 @@ int scatter_read(scatter_file *file, const char *path) {
     key_assign_defaults(&scatter_keys, &file->amounts);
     reader.entries = file->entries = allocate(sizeof keys / sizeof keys[0] * sizeof *file->entries);
     key_reader_read(&reader);
-    if (reader.faults == 0)
+    if (reader.faults == 0) {
         reader.faults = check_trace(&reader, "profile", &file->amounts.profile) +
                         check_trace(&reader, "helix", &file->amounts.helix);
-    if (reader.faults == 0)
+    }
+    if (reader.faults == 0) {
         return 0;
+    }
     scatter_free(file);
     return EXIT_BAD_INPUT;
 }
 
 void scatter_print(const scatter_file *file, FILE *stream) {
-    for (int i = 0; i < scatter_keys.count; ++i)
-        if (file->entries[i].text != NULL)
+    for (int i = 0; i < scatter_keys.count; ++i) {
+        if (file->entries[i].text != NULL) {
             fprintf(stream, "# %s = %s\n", keys[i].full_name, file->entries[i].text);
+        }
+    }
 }
 
 void scatter_free(scatter_file *file) {

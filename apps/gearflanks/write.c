@@ -30,9 +30,11 @@ static int copy_rows(FILE *out, FILE *in) {
     char block[16384];
     size_t size;
 
-    while ((size = fread(block, 1, sizeof block, in)) > 0)
-        if (fwrite(block, 1, size, out) != size)
+    while ((size = fread(block, 1, sizeof block, in)) > 0) {
+        if (fwrite(block, 1, size, out) != size) {
             return 0;
+        }
+    }
     return !ferror(in);
 }
 
@@ -46,10 +48,12 @@ static int join(const char *part, const char *rows, const written *what) {
         what->print_head(out, what->context);
         whole = copy_rows(out, in);
     }
-    if (out != NULL && fclose(out) != 0)
+    if (out != NULL && fclose(out) != 0) {
         whole = 0;
-    if (in != NULL)
+    }
+    if (in != NULL) {
         fclose(in);
+    }
     return whole ? EXIT_DONE : complain(part, "written");
 }
 
@@ -59,13 +63,15 @@ static int write_part(const written *what, const char *part) {
     gm_io_error error;
     int status = EXIT_RUN_FAILED;
 
-    if (rows == NULL)
+    if (rows == NULL) {
         return status;
+    }
     if ((what->deviations != NULL ? gm_deviations_write(what->deviations, rows, &error)
-                                  : gm_pitch_write(what->pitch, rows, &error)) == GM_IO_OK)
+                                  : gm_pitch_write(what->pitch, rows, &error)) == GM_IO_OK) {
         status = join(part, rows, what);
-    else
+    } else {
         fprintf(stderr, "%s: %s\n", what->path, error.text);
+    }
     unlink(rows);
     free(rows);
     return status;
@@ -80,12 +86,15 @@ int write_files(const written files[], int count) {
         parts[i] = with_ending(files[i].path, ".part");
         status = parts[i] != NULL ? write_part(&files[i], parts[i]) : EXIT_RUN_FAILED;
     }
-    for (int i = 0; i < count && status == EXIT_DONE; ++i)
-        if (rename(parts[i], files[i].path) != 0)
+    for (int i = 0; i < count && status == EXIT_DONE; ++i) {
+        if (rename(parts[i], files[i].path) != 0) {
             status = complain(files[i].path, "written");
+        }
+    }
     for (int i = 0; i < count; ++i) {
-        if (status != EXIT_DONE && parts[i] != NULL)
+        if (status != EXIT_DONE && parts[i] != NULL) {
             unlink(parts[i]); /* a folder stays */
+        }
         free(parts[i]);
     }
     return status;
@@ -100,20 +109,23 @@ static const char *see_option(const char *field) {
                                            {"hollow", " (see --hollow)"},
                                            {"remove_spikes", " (see --remove-spikes)"}};
 
-    for (size_t i = 0; field != NULL && i < sizeof names / sizeof names[0]; ++i)
-        if (strcmp(field, names[i][0]) == 0)
+    for (size_t i = 0; field != NULL && i < sizeof names / sizeof names[0]; ++i) {
+        if (strcmp(field, names[i][0]) == 0) {
             return names[i][1];
+        }
+    }
     return "";
 }
 
 int refuse_input(int status, const gm_io_error *error) {
     const char *option = see_option(error->option);
 
-    if (error->file[0] == '\0')
+    if (error->file[0] == '\0') {
         fprintf(stderr, "gearflanks: %s%s\n", error->text, option);
-    else if (error->line > 0)
+    } else if (error->line > 0) {
         fprintf(stderr, "%s:%ld: %s%s\n", error->file, error->line, error->text, option);
-    else
+    } else {
         fprintf(stderr, "%s: %s%s\n", error->file, error->text, option);
+    }
     return status == GM_IO_ERR_MEMORY ? EXIT_RUN_FAILED : EXIT_BAD_INPUT;
 }

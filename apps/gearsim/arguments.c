@@ -67,17 +67,20 @@ static int refuse(const char *text, const char *what) {
 static const option *find_option(const char *text) {
     const size_t length = strcspn(text, "=");
 
-    for (int i = 0; i < OPTION_COUNT; ++i)
-        if (strlen(options[i].name) == length && strncmp(options[i].name, text, length) == 0)
+    for (int i = 0; i < OPTION_COUNT; ++i) {
+        if (strlen(options[i].name) == length && strncmp(options[i].name, text, length) == 0) {
             return &options[i];
+        }
+    }
     return NULL;
 }
 
 static void take_value(arguments *args, const option *given, char *value) {
-    if (strcmp(given->name, "--output") == 0)
+    if (strcmp(given->name, "--output") == 0) {
         args->request.output_file = value;
-    else
+    } else {
         args->overrides[args->request.override_count++] = value;
+    }
 }
 
 static int take_flag(arguments *args, const option *given) {
@@ -85,17 +88,20 @@ static int take_flag(arguments *args, const option *given) {
         args->request.quiet = 1;
         return 0;
     }
-    if (args->task != TASK_RUN && args->task != given->task)
+    if (args->task != TASK_RUN && args->task != given->task) {
         return refuse("--check and --geometry exclude each other", "");
+    }
     args->task = given->task;
     return 0;
 }
 
 static int take_file(arguments *args, const char *path) {
-    if (args->request.path != NULL)
+    if (args->request.path != NULL) {
         return refuse("a second INI file, expected one: ", path);
-    if (*path == '\0')
+    }
+    if (*path == '\0') {
         return refuse("the name of the INI file is empty", "");
+    }
     args->request.path = path;
     return 0;
 }
@@ -105,13 +111,16 @@ static int take_option(arguments *args, int count, char *const texts[], int *ind
     const option *given = find_option(texts[*index]);
     char *value = strchr(texts[*index], '=');
 
-    if (given == NULL)
+    if (given == NULL) {
         return refuse("unknown option ", texts[*index]);
-    if (given->value == NO_VALUE)
+    }
+    if (given->value == NO_VALUE) {
         return value == NULL ? take_flag(args, given)
                              : refuse("no value expected: ", texts[*index]);
-    if (value == NULL && *index + 1 >= count)
+    }
+    if (value == NULL && *index + 1 >= count) {
         return refuse("a value is missing behind ", given->name);
+    }
     take_value(args, given, value != NULL ? value + 1 : texts[++*index]);
     return 0;
 }
@@ -125,17 +134,20 @@ static int take_all(arguments *args, int count, char *const texts[]) {
     int status = 0;
 
     for (int i = 1; i < count && status == 0; ++i) {
-        if (!only_files && strcmp(texts[i], "--") == 0)
+        if (!only_files && strcmp(texts[i], "--") == 0) {
             only_files = 1;
-        else if (!only_files && texts[i][0] == '-' && texts[i][1] != '\0')
+        } else if (!only_files && texts[i][0] == '-' && texts[i][1] != '\0') {
             status = take_option(args, count, texts, &i);
-        else
+        } else {
             status = take_file(args, texts[i]);
-        if (is_informative(args->task))
+        }
+        if (is_informative(args->task)) {
             return 0; /* whatever follows */
+        }
     }
-    if (status == 0 && args->request.path == NULL)
+    if (status == 0 && args->request.path == NULL) {
         status = refuse("no INI file given", "");
+    }
     return status;
 }
 
@@ -147,8 +159,9 @@ int arguments_parse(arguments *args, int count, char *const texts[]) {
     status = take_all(args, count, texts);
     args->request.overrides = args->overrides;
     args->request.purpose = args->task == TASK_GEOMETRY ? CONFIG_FOR_GEOMETRY : CONFIG_FOR_RUN;
-    if (status != 0)
+    if (status != 0) {
         arguments_free(args);
+    }
     return status;
 }
 

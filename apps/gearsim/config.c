@@ -41,8 +41,9 @@ static int find_full_name(const char *section_and_key) {
     char section[NAME_SIZE];
     size_t length;
 
-    if (dot == NULL || (length = (size_t)(dot - section_and_key)) >= sizeof section)
+    if (dot == NULL || (length = (size_t)(dot - section_and_key)) >= sizeof section) {
         return -1;
+    }
     memcpy(section, section_and_key, length);
     section[length] = '\0';
     return key_find(&gearsim_keys, section, dot + 1);
@@ -52,10 +53,11 @@ static void tell(const config *conf, const char *section_and_key, const char *ki
                  const char *format, va_list arguments) {
     const int index = find_full_name(section_and_key);
 
-    if (index >= 0)
+    if (index >= 0) {
         print_place(conf, conf->entries[index].origin, conf->entries[index].line);
-    else
+    } else {
         print_place(conf, ORIGIN_DEFAULT, 0);
+    }
     fprintf(stderr, "%s: %s", section_and_key, kind);
     vfprintf(stderr, format, arguments);
     fputc('\n', stderr);
@@ -72,8 +74,9 @@ void config_complain(const config *conf, const char *section_and_key, const char
 void config_warn(const config *conf, const char *section_and_key, const char *format, ...) {
     va_list arguments;
 
-    if (conf->quiet)
+    if (conf->quiet) {
         return;
+    }
     va_start(arguments, format);
     tell(conf, section_and_key, "warning: ", format, arguments);
     va_end(arguments);
@@ -82,9 +85,11 @@ void config_warn(const config *conf, const char *section_and_key, const char *fo
 const char *config_key_of_field(const char *field) {
     static const char *const unknown = "gears";
 
-    for (int i = 0; i < gearsim_keys.count; ++i)
-        if (key_at(i)->field != NULL && strcmp(key_at(i)->field, field) == 0)
+    for (int i = 0; i < gearsim_keys.count; ++i) {
+        if (key_at(i)->field != NULL && strcmp(key_at(i)->field, field) == 0) {
             return key_at(i)->full_name;
+        }
+    }
     return unknown;
 }
 
@@ -102,16 +107,19 @@ const char *config_text(const config *conf, const char *section_and_key) {
 static char *trim(char *text) {
     char *end = text + strlen(text);
 
-    while (end > text && (end[-1] == ' ' || end[-1] == '\t'))
+    while (end > text && (end[-1] == ' ' || end[-1] == '\t')) {
         *--end = '\0';
+    }
     return text + strspn(text, " \t");
 }
 
 /* Values end up in the head of the result, a line each. */
 static int has_control_character(const char *text) {
-    for (; *text != '\0'; ++text)
-        if ((unsigned char)*text < ' ' && *text != '\t')
+    for (; *text != '\0'; ++text) {
+        if ((unsigned char)*text < ' ' && *text != '\t') {
             return 1;
+        }
+    }
     return 0;
 }
 
@@ -135,17 +143,20 @@ static void read_override(key_reader *reader, const char *override) {
 static void read_command_line(key_reader *reader, const config_request *request) {
     reader->line = 0;
     reader->from = ORIGIN_SET;
-    for (int i = 0; i < request->override_count; ++i)
+    for (int i = 0; i < request->override_count; ++i) {
         read_override(reader, request->overrides[i]);
+    }
 
     reader->from = ORIGIN_OUTPUT_OPTION;
-    if (request->output_file == NULL)
+    if (request->output_file == NULL) {
         return;
-    if (has_control_character(request->output_file))
+    }
+    if (has_control_character(request->output_file)) {
         key_reader_fault(reader, "",
                          "a control character in the name of the output file, expected plain text");
-    else
+    } else {
         key_reader_set(reader, "output", "file", request->output_file);
+    }
 }
 
 /* ---------------------------------------------------------------------------------------------
@@ -153,10 +164,12 @@ static void read_command_line(key_reader *reader, const config_request *request)
  * ------------------------------------------------------------------------------------------- */
 
 static const char *condition_of(const key_spec *key, const config *conf) {
-    if (key->required & (FOR_SPEED | FOR_TORQUE))
+    if (key->required & (FOR_SPEED | FOR_TORQUE)) {
         return conf->drive == DRIVE_SPEED ? " for drive.kind = speed" : " for drive.kind = torque";
-    if (key->required & FOR_DYNAMIC)
+    }
+    if (key->required & FOR_DYNAMIC) {
         return " for a dynamic run";
+    }
     return key->required & FOR_RUN ? " for a run" : "";
 }
 
@@ -164,8 +177,9 @@ static int check_missing(const config *conf) {
     int faults = 0;
 
     for (int i = 0; i < gearsim_keys.count; ++i) {
-        if (conf->entries[i].text != NULL || !key_is_required(key_at(i), conf))
+        if (conf->entries[i].text != NULL || !key_is_required(key_at(i), conf)) {
             continue;
+        }
         config_complain(conf, key_at(i)->full_name, "missing, but required%s: add %s to [%s]",
                         condition_of(key_at(i), conf), key_at(i)->name, key_at(i)->section);
         ++faults;
@@ -174,8 +188,9 @@ static int check_missing(const config *conf) {
 }
 
 static int check_profile_window(const config *conf) {
-    if (conf->profile_from < conf->profile_to)
+    if (conf->profile_from < conf->profile_to) {
         return 0;
+    }
     config_complain(conf, "flanks.profile_from",
                     "must be smaller than flanks.profile_to (got %.9g and %.9g)",
                     conf->profile_from, conf->profile_to);
@@ -239,16 +254,18 @@ static int check_dynamic(const config *conf) {
 int is_same_file(const char *a, const char *b) {
     struct stat status_a, status_b;
 
-    if (strcmp(a, b) == 0)
+    if (strcmp(a, b) == 0) {
         return 1;
+    }
     return stat(a, &status_a) == 0 && stat(b, &status_b) == 0 &&
            status_a.st_dev == status_b.st_dev && status_a.st_ino == status_b.st_ino;
 }
 
 static int check_not_input(const config *conf, const char *output, const char *input,
                            const char *name) {
-    if (input == NULL || !is_same_file(output, input))
+    if (input == NULL || !is_same_file(output, input)) {
         return 0;
+    }
     config_complain(conf, "output.file",
                     "would overwrite an input (got %s, which is %s), give another name", output,
                     name);
@@ -277,10 +294,12 @@ static int check_output_is_no_input(const config *conf) {
 static int check_together(const config *conf) {
     int faults = check_profile_window(conf);
 
-    if (conf->purpose == CONFIG_FOR_GEOMETRY)
+    if (conf->purpose == CONFIG_FOR_GEOMETRY) {
         return faults;
-    if (conf->model == MODEL_3D)
+    }
+    if (conf->model == MODEL_3D) {
         faults += modification_keys_check(conf);
+    }
     faults += conf->analysis == ANALYSIS_STATIC ? check_static(conf) : check_dynamic(conf);
     return faults + check_output_is_no_input(conf);
 }
@@ -288,13 +307,17 @@ static int check_together(const config *conf) {
 static void warn_of_unused(const config *conf) {
     const char *reason;
 
-    for (int i = 0; i < gearsim_keys.count; ++i)
-        if (conf->entries[i].text != NULL && !key_is_used(key_at(i), conf, &reason))
+    for (int i = 0; i < gearsim_keys.count; ++i) {
+        if (conf->entries[i].text != NULL && !key_is_used(key_at(i), conf, &reason)) {
             config_warn(conf, key_at(i)->full_name, "not used with %s", reason);
-    if (conf->analysis == ANALYSIS_STATIC && conf->loads == 1 && !isnan(conf->end_load))
+        }
+    }
+    if (conf->analysis == ANALYSIS_STATIC && conf->loads == 1 && !isnan(conf->end_load)) {
         config_warn(conf, "load.end_Nm", "not used with analysis.loads = 1");
-    if (conf->model == MODEL_3D)
+    }
+    if (conf->model == MODEL_3D) {
         modification_keys_warn(conf);
+    }
 }
 
 /* ---------------------------------------------------------------------------------------------
@@ -316,10 +339,12 @@ static char *default_output_file(const char *path) {
 
 /* The text in effect, NULL where the value is derived from others. */
 static const char *effective_text(const config *conf, int index) {
-    if (conf->entries[index].text != NULL)
+    if (conf->entries[index].text != NULL) {
         return conf->entries[index].text;
-    if (strcmp(key_at(index)->full_name, "output.file") == 0)
+    }
+    if (strcmp(key_at(index)->full_name, "output.file") == 0) {
         return conf->output_file;
+    }
     return key_at(index)->standard;
 }
 
@@ -338,8 +363,9 @@ static void record_provenance(config *conf) {
     for (int i = 0; i < gearsim_keys.count; ++i) {
         const char *text = effective_text(conf, i);
 
-        if (text != NULL && key_is_used(key_at(i), conf, &reason))
+        if (text != NULL && key_is_used(key_at(i), conf, &reason)) {
             add_provenance(conf, key_at(i)->full_name, text);
+        }
     }
 }
 
@@ -371,12 +397,15 @@ int config_load(config *conf, const config_request *request) {
     read_command_line(&reader, request);
     faults = reader.faults;
 
-    if (conf->output_file == NULL)
+    if (conf->output_file == NULL) {
         conf->output_file = default_output_file(conf->path);
-    if (faults == 0)
+    }
+    if (faults == 0) {
         faults = check_missing(conf);
-    if (faults == 0)
+    }
+    if (faults == 0) {
         faults = check_together(conf);
+    }
     if (faults > 0) {
         config_free(conf);
         return EXIT_BAD_INPUT;
@@ -392,8 +421,9 @@ static void free_flank_files(flank_files *files) {
 }
 
 void config_free(config *conf) {
-    for (int i = 0; i < conf->provenance_count; ++i)
+    for (int i = 0; i < conf->provenance_count; ++i) {
         free(conf->provenance[i]);
+    }
     free(conf->provenance);
     key_entries_free(conf->entries, gearsim_keys.count);
     free_flank_files(&conf->pinion_flanks);

@@ -60,7 +60,7 @@ static void design(double weights[], int half, int factor) {
 }
 
 decimator *decimator_create(int factor, int channels, const int filtered[]) {
-    decimator *const created = calloc(1, sizeof *created);
+    decimator *created = calloc(1, sizeof *created);
     if (created == NULL) {
         return NULL;
     }
@@ -103,7 +103,7 @@ static void hold(decimator *filter, const double values[]) {
     const int size = 2 * filter->length;
 
     for (int channel = 0; channel < filter->channels; ++channel) {
-        double *const ring = filter->samples + (size_t)channel * (size_t)size;
+        double *ring = filter->samples + (size_t)channel * (size_t)size;
         for (int i = 0; i < size; ++i) {
             ring[i] = values[channel];
         }

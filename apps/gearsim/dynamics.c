@@ -67,7 +67,7 @@ typedef struct dynamic_run {
 static void show_motion(dynamic_run *run, double time, const gear_motion *motion) {
     const double r_bp = run->model.gears->pair.pinion.base_radius;
     const double r_bw = run->model.gears->pair.wheel.base_radius;
-    double *const values = run->values;
+    double *values = run->values;
 
     values[TIME] = time;
     values[PINION_SPEED] = motion->pinion_speed * rpm;
@@ -83,7 +83,7 @@ static void show_motion(dynamic_run *run, double time, const gear_motion *motion
 static int show_mesh(dynamic_run *run, double time, const gear_motion *motion, int with_pairs) {
     gm_penetration mesh;
     int status = model_penetration(&run->model, motion, &mesh);
-    double *const values = run->values;
+    double *values = run->values;
 
     if (status == GM_OK && with_pairs) {
         status = model_pairs(&run->model, motion, &mesh);
@@ -189,7 +189,7 @@ static int out_of_memory(void) {
 }
 
 static int start_solver(dynamic_run *run) {
-    const config *const conf = run->conf;
+    const config *conf = run->conf;
     const integrator_options options = {
         .method = conf->method,
         .relative_tolerance = conf->relative_tolerance,

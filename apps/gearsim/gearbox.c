@@ -26,8 +26,9 @@ static void speak_of_diameters(const char *requirement, char *text, size_t size)
                                    (int)(radius - requirement), requirement);
         requirement = radius + strlen("radius");
     }
-    if (length < size)
+    if (length < size) {
         snprintf(text + length, size - length, "%s", requirement);
+    }
 }
 
 /* What most geometry faults are measured against; needs nothing but teeth, module and angles (m). */
@@ -47,8 +48,9 @@ static int refuse_geometry(const config *conf, int status) {
     char wanted[256];
 
     (void)gm_pair_params_check(&conf->gears, &field, &requirement);
-    if (field != NULL)
+    if (field != NULL) {
         key = config_key_of_field(field);
+    }
     text = config_text(conf, key);
     speak_of_diameters(requirement != NULL ? requirement : gm_status_text(status), wanted,
                        sizeof wanted);
@@ -83,16 +85,17 @@ static void warn_of_tip(const config *conf, const gm_pair *pair, const gm_gear *
                         const char *key, const char *name) {
     const double land = tip_land(gear, pair);
 
-    if (land <= 0)
+    if (land <= 0) {
         config_warn(conf, key,
                     "pointed tip: the flanks of the %s cross below the tip diameter of %.6g mm",
                     name, 2e3 * gear->tip_radius);
-    else
+    } else {
         config_warn(
             conf, key,
             "thin tip: the teeth of the %s are %.3f normal modules thick at the tip diameter "
             "of %.6g mm, less than 0.2",
             name, land, 2e3 * gear->tip_radius);
+    }
 }
 
 /* What is said of one gear: keys and doubts of the pinion or of the wheel. */
@@ -120,24 +123,28 @@ static const gear_words wheel_words = {"wheel",
 
 static void warn_of_gear(const config *conf, const gm_pair *pair, const gm_gear *gear,
                          const gear_words *words, int doubts) {
-    if (doubts & words->undercut)
+    if (doubts & words->undercut) {
         config_warn(
             conf, words->teeth_key,
             "undercut: a generating rack cuts into the involute of the %s (%d teeth, profile "
             "shift %.6g)",
             words->name, gear->teeth, gear->profile_shift);
-    if (doubts & words->tip_land)
+    }
+    if (doubts & words->tip_land) {
         warn_of_tip(conf, pair, gear, words->tip_key, words->name);
-    if (doubts & words->root_form)
+    }
+    if (doubts & words->root_form) {
         config_warn(
             conf, words->start_key,
             "the active profile of the %s starts at a diameter of %.6g mm, below the root form "
             "circle that a generating rack leaves",
             words->name, 2e3 * gear->start_radius);
-    if (doubts & words->start_radius)
+    }
+    if (doubts & words->start_radius) {
         config_warn(conf, words->start_key,
                     "below the base circle of the %s, its diameter %.6g mm is taken instead",
                     words->name, 2e3 * gear->base_radius);
+    }
 }
 
 static void warn_of_doubts(const config *conf, const gm_pair *pair) {
@@ -145,15 +152,17 @@ static void warn_of_doubts(const config *conf, const gm_pair *pair) {
 
     warn_of_gear(conf, pair, &pair->pinion, &pinion_words, doubts);
     warn_of_gear(conf, pair, &pair->wheel, &wheel_words, doubts);
-    if (doubts & GM_DOUBT_CONTACT_RATIO)
+    if (doubts & GM_DOUBT_CONTACT_RATIO) {
         config_warn(
             conf, "gears.center_distance_mm",
             "the transverse contact ratio is %.4f, below 1: no smooth handover between teeth",
             pair->transverse_contact_ratio);
-    if (doubts & GM_DOUBT_BACKLASH)
+    }
+    if (doubts & GM_DOUBT_BACKLASH) {
         config_warn(conf, "gears.backlash_um",
                     "the backlash is %.6g um, negative: both flanks touch and press",
                     1e6 * pair->backlash);
+    }
 }
 
 /* ---------------------------------------------------------------------------------------------
@@ -172,18 +181,20 @@ typedef struct flank_task {
 static int refuse_file(const config *conf, const char *key, const gm_io_error *error) {
     const char *file = error->file[0] != '\0' ? error->file : conf->path;
 
-    if (error->line > 0)
+    if (error->line > 0) {
         fprintf(stderr, "%s:%ld: %s\n", file, error->line, error->text);
-    else
+    } else {
         fprintf(stderr, "%s: %s\n", file, error->text);
+    }
     config_complain(conf, key, "names this file");
     return EXIT_BAD_INPUT;
 }
 
 static void note_ideal_teeth(const config *conf, const char *file, int drive, int coast,
                              int teeth) {
-    if (conf->quiet || (drive == 0 && coast == 0))
+    if (conf->quiet || (drive == 0 && coast == 0)) {
         return;
+    }
     fprintf(
         stderr,
         "%s: note: no rows for the drive flank of %d and the coast flank of %d of %d teeth: these "
@@ -194,8 +205,9 @@ static void note_ideal_teeth(const config *conf, const char *file, int drive, in
 static int read_deviations(const config *conf, const flank_task *task, gm_deviations *deviations) {
     gm_io_error error = {0};
 
-    if (gm_deviations_read(deviations, task->files->deviations, task->teeth, &error) != GM_IO_OK)
+    if (gm_deviations_read(deviations, task->files->deviations, task->teeth, &error) != GM_IO_OK) {
         return refuse_file(conf, task->deviations_key, &error);
+    }
     note_ideal_teeth(conf, task->files->deviations, gm_deviations_ideal_teeth(deviations, GM_DRIVE),
                      gm_deviations_ideal_teeth(deviations, GM_COAST), task->teeth);
     return 0;
@@ -204,8 +216,9 @@ static int read_deviations(const config *conf, const flank_task *task, gm_deviat
 static int read_pitch(const config *conf, const flank_task *task, gm_pitch *pitch) {
     gm_io_error error = {0};
 
-    if (gm_pitch_read(pitch, task->files->pitch, task->teeth, &error) != GM_IO_OK)
+    if (gm_pitch_read(pitch, task->files->pitch, task->teeth, &error) != GM_IO_OK) {
         return refuse_file(conf, task->pitch_key, &error);
+    }
     note_ideal_teeth(conf, task->files->pitch, gm_pitch_ideal_teeth(pitch, GM_DRIVE),
                      gm_pitch_ideal_teeth(pitch, GM_COAST), task->teeth);
     return 0;
@@ -233,18 +246,20 @@ static void note_design(const config *conf, const char *flank, const design_form
     const gm_modifications_grid *grid = &form->grid;
     char ramps[64] = "", table[128] = "";
 
-    if (grid->error > conf->modification_tolerance)
+    if (grid->error > conf->modification_tolerance) {
         config_warn(conf, key,
                     "missed: the table of %s with %d x %d nodes is off by up to %.3g um, a finer "
                     "one would have too many nodes",
                     flank, grid->face_nodes, grid->profile_nodes, 1e6 * grid->error);
-    else if (!conf->quiet) {
-        if (form->ramps > 0)
+    } else if (!conf->quiet) {
+        if (form->ramps > 0) {
             snprintf(ramps, sizeof ramps, "%d linear relief%s, exact", form->ramps,
                      form->ramps > 1 ? "s" : "");
-        if (grid->face_nodes > 0)
+        }
+        if (grid->face_nodes > 0) {
             snprintf(table, sizeof table, "table of %d x %d nodes, off by at most %.3g um",
                      grid->face_nodes, grid->profile_nodes, 1e6 * grid->error);
+        }
         fprintf(stderr, "%s: note: [modifications] of %s: %s%s%s\n", conf->path, flank, ramps,
                 ramps[0] != '\0' && table[0] != '\0' ? "; " : "", table);
     }
@@ -260,10 +275,11 @@ static design_form form_of(const gm_modifications *design, const config *conf,
 
     rest.list = list;
     (void)gm_modifications_split(design, ramps, &form.ramps, list, &rest.count);
-    if (rest.count > 0)
+    if (rest.count > 0) {
         (void)gm_modifications_grid_find(&rest, deviations != NULL ? deviations->face_nodes : 2,
                                          deviations != NULL ? deviations->profile_nodes : 2,
                                          conf->modification_tolerance, &form.grid);
+    }
     return form;
 }
 
@@ -272,16 +288,19 @@ static void find_forms(gearbox *box, const config *conf, int gear, const gear_de
     for (int side = GM_DRIVE; side <= GM_COAST; ++side) {
         design_form *form = &box->design_form[gear][side];
         *form = form_of(&design->of[side], conf, deviations);
-        if (form->ramps > 0 || form->grid.face_nodes > 0)
+        if (form->ramps > 0 || form->grid.face_nodes > 0) {
             note_design(conf, flank_names[gear][side], form);
+        }
     }
 }
 
 static int refuse_flanks(const config *conf, const flank_task *task, const gm_io_error *error) {
-    if (task->files->deviations != NULL)
+    if (task->files->deviations != NULL) {
         return refuse_file(conf, task->deviations_key, error);
-    if (task->files->pitch != NULL)
+    }
+    if (task->files->pitch != NULL) {
         return refuse_file(conf, task->pitch_key, error);
+    }
     fprintf(stderr, "%s: [modifications]: %s\n", conf->path, error->text);
     return EXIT_BAD_INPUT;
 }
@@ -297,8 +316,9 @@ static int build_flanks(gearbox *box, const config *conf, const flank_task *task
     options.modification_tolerance = conf->modification_tolerance;
     find_forms(box, conf, gear, design, deviations);
     if (gm_flanks_build(&box->flank_storage[gear], &box->flank_memory[gear], task->teeth,
-                        deviations, pitch, &options, &error) == GM_IO_OK)
+                        deviations, pitch, &options, &error) == GM_IO_OK) {
         return 0;
+    }
     return refuse_flanks(conf, task, &error);
 }
 
@@ -312,13 +332,16 @@ static int load_flanks(gearbox *box, const config *conf, const flank_task *task,
     int status = gear_design_make(&design, conf, &box->pair, gear);
     const int has_design = design.of[GM_DRIVE].count + design.of[GM_COAST].count > 0;
 
-    if (status == 0 && has_deviations)
+    if (status == 0 && has_deviations) {
         status = read_deviations(conf, task, &deviations);
-    if (status == 0 && has_pitch)
+    }
+    if (status == 0 && has_pitch) {
         status = read_pitch(conf, task, &pitch);
-    if (status == 0 && (has_deviations || has_pitch || has_design))
+    }
+    if (status == 0 && (has_deviations || has_pitch || has_design)) {
         status = build_flanks(box, conf, task, gear, &design, has_deviations ? &deviations : NULL,
                               has_pitch ? &pitch : NULL);
+    }
     gm_deviations_free(&deviations);
     gm_pitch_free(&pitch);
     return status;
@@ -331,8 +354,9 @@ static int load_both_flanks(gearbox *box, const config *conf) {
                               box->pair.wheel.teeth};
     int status = load_flanks(box, conf, &pinion, 0);
 
-    if (status == 0)
+    if (status == 0) {
         status = load_flanks(box, conf, &wheel, 1);
+    }
     box->pinion_flanks = box->flank_memory[0] != NULL ? &box->flank_storage[0] : NULL;
     box->wheel_flanks = box->flank_memory[1] != NULL ? &box->flank_storage[1] : NULL;
     return status;
@@ -356,22 +380,27 @@ int gearbox_open(gearbox *box, const config *conf) {
 
     memset(box, 0, sizeof *box);
     status = derive_pair(box, conf);
-    if (status != 0)
+    if (status != 0) {
         return status;
+    }
     warn_of_doubts(conf, &box->pair);
     derive_simple_model(box, conf);
-    if (conf->model == MODEL_3D && conf->purpose == CONFIG_FOR_RUN)
+    if (conf->model == MODEL_3D && conf->purpose == CONFIG_FOR_RUN) {
         status = load_both_flanks(box, conf);
-    if (status == 0 && conf->purpose == CONFIG_FOR_RUN)
+    }
+    if (status == 0 && conf->purpose == CONFIG_FOR_RUN) {
         status = lookup_check(conf, box);
-    if (status != 0)
+    }
+    if (status != 0) {
         gearbox_close(box);
+    }
     return status;
 }
 
 void gearbox_close(gearbox *box) {
-    for (int gear = 0; gear < 2; ++gear)
+    for (int gear = 0; gear < 2; ++gear) {
         gm_flanks_memory_free(box->flank_memory[gear]);
+    }
     memset(box, 0, sizeof *box);
 }
 
@@ -381,8 +410,9 @@ void gearbox_close(gearbox *box) {
 
 /* Nothing is printed of a quantity whose inputs are missing (NaN), or that no number holds. */
 static void print_value(FILE *stream, const char *name, double value) {
-    if (isfinite(value))
+    if (isfinite(value)) {
         fprintf(stream, "%s = %.17g\n", name, value);
+    }
 }
 
 static double degrees(double angle) {
@@ -405,8 +435,9 @@ static double eigenfrequency(const gearbox *box, const config *conf) {
     const double r_bw = box->pair.wheel.base_radius;
     double mobility = r_bw * r_bw / conf->wheel_inertia;
 
-    if (conf->drive == DRIVE_TORQUE)
+    if (conf->drive == DRIVE_TORQUE) {
         mobility += r_bp * r_bp / conf->pinion_inertia;
+    }
     return sqrt(mean_stiffness(box, conf) * mobility) / (2 * pi);
 }
 
@@ -451,8 +482,9 @@ static void note_value(config *conf, const char *flank, const char *what, double
 
 /* What holds a design. */
 static void note_form(config *conf, const char *flank, const design_form *form) {
-    if (form->ramps == 0 && form->grid.face_nodes == 0)
+    if (form->ramps == 0 && form->grid.face_nodes == 0) {
         return;
+    }
     note_value(conf, flank, "ramps", form->ramps);
     if (form->grid.face_nodes > 0) {
         note_value(conf, flank, "face_nodes", form->grid.face_nodes);
@@ -464,10 +496,13 @@ static void note_form(config *conf, const char *flank, const design_form *form) 
 void gearbox_note(const gearbox *box, config *conf) {
     const double frequency = eigenfrequency(box, conf);
 
-    for (int gear = 0; gear < 2; ++gear)
-        for (int side = GM_DRIVE; side <= GM_COAST; ++side)
+    for (int gear = 0; gear < 2; ++gear) {
+        for (int side = GM_DRIVE; side <= GM_COAST; ++side) {
             note_form(conf, flank_names[gear][side], &box->design_form[gear][side]);
+        }
+    }
 
-    if (isfinite(frequency))
+    if (isfinite(frequency)) {
         config_note(conf, "eigenfrequency_Hz", frequency);
+    }
 }

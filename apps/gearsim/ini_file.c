@@ -50,10 +50,12 @@ static int is_blank(char c) {
 
 /* The one fault that text of another kind (binary, UTF-16) shows first. */
 static const char *forbidden(int c) {
-    if (c == 0)
+    if (c == 0) {
         return "a NUL byte: the file is no UTF-8 text, save it as such";
-    if (c < ' ' && c != '\t')
+    }
+    if (c < ' ' && c != '\t') {
         return "a control character: the file is no plain text, save it as UTF-8 text";
+    }
     return NULL;
 }
 
@@ -62,14 +64,16 @@ static int read_line(line_source *source) {
     size_t length = 0;
     int c = getc(source->file);
 
-    if (c == EOF)
+    if (c == EOF) {
         return 0;
+    }
     ++source->line;
     for (; c != EOF && c != '\n'; c = getc(source->file)) {
         if (c == '\r') {
             c = getc(source->file);
-            if (c == '\n')
+            if (c == '\n') {
                 break;
+            }
             ungetc(c, source->file);
             stop(source, "a carriage return within a line: end lines with LF or CRLF");
             return 0;
@@ -93,17 +97,21 @@ static char *significant_part(line_source *source) {
     char *start = source->text;
     char *end;
 
-    if (source->line == 1 && strncmp(start, "\xEF\xBB\xBF", 3) == 0)
+    if (source->line == 1 && strncmp(start, "\xEF\xBB\xBF", 3) == 0) {
         start += 3;
-    while (is_blank(*start))
+    }
+    while (is_blank(*start)) {
         ++start;
+    }
     for (end = start; *end != '\0'; ++end) {
         const int at_word_start = end == start || is_blank(end[-1]);
-        if (at_word_start && (*end == ';' || *end == '#'))
+        if (at_word_start && (*end == ';' || *end == '#')) {
             break;
+        }
     }
-    while (end > start && is_blank(end[-1]))
+    while (end > start && is_blank(end[-1])) {
         --end;
+    }
     *end = '\0';
     return start;
 }
@@ -126,8 +134,9 @@ static char *next_line(char *line, int size, void *stream) {
     line_source *source = stream;
     char *text;
 
-    if (source->stopped || !read_line(source))
+    if (source->stopped || !read_line(source)) {
         return NULL;
+    }
     if (source->line > LINE_LIMIT) {
         stop(source, "too many lines: this is no INI file of parameters");
         return NULL;
@@ -137,8 +146,9 @@ static char *next_line(char *line, int size, void *stream) {
         stop(source, "the line is too long: shorten it, or give the value with --set");
         return NULL;
     }
-    if (*text == '[')
+    if (*text == '[') {
         report_section(source, text);
+    }
     memcpy(line, text, strlen(text) + 1);
     return line;
 }
@@ -174,9 +184,10 @@ void ini_file_read(const char *path, const ini_events *events) {
         stop_unreadable(&source);
         return;
     }
-    if (fstat(fileno(source.file), &status) == 0 && S_ISDIR(status.st_mode))
+    if (fstat(fileno(source.file), &status) == 0 && S_ISDIR(status.st_mode)) {
         stop(&source, "is a folder, expected an INI file");
-    else
+    } else {
         read_stream(&source);
+    }
     fclose(source.file);
 }

@@ -32,14 +32,14 @@ int integrator_keep_status(integrator *solver, int status) {
 
 /* The library's status is that of SUNDIALS: > 0 try a smaller step, < 0 give up. */
 int integrator_derivative(sunrealtype time, N_Vector state, N_Vector result, void *data) {
-    integrator *const solver = data;
+    integrator *solver = data;
 
     return integrator_keep_status(
         solver, model_derivative(solver->model, time, NV_DATA_S(state), NV_DATA_S(result)));
 }
 
 int integrator_error_weights(N_Vector state, N_Vector weights, void *data) {
-    const integrator *const solver = data;
+    const integrator *solver = data;
 
     model_error_weights(solver->model, solver->options.relative_tolerance,
                         solver->options.absolute_tolerance, NV_DATA_S(state), NV_DATA_S(weights));
@@ -53,7 +53,7 @@ double integrator_first_target(const integrator *solver) {
 #if SUNDIALS_VERSION_MAJOR >= 7
 static void keep_message(int line, const char *function, const char *file, const char *message,
                          SUNErrCode code, void *data, SUNContext context) {
-    integrator *const solver = data;
+    integrator *solver = data;
     (void)line;
     (void)function;
     (void)file;
@@ -70,7 +70,7 @@ static int redirect_messages(integrator *solver) {
 #else
 void integrator_keep_message(int code, const char *module, const char *function, char *message,
                              void *data) {
-    integrator *const solver = data;
+    integrator *solver = data;
     (void)code;
     (void)module;
     (void)function;
@@ -116,7 +116,7 @@ static int set_up(integrator *solver, const double start[]) {
 
 integrator *integrator_create(const gear_model *model, const integrator_options *options,
                               const double start[]) {
-    integrator *const solver = calloc(1, sizeof *solver);
+    integrator *solver = calloc(1, sizeof *solver);
     if (solver == NULL) {
         return NULL;
     }
@@ -180,7 +180,7 @@ static int step(integrator *solver) {
     const double before = solver->time;
     const int flag = solver->package->step(solver, longest_step(solver));
     if (flag < 0) {
-        char *const name = solver->package->flag_name(flag);
+        char *name = solver->package->flag_name(flag);
         char what[sizeof solver->message + 64];
 
         snprintf(what, sizeof what, "the solver stopped (%s%s%s)", name,

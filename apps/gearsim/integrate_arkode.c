@@ -51,14 +51,14 @@ static int set_up(integrator *solver, arkode_memory *memory) {
 }
 
 static int create(integrator *solver) {
-    arkode_memory *const memory = calloc(1, sizeof *memory);
+    arkode_memory *memory = calloc(1, sizeof *memory);
 
     solver->memory = memory;
     return memory != NULL ? set_up(solver, memory) : -1;
 }
 
 static void destroy(integrator *solver) {
-    arkode_memory *const memory = solver->memory;
+    arkode_memory *memory = solver->memory;
     if (memory == NULL) {
         return;
     }
@@ -86,7 +86,7 @@ static int note_derivative(const arkode_memory *memory, step_end *end) {
 }
 
 static int step(integrator *solver, double longest) {
-    arkode_memory *const memory = solver->memory;
+    arkode_memory *memory = solver->memory;
 
     note_state(solver, &memory->from);
     ERKStepSetMaxStep(memory->arkode, longest);
@@ -124,7 +124,7 @@ static void motion_of(const step_end *end, int coordinate, double h, double w0, 
 }
 
 static int interpolate(integrator *solver, double time, double state[]) {
-    const arkode_memory *const memory = solver->memory;
+    const arkode_memory *memory = solver->memory;
     const double w0 = solver->model->natural_frequency;
     const double h = memory->to.time - memory->from.time;
 
@@ -141,7 +141,7 @@ static int interpolate(integrator *solver, double time, double state[]) {
 }
 
 static integrator_statistics counts(const integrator *solver) {
-    const arkode_memory *const memory = solver->memory;
+    const arkode_memory *memory = solver->memory;
     long int steps = 0, derivatives = 0, rejected = 0;
 
     ERKStepGetNumSteps(memory->arkode, &steps);

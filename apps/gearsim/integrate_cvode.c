@@ -22,7 +22,7 @@ typedef struct cvode_memory {
 
 static int jacobian(sunrealtype time, N_Vector state, N_Vector state_derivative, SUNMatrix result,
                     void *data, N_Vector scratch1, N_Vector scratch2, N_Vector scratch3) {
-    integrator *const solver = data;
+    integrator *solver = data;
     const int states = solver->model->states;
     double columns[STATES_MAX][STATES_MAX];
     (void)state_derivative;
@@ -75,7 +75,7 @@ static int set_up(integrator *solver, cvode_memory *memory) {
 }
 
 static int create(integrator *solver) {
-    cvode_memory *const memory = calloc(1, sizeof *memory);
+    cvode_memory *memory = calloc(1, sizeof *memory);
 
     solver->memory = memory;
     if (memory == NULL || create_vectors(solver, memory) != 0) {
@@ -85,7 +85,7 @@ static int create(integrator *solver) {
 }
 
 static void destroy(integrator *solver) {
-    cvode_memory *const memory = solver->memory;
+    cvode_memory *memory = solver->memory;
     if (memory == NULL) {
         return;
     }
@@ -104,7 +104,7 @@ static void destroy(integrator *solver) {
 }
 
 static int step(integrator *solver, double longest) {
-    cvode_memory *const memory = solver->memory;
+    cvode_memory *memory = solver->memory;
 
     CVodeSetMaxStep(memory->cvode, longest);
     return CVode(memory->cvode, integrator_first_target(solver), solver->state, &solver->time,
@@ -112,7 +112,7 @@ static int step(integrator *solver, double longest) {
 }
 
 static int interpolate(integrator *solver, double time, double state[]) {
-    cvode_memory *const memory = solver->memory;
+    cvode_memory *memory = solver->memory;
 
     if (CVodeGetDky(memory->cvode, time, 0, memory->interpolated) != CV_SUCCESS) {
         return -1;
@@ -122,7 +122,7 @@ static int interpolate(integrator *solver, double time, double state[]) {
 }
 
 static integrator_statistics counts(const integrator *solver) {
-    const cvode_memory *const memory = solver->memory;
+    const cvode_memory *memory = solver->memory;
     long int steps = 0, derivatives = 0, jacobians = 0, rejected = 0;
 
     CVodeGetNumSteps(memory->cvode, &steps);

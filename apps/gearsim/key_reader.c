@@ -18,40 +18,45 @@ enum {
  * ------------------------------------------------------------------------------------------- */
 
 void key_print_place(const char *path, enum key_origin origin, int line) {
-    if (origin == ORIGIN_SET)
+    if (origin == ORIGIN_SET) {
         fputs("--set ", stderr);
-    else if (origin == ORIGIN_OUTPUT_OPTION)
+    } else if (origin == ORIGIN_OUTPUT_OPTION) {
         fputs("--output: ", stderr);
-    else if (line > 0)
+    } else if (line > 0) {
         fprintf(stderr, "%s:%d: ", path, line);
-    else
+    } else {
         fprintf(stderr, "%s: ", path);
+    }
 }
 
 void key_reader_fault(key_reader *reader, const char *name, const char *format, ...) {
     va_list arguments;
 
-    if (++reader->faults > FAULT_LIMIT)
+    if (++reader->faults > FAULT_LIMIT) {
         return;
+    }
     key_print_place(reader->path, reader->from, reader->line);
-    if (*name != '\0')
+    if (*name != '\0') {
         fprintf(stderr, "%s: ", name);
+    }
     va_start(arguments, format);
     vfprintf(stderr, format, arguments);
     va_end(arguments);
     fputc('\n', stderr);
-    if (reader->faults == FAULT_LIMIT)
+    if (reader->faults == FAULT_LIMIT) {
         fprintf(stderr, "%s: further faults are not told\n", reader->path);
+    }
 }
 
 static void unknown_section(key_reader *reader, const char *section) {
     const char *near = key_section_near(reader->table, section);
 
-    if (near != NULL)
+    if (near != NULL) {
         key_reader_fault(reader, "", "[%.80s]: unknown section, did you mean [%s]?", section, near);
-    else
+    } else {
         key_reader_fault(reader, "", "[%.80s]: unknown section, `%s --help` lists all", section,
                          reader->table->program);
+    }
 }
 
 static void unknown_key(key_reader *reader, const char *section, const char *name) {
@@ -60,14 +65,15 @@ static void unknown_key(key_reader *reader, const char *section, const char *nam
     char full_name[NAME_SIZE];
 
     snprintf(full_name, sizeof full_name, "%.40s.%.80s", section, name);
-    if (near == NULL)
+    if (near == NULL) {
         key_reader_fault(reader, full_name, "unknown key, `%s --help` lists all",
                          reader->table->program);
-    else if (strcmp(near->section, section) == 0)
+    } else if (strcmp(near->section, section) == 0) {
         key_reader_fault(reader, full_name, "unknown key, did you mean %s?", near->name);
-    else
+    } else {
         key_reader_fault(reader, full_name, "unknown key of [%s], did you mean %s of [%s]?",
                          section, near->name, near->section);
+    }
 }
 
 /* ---------------------------------------------------------------------------------------------
@@ -89,8 +95,9 @@ static int assign(const key_reader *reader, const key_spec *key, const char *val
     int result;
     char *path;
 
-    if (key->kind != KEY_PATH || reader->from != ORIGIN_FILE)
+    if (key->kind != KEY_PATH || reader->from != ORIGIN_FILE) {
         return key_assign(key, reader->filled, value, text);
+    }
     path = path_beside(reader->path, value);
     result = key_assign(key, reader->filled, path, text);
     free(path);
@@ -106,27 +113,30 @@ static void set_value(key_reader *reader, int index, const char *value) {
     entry->text = copy_text(value);
     entry->origin = reader->from;
     entry->line = reader->line;
-    if (*value == '\0')
+    if (*value == '\0') {
         key_reader_fault(reader, key->full_name,
                          "no value, expected one behind the `=`, or leave the key out");
-    else if (assign(reader, key, value, text))
+    } else if (assign(reader, key, value, text)) {
         key_reader_fault(reader, key->full_name, "%s", text);
+    }
 }
 
 void key_reader_set(key_reader *reader, const char *section, const char *name, const char *value) {
     const int index = key_find(reader->table, section, name);
 
-    if (index >= 0)
+    if (index >= 0) {
         set_value(reader, index, value);
-    else if (key_section_find(reader->table, section) >= 0)
+    } else if (key_section_find(reader->table, section) >= 0) {
         unknown_key(reader, section, name);
-    else
+    } else {
         unknown_section(reader, section);
+    }
 }
 
 void key_entries_free(key_entry *entries, int count) {
-    for (int i = 0; entries != NULL && i < count; ++i)
+    for (int i = 0; entries != NULL && i < count; ++i) {
         free(entries[i].text);
+    }
     free(entries);
 }
 
@@ -145,12 +155,13 @@ static void meet_section(void *user, int line, const char *section) {
         unknown_section(reader, section);
         return;
     }
-    if (reader->section_lines[first] > 0)
+    if (reader->section_lines[first] > 0) {
         key_reader_fault(reader, "",
                          "[%s]: repeated section, first in line %d: put all its keys there",
                          section, reader->section_lines[first]);
-    else
+    } else {
         reader->section_lines[first] = line;
+    }
     reader->section = reader->table->keys[first].section;
 }
 
@@ -161,20 +172,22 @@ static void meet_value(void *user, int line, const char *name, const char *value
     reader->line = line;
     if (reader->section == NULL) {
         /* The keys of an unknown section are passed over: the section is the fault. */
-        if (!reader->in_section)
+        if (!reader->in_section) {
             key_reader_fault(
                 reader, "", "%.80s: a key without a section, expected `[section]` before it", name);
+        }
         return;
     }
     index = key_find(reader->table, reader->section, name);
-    if (index < 0)
+    if (index < 0) {
         unknown_key(reader, reader->section, name);
-    else if (reader->entries[index].text != NULL)
+    } else if (reader->entries[index].text != NULL) {
         key_reader_fault(reader, reader->table->keys[index].full_name,
                          "repeated key, first in line %d: give it once",
                          reader->entries[index].line);
-    else
+    } else {
         set_value(reader, index, value);
+    }
 }
 
 static void meet_fault(void *user, int line, const char *text) {

@@ -15,16 +15,21 @@
  * ------------------------------------------------------------------------------------------- */
 
 int key_find(const key_table *table, const char *section, const char *name) {
-    for (int i = 0; i < table->count; ++i)
-        if (strcmp(table->keys[i].section, section) == 0 && strcmp(table->keys[i].name, name) == 0)
+    for (int i = 0; i < table->count; ++i) {
+        if (strcmp(table->keys[i].section, section) == 0 &&
+            strcmp(table->keys[i].name, name) == 0) {
             return i;
+        }
+    }
     return -1;
 }
 
 int key_section_find(const key_table *table, const char *section) {
-    for (int i = 0; i < table->count; ++i)
-        if (strcmp(table->keys[i].section, section) == 0)
+    for (int i = 0; i < table->count; ++i) {
+        if (strcmp(table->keys[i].section, section) == 0) {
             return i;
+        }
+    }
     return -1;
 }
 
@@ -43,8 +48,9 @@ static size_t edit_distance(const char *a, const char *b) {
     const size_t width = strlen(b);
     size_t row[NAME_SIZE];
 
-    for (size_t j = 0; j <= width; ++j)
+    for (size_t j = 0; j <= width; ++j) {
         row[j] = j;
+    }
     for (size_t i = 0; a[i] != '\0'; ++i) {
         size_t diagonal = row[0];
         row[0] = i + 1;
@@ -62,11 +68,13 @@ static size_t unlikeness(const char *given, const char *known) {
     const size_t length = strlen(given);
     size_t distance;
 
-    if (length == 0 || length >= NAME_SIZE)
+    if (length == 0 || length >= NAME_SIZE) {
         return UNLIKE;
+    }
     distance = edit_distance(given, known);
-    if (distance <= 1 + length / 4)
+    if (distance <= 1 + length / 4) {
         return distance;
+    }
     return length >= 4 && strstr(known, given) != NULL ? distance : UNLIKE;
 }
 
@@ -132,8 +140,9 @@ char *copy_text(const char *text) {
 }
 
 static const char *skip_digits(const char *text) {
-    while (*text >= '0' && *text <= '9')
+    while (*text >= '0' && *text <= '9') {
         ++text;
+    }
     return text;
 }
 
@@ -148,14 +157,16 @@ static int is_plain_number(const char *text) {
         end = skip_digits(fraction);
         digits += end - fraction;
     }
-    if (digits == 0)
+    if (digits == 0) {
         return 0;
+    }
     if (*end == 'e' || *end == 'E') {
         const char *exponent = end + 1;
         exponent += *exponent == '+' || *exponent == '-';
         end = skip_digits(exponent);
-        if (end == exponent)
+        if (end == exponent) {
             return 0;
+        }
     }
     return *end == '\0';
 }
@@ -169,11 +180,13 @@ static int not_a_number(const char *text, char *fault) {
 }
 
 static int read_number(const char *text, double *value, char *fault) {
-    if (!is_plain_number(text))
+    if (!is_plain_number(text)) {
         return not_a_number(text, fault);
+    }
     *value = strtod(text, NULL);
-    if (isfinite(*value))
+    if (isfinite(*value)) {
         return 0;
+    }
     snprintf(fault, KEY_FAULT_SIZE, "too large for a number (got %.80s), must be below 1.8e308",
              text);
     return 1;
@@ -185,12 +198,13 @@ static void describe_range(const key_range *range, char *text, size_t size) {
         {"from %.9g to %.9g", "from %.9g to below %.9g"},
         {"above %.9g, up to %.9g", "between %.9g and %.9g, both excluded"}};
 
-    if (isfinite(range->low) && isfinite(range->high))
+    if (isfinite(range->low) && isfinite(range->high)) {
         snprintf(text, size, bounded[range->open_low][range->open_high], range->low, range->high);
-    else if (isfinite(range->low))
+    } else if (isfinite(range->low)) {
         snprintf(text, size, "%s %.9g", range->open_low ? ">" : ">=", range->low);
-    else
+    } else {
         snprintf(text, size, "finite");
+    }
 }
 
 static int check_range(const key_range *range, double value, const char *text, char *fault) {
@@ -198,8 +212,9 @@ static int check_range(const key_range *range, double value, const char *text, c
     const int high = range->open_high ? value >= range->high : value > range->high;
     char requirement[80];
 
-    if (!low && !high)
+    if (!low && !high) {
         return 0;
+    }
     describe_range(range, requirement, sizeof requirement);
     snprintf(fault, KEY_FAULT_SIZE, "out of range (got %.80s), must be %s", text, requirement);
     return 1;
@@ -208,8 +223,9 @@ static int check_range(const key_range *range, double value, const char *text, c
 static int assign_number(const key_spec *key, double *target, const char *text, char *fault) {
     double value;
 
-    if (read_number(text, &value, fault) || check_range(&key->range, value, text, fault))
+    if (read_number(text, &value, fault) || check_range(&key->range, value, text, fault)) {
         return 1;
+    }
     *target = value / units[key->unit].divisor * units[key->unit].factor;
     return 0;
 }
@@ -217,10 +233,12 @@ static int assign_number(const key_spec *key, double *target, const char *text, 
 static int assign_count(const key_spec *key, int *target, const char *text, char *fault) {
     double value;
 
-    if (read_number(text, &value, fault))
+    if (read_number(text, &value, fault)) {
         return 1;
-    if (check_range(&key->range, value, text, fault))
+    }
+    if (check_range(&key->range, value, text, fault)) {
         return 1;
+    }
     if (value != floor(value)) {
         snprintf(fault, KEY_FAULT_SIZE, "not a whole number (got %.80s), must be one", text);
         return 1;
@@ -254,10 +272,12 @@ static int position_in(const char *names, const char *name) {
 
     for (int position = 0;; ++position) {
         const size_t span = strcspn(names, " ");
-        if (span == length && strncmp(names, name, span) == 0)
+        if (span == length && strncmp(names, name, span) == 0) {
             return position;
-        if (names[span] == '\0')
+        }
+        if (names[span] == '\0') {
             return -1;
+        }
         names += span + 1;
     }
 }
@@ -324,12 +344,13 @@ void key_assign_defaults(const key_table *table, void *filled) {
     char fault[KEY_FAULT_SIZE];
 
     for (int i = 0; i < table->count; ++i) {
-        if (table->keys[i].standard != NULL)
+        if (table->keys[i].standard != NULL) {
             (void)key_assign(&table->keys[i], filled, table->keys[i].standard, fault);
-        else if (table->keys[i].kind == KEY_NUMBER)
+        } else if (table->keys[i].kind == KEY_NUMBER) {
             *(double *)(void *)((char *)filled + table->keys[i].target) = (double)NAN;
-        else if (table->keys[i].kind == KEY_CHOICE)
+        } else if (table->keys[i].kind == KEY_CHOICE) {
             *(int *)(void *)((char *)filled + table->keys[i].target) = -1;
+        }
     }
 }
 
@@ -340,24 +361,29 @@ void key_assign_defaults(const key_table *table, void *filled) {
 /* "= a | b", "> 0", "from 3 to 17": what may stand behind the key. */
 static void describe_values(const key_spec *key, char *text, size_t size) {
     *text = '\0';
-    if (key->kind == KEY_CHOICE)
+    if (key->kind == KEY_CHOICE) {
         print_choices(key->choices, text, size);
-    else if (key->kind == KEY_SEED)
+    } else if (key->kind == KEY_SEED) {
         snprintf(text, size, "whole number");
-    else if (key->kind == KEY_COUNT || (key->kind == KEY_NUMBER && isfinite(key->range.low)))
+    } else if (key->kind == KEY_COUNT || (key->kind == KEY_NUMBER && isfinite(key->range.low))) {
         describe_range(&key->range, text, size);
+    }
 }
 
 /* When the file must have the key, or NULL. */
 static const char *describe_need(const key_spec *key) {
-    if (key->required & FOR_SPEED)
+    if (key->required & FOR_SPEED) {
         return "required for kind = speed";
-    if (key->required & FOR_TORQUE)
+    }
+    if (key->required & FOR_TORQUE) {
         return "required for kind = torque";
-    if (key->required & FOR_DYNAMIC)
+    }
+    if (key->required & FOR_DYNAMIC) {
         return "required for a dynamic run";
-    if (key->required & FOR_RUN)
+    }
+    if (key->required & FOR_RUN) {
         return "required for a run";
+    }
     return key->required ? "required" : NULL;
 }
 
@@ -368,23 +394,29 @@ static void print_key(const key_spec *key, FILE *stream) {
 
     describe_values(key, values, sizeof values);
     fprintf(stream, "  %-25s ", key->family != NULL ? key->family : key->name);
-    if (standard != NULL)
+    if (standard != NULL) {
         fprintf(stream, "[%s] ", standard);
+    }
     fputs(key->help, stream);
-    if (*values != '\0')
+    if (*values != '\0') {
         fprintf(stream, "; %s", values);
-    if (need != NULL)
+    }
+    if (need != NULL) {
         fprintf(stream, "; %s", need);
+    }
     fputc('\n', stream);
 }
 
 void key_table_print(const key_table *table, FILE *stream) {
     for (int i = 0; i < table->count; ++i) {
-        if (i == 0 || strcmp(table->keys[i].section, table->keys[i - 1].section) != 0)
+        if (i == 0 || strcmp(table->keys[i].section, table->keys[i - 1].section) != 0) {
             fprintf(stream, "[%s]\n", table->keys[i].section);
-        if (table->keys[i].family != NULL && table->keys[i - 1].family == NULL)
+        }
+        if (table->keys[i].family != NULL && table->keys[i - 1].family == NULL) {
             fputs(table->legend, stream);
-        if (table->keys[i].family_member == 0)
+        }
+        if (table->keys[i].family_member == 0) {
             print_key(&table->keys[i], stream);
+        }
     }
 }

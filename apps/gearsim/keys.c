@@ -175,13 +175,14 @@ static unsigned situation_of(const config *conf) {
 int key_is_used(const key_spec *key, const config *conf, const char **reason) {
     const unsigned lacking = key->used & ~situation_of(conf);
 
-    if (lacking & (FOR_DYNAMIC | FOR_STATIC))
+    if (lacking & (FOR_DYNAMIC | FOR_STATIC)) {
         *reason = conf->analysis == ANALYSIS_DYNAMIC ? "analysis.type = dynamic"
                                                      : "analysis.type = static";
-    else if (lacking & (FOR_SPEED | FOR_TORQUE))
+    } else if (lacking & (FOR_SPEED | FOR_TORQUE)) {
         *reason = conf->drive == DRIVE_SPEED ? "drive.kind = speed" : "drive.kind = torque";
-    else if (lacking)
+    } else if (lacking) {
         *reason = conf->model == MODEL_3D ? "mesh.model = 3d" : "mesh.model = simple";
+    }
     return lacking == 0;
 }
 

@@ -22,8 +22,9 @@ static int is_wanted(const config *conf) {
 int lookup_check(const config *conf, const gearbox *gears) {
     const double deepest = 0.25 * gears->pair.transverse_base_pitch;
 
-    if (!is_wanted(conf))
+    if (!is_wanted(conf)) {
         return 0;
+    }
     if (gears->pair.twist == 0.0) {
         config_complain(
             conf, "solver.lookup",
@@ -44,16 +45,18 @@ int lookup_create(gm_cache **cache, const config *conf, const gearbox *gears) {
     const gm_cache_params params = params_of(conf);
 
     *cache = NULL;
-    if (!is_wanted(conf))
+    if (!is_wanted(conf)) {
         return 0;
+    }
 
     /* One block: the cache, and behind it its tables, both aligned for double. */
     const size_t size =
         gm_cache_size(&params, &gears->pair, gears->pinion_flanks, gears->wheel_flanks);
-    gm_cache *const created = size > 0 ? malloc(sizeof *created + size) : NULL;
+    gm_cache *created = size > 0 ? malloc(sizeof *created + size) : NULL;
 
-    if (created == NULL)
+    if (created == NULL) {
         return EXIT_RUN_FAILED;
+    }
     if (gm_cache_init(created, &params, &gears->pair, gears->pinion_flanks, gears->wheel_flanks,
                       created + 1, size) != GM_OK) {
         free(created);

@@ -44,8 +44,9 @@ static int load_and_perform(const arguments *args) {
     gearbox box;
     int status = config_load(&conf, &args->request);
 
-    if (status != 0)
+    if (status != 0) {
         return status;
+    }
     status = gearbox_open(&box, &conf);
     if (status == 0) {
         gearbox_note(&box, &conf);
@@ -71,8 +72,9 @@ static int do_task(const arguments *args) {
 
 /* A full disk behind stdout shows only when the text is written out. */
 static int finish_stdout(int status) {
-    if (fflush(stdout) == 0 && !ferror(stdout))
+    if (fflush(stdout) == 0 && !ferror(stdout)) {
         return status;
+    }
     fprintf(stderr, "gearsim: cannot write to stdout: %s\n", strerror(errno));
     return status == EXIT_DONE ? EXIT_RUN_FAILED : status;
 }

@@ -41,7 +41,7 @@ static double square(double value) {
 }
 
 static void init_mesh(gear_model *model, const config *conf) {
-    const gearbox *const gears = model->gears;
+    const gearbox *gears = model->gears;
 
     if (model->mesh == MODEL_SIMPLE) {
         model->stiffness = gears->simple_stiffness;
@@ -136,7 +136,7 @@ static double simple_equilibrium(const gear_model *model, double force) {
 }
 
 static int equilibrium(const gear_model *model, double force, double *offset) {
-    const gearbox *const gears = model->gears;
+    const gearbox *gears = model->gears;
 
     /* Nothing to carry: the middle of the backlash. */
     if (force == 0.0 && gears->pair.backlash >= 0.0) {
@@ -229,7 +229,7 @@ gear_motion model_motion(const gear_model *model, double time, const double stat
 /* The one of the library's exact functions that does no more than is asked for. */
 static int exact_penetration(const gear_model *model, const gear_motion *motion, int derivatives,
                              gm_penetration *penetration) {
-    const gearbox *const gears = model->gears;
+    const gearbox *gears = model->gears;
 
     if (model->mesh == MODEL_SIMPLE) {
         return gm_penetration_simple_at(&gears->pair, motion->offset, motion->offset_rate,
@@ -324,7 +324,7 @@ typedef struct force_gradient {
  * motion, and Newton's iteration corrects it.
  */
 static force_gradient gradient(const gear_model *model, const gm_penetration *penetration) {
-    const gm_pair *const pair = &model->gears->pair;
+    const gm_pair *pair = &model->gears->pair;
     const double k = model->stiffness;
     const double d = model->damping;
 
@@ -387,7 +387,7 @@ int model_jacobian(const gear_model *model, double time, const double state[],
 
 /* Time for a share of a tooth, from the speed at hand and the acceleration without contact. */
 static double tooth_step(const gear_model *model, double time, const double state[]) {
-    const gm_gear *const pinion = &model->gears->pair.pinion;
+    const gm_gear *pinion = &model->gears->pair.pinion;
     const double angle = pinion->pitch_angle / steps_per_tooth;
     const double speed = fabs(pinion_speed(model, time, state));
     const double acceleration = fabs(model->drive_to_offset) / pinion->base_radius;

@@ -67,10 +67,13 @@ void modification_keys_clear(config *conf) {
     const double missing = (double)NAN;
     const modification_values none = {{missing, missing, missing, missing, missing}, -1};
 
-    for (int gear = 0; gear < 2; ++gear)
-        for (int place = 0; place < PLACES; ++place)
-            for (int kind = 0; kind < GM_MODIFICATION_KINDS; ++kind)
+    for (int gear = 0; gear < 2; ++gear) {
+        for (int place = 0; place < PLACES; ++place) {
+            for (int kind = 0; kind < GM_MODIFICATION_KINDS; ++kind) {
                 conf->modifications[gear][place][kind] = none;
+            }
+        }
+    }
 }
 
 static int is_range(int field) {
@@ -80,9 +83,11 @@ static int is_range(int field) {
 
 /* The range key that is given, or -1. */
 static int given_range(const key_place *at) {
-    for (int field = 0; field < MODIFICATION_FIELDS; ++field)
-        if (is_range(field) && is_given(at, field))
+    for (int field = 0; field < MODIFICATION_FIELDS; ++field) {
+        if (is_range(field) && is_given(at, field)) {
             return field;
+        }
+    }
     return -1;
 }
 
@@ -113,8 +118,9 @@ static int check_one_range(const key_place *at) {
     int faults = 0;
 
     for (int field = first + 1; first >= 0 && field < MODIFICATION_FIELDS; ++field) {
-        if (!is_range(field) || !is_given(at, field))
+        if (!is_range(field) || !is_given(at, field)) {
             continue;
+        }
         config_complain(at->conf, key_name(name, at, field),
                         "a second range beside %s, give one of the two",
                         key_name(other, at, first));
@@ -140,12 +146,15 @@ static int check_flank(const config *conf, int gear, int side, int kind) {
     const key_place width = source_of(conf, gear, side, kind, MODIFICATION_WIDTH);
     int faults = 0;
 
-    if (amount_of(conf, gear, side, kind) == 0)
+    if (amount_of(conf, gear, side, kind) == 0) {
         return 0;
-    if (kinds[kind].has_range && given_range(&range) < 0)
+    }
+    if (kinds[kind].has_range && given_range(&range) < 0) {
         faults += complain_of_missing(&amount, MODIFICATION_LENGTH);
-    if (kinds[kind].width != NULL && !is_given(&width, MODIFICATION_WIDTH))
+    }
+    if (kinds[kind].width != NULL && !is_given(&width, MODIFICATION_WIDTH)) {
         faults += complain_of_missing(&amount, MODIFICATION_WIDTH);
+    }
     return faults;
 }
 
@@ -157,8 +166,9 @@ static int check_kind(const config *conf, int gear, int kind) {
         const key_place at = {conf, gear, place, kind};
         faults += check_one_range(&at);
     }
-    if (faults > 0)
+    if (faults > 0) {
         return faults;
+    }
     faults = check_flank(conf, gear, GM_DRIVE, kind);
     return faults > 0 ? faults : check_flank(conf, gear, GM_COAST, kind);
 }
@@ -166,9 +176,11 @@ static int check_kind(const config *conf, int gear, int kind) {
 int modification_keys_check(const config *conf) {
     int faults = 0;
 
-    for (int gear = 0; gear < 2; ++gear)
-        for (int kind = 0; kind < GM_MODIFICATION_KINDS; ++kind)
+    for (int gear = 0; gear < 2; ++gear) {
+        for (int kind = 0; kind < GM_MODIFICATION_KINDS; ++kind) {
             faults += check_kind(conf, gear, kind);
+        }
+    }
     return faults;
 }
 
@@ -193,8 +205,9 @@ static void warn_of_key(const key_place *at, int field) {
         active |= is_active && is_of_place;
         used |= is_active && serves(at, side, field);
     }
-    if (used)
+    if (used) {
         return;
+    }
     config_warn(at->conf, key_name(name, at, field), "not used %s",
                 active ? "as the keys of both flanks replace it" : "without an amount");
 }
@@ -204,9 +217,11 @@ void modification_keys_warn(const config *conf) {
         for (int place = 0; place < PLACES; ++place) {
             for (int kind = 0; kind < GM_MODIFICATION_KINDS; ++kind) {
                 const key_place at = {conf, gear, place, kind};
-                for (int field = 0; field < MODIFICATION_FIELDS; ++field)
-                    if (is_given(&at, field))
+                for (int field = 0; field < MODIFICATION_FIELDS; ++field) {
+                    if (is_given(&at, field)) {
                         warn_of_key(&at, field);
+                    }
+                }
             }
         }
     }
@@ -228,8 +243,9 @@ static gm_modification modification_of(const config *conf, int gear, int side, i
 
     modification.amount = amount_of(conf, gear, side, kind);
     modification.shape = kinds[kind].first_shape;
-    if (is_given(&shape, MODIFICATION_SHAPE))
+    if (is_given(&shape, MODIFICATION_SHAPE)) {
         modification.shape += values_of(&shape)->shape;
+    }
     modification.face_range = values_of(&width)->value[MODIFICATION_WIDTH];
     if (field >= 0) {
         modification.profile_range_by = range_by[field];
@@ -240,8 +256,9 @@ static gm_modification modification_of(const config *conf, int gear, int side, i
 
 /* The key that a field of gm_modification comes from. */
 static int field_of(const key_place *range, const char *field) {
-    if (strcmp(field, "face_range") == 0)
+    if (strcmp(field, "face_range") == 0) {
         return MODIFICATION_WIDTH;
+    }
     return strcmp(field, "profile_range") == 0 ? given_range(range) : MODIFICATION_AMOUNT;
 }
 
@@ -250,18 +267,19 @@ static void describe_limit(char *text, size_t size, int field, const char *requi
                            const gm_pair *pair, const gm_gear *gear) {
     const double roll_length = gear->tip_roll_length - gear->start_roll_length;
 
-    if (field == MODIFICATION_WIDTH)
+    if (field == MODIFICATION_WIDTH) {
         snprintf(text, size, "at most the face width, %.9g mm", 1e3 * pair->face_width);
-    else if (field == MODIFICATION_LENGTH)
+    } else if (field == MODIFICATION_LENGTH) {
         snprintf(text, size, "at most the roll length of the active profile, %.9g mm",
                  1e3 * roll_length);
-    else if (field == MODIFICATION_RADIUS)
+    } else if (field == MODIFICATION_RADIUS) {
         snprintf(text, size, "within the active profile, from %.9g to %.9g mm, and leave a range",
                  2e3 * gear->start_radius, 2e3 * gear->tip_radius);
-    else if (field == MODIFICATION_SHARE)
+    } else if (field == MODIFICATION_SHARE) {
         snprintf(text, size, "at most 1");
-    else
+    } else {
         snprintf(text, size, "%s", requirement);
+    }
 }
 
 static int refuse(const config *conf, const gm_pair *pair, int gear, int side,
@@ -295,11 +313,14 @@ static int make_side(gear_design *design, const config *conf, const gm_pair *pai
     of->list = design->list[side];
     of->gear = gear == 0 ? &pair->pinion : &pair->wheel;
     of->face_width = pair->face_width;
-    for (int kind = 0; kind < GM_MODIFICATION_KINDS; ++kind)
-        if (amount_of(conf, gear, side, kind) != 0)
+    for (int kind = 0; kind < GM_MODIFICATION_KINDS; ++kind) {
+        if (amount_of(conf, gear, side, kind) != 0) {
             design->list[side][of->count++] = modification_of(conf, gear, side, kind);
-    if (gm_modifications_check(of, NULL, NULL, NULL) == GM_OK)
+        }
+    }
+    if (gm_modifications_check(of, NULL, NULL, NULL) == GM_OK) {
         return 0;
+    }
     return refuse(conf, pair, gear, side, of);
 }
 

@@ -52,7 +52,7 @@ int output_fail(output_file *output, int error) {
 
 static char *copy_of(const char *text, const char *suffix) {
     const size_t length = strlen(text);
-    char *const copy = malloc(length + strlen(suffix) + 1);
+    char *copy = malloc(length + strlen(suffix) + 1);
 
     if (copy != NULL) {
         memcpy(copy, text, length);
@@ -63,7 +63,7 @@ static char *copy_of(const char *text, const char *suffix) {
 
 /* The file itself where the path is a link to one, so that the rename replaces that file. */
 static char *resolved(const char *path) {
-    char *const target = realpath(path, NULL);
+    char *target = realpath(path, NULL);
 
     return target != NULL ? target : copy_of(path, "");
 }
@@ -85,38 +85,38 @@ const char *output_obstacle(const char *path) {
 
 /* The same for the result or the file that it grows in. */
 static const char *obstacle(const char *path, const char *part) {
-    const char *const reason = output_obstacle(path);
+    const char *reason = output_obstacle(path);
 
     return reason != NULL ? reason : output_obstacle(part);
 }
 
 /* The folder must be there and take new files. NULL if so. */
 static const char *folder_obstacle(const char *path) {
-    char *const folder = copy_of(path, "");
+    char *folder = copy_of(path, "");
     if (folder == NULL) {
         return strerror(errno);
     }
 
-    char *const slash = strrchr(folder, '/');
+    char *slash = strrchr(folder, '/');
     if (slash != NULL) {
         /* The folder of "/file" is "/". */
         slash[slash == folder] = '\0';
     }
     const int denied = access(slash != NULL ? folder : ".", W_OK | X_OK);
-    const char *const reason = denied ? strerror(errno) : NULL;
+    const char *reason = denied ? strerror(errno) : NULL;
     free(folder);
 
     return reason;
 }
 
 static int check_place(const config *conf, const char *path, const char *part) {
-    const char *const reason = obstacle(path, part);
+    const char *reason = obstacle(path, part);
     if (reason != NULL) {
         config_complain(conf, file_key, "'%s' %s", path, reason);
         return EXIT_BAD_INPUT;
     }
 
-    const char *const folder_reason = folder_obstacle(path);
+    const char *folder_reason = folder_obstacle(path);
     if (folder_reason != NULL) {
         config_complain(conf, file_key, "cannot write '%s': %s", part, folder_reason);
         return EXIT_BAD_INPUT;
@@ -133,7 +133,7 @@ static void output_free(output_file *output) {
 /* Everything but the file. NULL after a message. */
 static output_file *create(const config *conf, const char *const names[], int name_count,
                            int *exit_code) {
-    output_file *const created = calloc(1, sizeof *created);
+    output_file *created = calloc(1, sizeof *created);
     if (created != NULL) {
         created->file = -1;
         created->digits = conf->digits;
@@ -165,7 +165,7 @@ static output_file *create(const config *conf, const char *const names[], int na
 
 int output_check(const config *conf, const char *const names[], int name_count) {
     int exit_code = 0;
-    output_file *const checked = create(conf, names, name_count, &exit_code);
+    output_file *checked = create(conf, names, name_count, &exit_code);
 
     if (checked != NULL) {
         output_free(checked);
@@ -186,7 +186,7 @@ static void ignore_file_size_signal(void) {
 
 output_file *output_open(const config *conf, const char *const names[], int name_count,
                          int *exit_code) {
-    output_file *const opened = create(conf, names, name_count, exit_code);
+    output_file *opened = create(conf, names, name_count, exit_code);
     if (opened == NULL) {
         return NULL;
     }

@@ -46,7 +46,7 @@ static size_t whole_lines(const char *text, size_t size) {
 
 /* Cuts the line that a full disk has left half written. */
 static void cut_to_whole_lines(const output_file *output) {
-    const csv_memory *const memory = output->memory;
+    const csv_memory *memory = output->memory;
 
     if (ftruncate(output->file, memory->written) == 0) {
         (void)lseek(output->file, memory->written, SEEK_SET);
@@ -55,7 +55,7 @@ static void cut_to_whole_lines(const output_file *output) {
 
 /* Empties the buffer. After an error nothing more is written. */
 static int flush(output_file *output) {
-    csv_memory *const memory = output->memory;
+    csv_memory *memory = output->memory;
     size_t done;
 
     if (output->error != 0) {
@@ -74,7 +74,7 @@ static int flush(output_file *output) {
 
 /* A line of any length, which must end in '\n' and not be split: longer than the buffer is an error. */
 static int put_line(output_file *output, const char *first, const char *second) {
-    csv_memory *const memory = output->memory;
+    csv_memory *memory = output->memory;
     const size_t size = strlen(first) + strlen(second) + 1;
 
     if (size > BUFFER_SIZE - memory->used && flush(output) != 0) {
@@ -112,7 +112,7 @@ static int begin(output_file *output, const config *conf, const char *const name
 }
 
 static int row(output_file *output, const double values[]) {
-    csv_memory *const memory = output->memory;
+    csv_memory *memory = output->memory;
 
     if (memory->used > BUFFER_SIZE - ROW_SIZE_MAX && flush(output) != 0) {
         return EXIT_RUN_FAILED;
@@ -148,7 +148,7 @@ static int end(output_file *output, const char *incomplete) {
     }
 
     const int failed = flush(output);
-    const char *const why = output->error != 0 ? strerror(output->error) : incomplete;
+    const char *why = output->error != 0 ? strerror(output->error) : incomplete;
     if (why != NULL) {
         mark_incomplete(output, why);
     }

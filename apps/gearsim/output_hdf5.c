@@ -51,7 +51,7 @@ static int fail(output_file *output) {
 
 /* So that the next bytes will not meet a full disk. HDF5 cuts what it has not used. */
 static int reserve(output_file *output, size_t size) {
-    const hdf5_memory *const memory = output->memory;
+    const hdf5_memory *memory = output->memory;
     hsize_t end = 0;
 
     if (memory->file >= 0 && H5Fget_filesize(memory->file, &end) < 0) {
@@ -64,7 +64,7 @@ static int reserve(output_file *output, size_t size) {
 }
 
 static int flush(output_file *output) {
-    const hdf5_memory *const memory = output->memory;
+    const hdf5_memory *memory = output->memory;
 
     errno = 0;
     return H5Fflush(memory->file, H5F_SCOPE_LOCAL) < 0 ? fail(output) : 0;
@@ -91,7 +91,7 @@ static herr_t write_text(hid_t place, const char *name, const char *text) {
 
 /* A line "name = value" of the provenance. */
 static herr_t write_provenance(hid_t place, const char *line) {
-    const char *const equals = strstr(line, " = ");
+    const char *equals = strstr(line, " = ");
     char name[NAME_SIZE];
 
     if (equals == NULL || (size_t)(equals - line) >= sizeof name) {
@@ -137,7 +137,7 @@ static hid_t create_set(hid_t file, const char *name) {
 }
 
 static herr_t write_head(const output_file *output, const config *conf, const char *const names[]) {
-    hdf5_memory *const memory = output->memory;
+    hdf5_memory *memory = output->memory;
     herr_t failed = write_text(memory->file, "gearsim", gm_version());
 
     for (int i = 0; i < conf->provenance_count && failed >= 0; ++i) {
@@ -160,7 +160,7 @@ static size_t head_size(const config *conf) {
 }
 
 static int begin(output_file *output, const config *conf, const char *const names[]) {
-    hdf5_memory *const memory = calloc(1, sizeof *memory);
+    hdf5_memory *memory = calloc(1, sizeof *memory);
     if (memory == NULL) {
         return output_fail(output, ENOMEM);
     }
@@ -204,7 +204,7 @@ static herr_t append(hid_t set, hsize_t rows, const double values[], hsize_t cou
 
 /* Empties the block. After an error nothing more is written. */
 static int write_block(output_file *output) {
-    hdf5_memory *const memory = output->memory;
+    hdf5_memory *memory = output->memory;
     const size_t size = (size_t)output->columns.count * sizeof memory->block[0] + HEAD_ROOM;
 
     if (output->error != 0) {
@@ -228,7 +228,7 @@ static int write_block(output_file *output) {
 }
 
 static int row(output_file *output, const double values[]) {
-    hdf5_memory *const memory = output->memory;
+    hdf5_memory *memory = output->memory;
 
     for (int i = 0; i < output->columns.count; ++i) {
         /* + 0.0: no "-0" in tables. */
@@ -244,7 +244,7 @@ static int row(output_file *output, const double values[]) {
 
 /* What is reserved and not used is cut off. */
 static int close_file(output_file *output) {
-    hdf5_memory *const memory = output->memory;
+    hdf5_memory *memory = output->memory;
     hsize_t size = 0;
 
     for (int i = 0; i < output->columns.count; ++i) {
@@ -271,7 +271,7 @@ static herr_t settle_incomplete(hdf5_memory *memory, const char *why) {
 }
 
 static int end(output_file *output, const char *incomplete) {
-    hdf5_memory *const memory = output->memory;
+    hdf5_memory *memory = output->memory;
     if (memory == NULL) {
         return EXIT_RUN_FAILED;
     }

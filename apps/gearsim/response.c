@@ -40,7 +40,7 @@ static void restart(response *linear) {
 
 response *response_create(const load_signal *load, double gain, double frequency,
                           double damping_ratio) {
-    response *const created = malloc(sizeof *created);
+    response *created = malloc(sizeof *created);
 
     if (created != NULL) {
         created->load = *load;
@@ -73,7 +73,7 @@ static void particular_solution(const response *linear, int64_t k, double q[4]) 
 }
 
 static response_value evaluate(const response *linear, const segment *part, double s) {
-    const double *const q = part->polynomial;
+    const double *q = part->polynomial;
     const double envelope = exp(-linear->decay * s);
     const double c = envelope * cos(linear->damped * s);
     const double d = envelope * sin(linear->damped * s);
@@ -89,7 +89,7 @@ static response_value evaluate(const response *linear, const segment *part, doub
 
 /* Computes one more segment: its free vibration makes p and p' continuous. */
 static void extend(response *linear) {
-    segment *const part = &linear->kept[linear->next % KEPT];
+    segment *part = &linear->kept[linear->next % KEPT];
 
     particular_solution(linear, linear->next, part->polynomial);
     part->cosine = linear->start.offset - part->polynomial[0];

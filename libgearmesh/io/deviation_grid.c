@@ -48,7 +48,7 @@ static void count_positions(positions *seen, const gmi_rows *rows, int slot, int
             continue;
         }
         const double position = row->position[axis];
-        seen->histogram[bucket_of(position)]++;
+        ++seen->histogram[bucket_of(position)];
         if (seen->lowest == NULL || position < seen->lowest->position[axis]) {
             seen->lowest = row;
         }

@@ -45,8 +45,9 @@ enum node { NODE_SUM, NODE_BY_DELTA, NODE_BY_PHASE, NODE_MIXED, NODE_VALUES };
 static int period_of(const gm_flanks *flanks, int side, int teeth) {
     const gm_flank_tables *tables = gmi_flanks_side(flanks, side);
     for (int tooth = 1; tables != NULL && tooth < teeth; ++tooth) {
-        if (tables->table[tooth] != tables->table[0] || tables->pitch[tooth] != tables->pitch[0])
+        if (tables->table[tooth] != tables->table[0] || tables->pitch[tooth] != tables->pitch[0]) {
             return teeth;
+        }
     }
     return 1;
 }
@@ -64,10 +65,12 @@ static int greatest_common_divisor(int a, int b) {
 static int pass_of(const gm_cache *cache, const gm_position *position) {
     const int pinion = cache->pinion_period == 1 ? 0 : position->pinion_tooth;
     const int wheel = cache->wheel_period == 1 ? 0 : position->wheel_tooth;
-    if (cache->common == 1)
+    if (cache->common == 1) {
         return pinion * cache->wheel_period + wheel;
-    if ((pinion - wheel) % cache->common != 0)
+    }
+    if ((pinion - wheel) % cache->common != 0) {
         return -1;
+    }
     return pinion * (cache->wheel_period / cache->common) + wheel / cache->common;
 }
 
@@ -108,8 +111,9 @@ static double lowest_touch(const gm_cache *cache, int side) {
 
 static void insert_knot(double knots[KNOTS], int *count, double phase) {
     int place = (*count)++;
-    for (; place > 0 && knots[place - 1] > phase; --place)
+    for (; place > 0 && knots[place - 1] > phase; --place) {
         knots[place] = knots[place - 1];
+    }
     knots[place] = phase;
 }
 
@@ -145,17 +149,20 @@ static int place_columns(const gm_cache *cache, int cells, double *phases) {
     for (int i = 1; i < KNOTS; ++i) {
         /* The last knot is p_bt, or another one within a rounding of it. */
         const double width = (i == KNOTS - 1 ? p_bt : knots[i]) - from;
-        if (width < 0.5 * kink_margin * p_bt && i < KNOTS - 1)
+        if (width < 0.5 * kink_margin * p_bt && i < KNOTS - 1) {
             continue;
+        }
         const int steps = (int)ceil(width / p_bt * (double)cells);
         for (int k = 0; k < steps; ++k, ++columns) {
-            if (phases != NULL)
+            if (phases != NULL) {
                 phases[columns] = from + width * (double)k / (double)steps;
+            }
         }
         from += width;
     }
-    if (phases != NULL)
+    if (phases != NULL) {
         phases[columns] = p_bt;
+    }
     return columns + 1;
 }
 
@@ -164,8 +171,9 @@ static int place_columns(const gm_cache *cache, int cells, double *phases) {
  * ------------------------------------------------------------------------------------------- */
 
 void gm_cache_params_default(gm_cache_params *params) {
-    if (params == NULL)
+    if (params == NULL) {
         return;
+    }
     params->side = GM_DRIVE;
     params->phase_cells = 16;
     params->depth_cells = 40;
@@ -186,15 +194,19 @@ static int check_params(const gm_cache_params *params, const gm_pair *pair) {
 static int describe(gm_cache *cache, const gm_cache_params *params, const gm_pair *pair,
                     const gm_flanks *pinion_flanks, const gm_flanks *wheel_flanks) {
     memset(cache, 0, sizeof *cache);
-    if (params == NULL || pair == NULL)
+    if (params == NULL || pair == NULL) {
         return GM_ERR_NULL;
+    }
     if ((pinion_flanks != NULL && pinion_flanks->teeth != pair->pinion.teeth) ||
-        (wheel_flanks != NULL && wheel_flanks->teeth != pair->wheel.teeth))
+        (wheel_flanks != NULL && wheel_flanks->teeth != pair->wheel.teeth)) {
         return GM_ERR_TOOTH;
-    if (!check_params(params, pair))
+    }
+    if (!check_params(params, pair)) {
         return GM_ERR_PARAMETER;
-    if (pair->twist == 0.0)
+    }
+    if (pair->twist == 0.0) {
         return GM_ERR_GEOMETRY;
+    }
 
     const int side = params->side;
     cache->pair = pair;
@@ -213,8 +225,9 @@ static int describe(gm_cache *cache, const gm_cache_params *params, const gm_pai
     cache->columns = place_columns(cache, params->phase_cells, NULL);
     /* 1e5 teeth each give 1e10 passes at most: more than fits any memory, but not into an int. */
     const int64_t passes = (int64_t)cache->pinion_period * (cache->wheel_period / cache->common);
-    if (passes * cache->columns > INT32_MAX)
+    if (passes * cache->columns > INT32_MAX) {
         return GM_ERR_MEMORY;
+    }
     cache->passes = (int)passes;
     return GM_OK;
 }
@@ -234,26 +247,30 @@ static size_t bytes_of(const gm_cache *cache) {
 size_t gm_cache_size(const gm_cache_params *params, const gm_pair *pair,
                      const gm_flanks *pinion_flanks, const gm_flanks *wheel_flanks) {
     gm_cache cache;
-    if (describe(&cache, params, pair, pinion_flanks, wheel_flanks) != GM_OK)
+    if (describe(&cache, params, pair, pinion_flanks, wheel_flanks) != GM_OK) {
         return 0;
+    }
     return bytes_of(&cache);
 }
 
 static int check_memory(const gm_cache *cache, const void *memory, size_t memory_size) {
     const size_t needed = bytes_of(cache);
-    if (memory == NULL)
+    if (memory == NULL) {
         return GM_ERR_NULL;
+    }
     return needed == 0 || memory_size < needed ? GM_ERR_MEMORY : GM_OK;
 }
 
 int gm_cache_init(gm_cache *cache, const gm_cache_params *params, const gm_pair *pair,
                   const gm_flanks *pinion_flanks, const gm_flanks *wheel_flanks, void *memory,
                   size_t memory_size) {
-    if (cache == NULL)
+    if (cache == NULL) {
         return GM_ERR_NULL;
+    }
     int status = describe(cache, params, pair, pinion_flanks, wheel_flanks);
-    if (status == GM_OK)
+    if (status == GM_OK) {
         status = check_memory(cache, memory, memory_size);
+    }
     if (status != GM_OK) {
         memset(cache, 0, sizeof *cache);
         return status;
@@ -262,8 +279,9 @@ int gm_cache_init(gm_cache *cache, const gm_cache_params *params, const gm_pair 
     cache->starts = cache->phases + cache->columns;
     cache->values = (float *)(cache->starts + all_columns(cache));
     (void)place_columns(cache, params->phase_cells, cache->phases);
-    for (size_t column = 0; column < all_columns(cache); ++column)
+    for (size_t column = 0; column < all_columns(cache); ++column) {
         cache->starts[column] = gmi_nan(); /* not filled */
+    }
     return GM_OK;
 }
 
@@ -287,13 +305,15 @@ static double find_start(const gm_cache *cache, gm_position *position) {
     double step = cache->depth;
     for (; exact_at(cache, position, without + step).sum == 0.0; step *= 2.0) {
         without += step;
-        if (without > 0.5 * cache->pair->transverse_base_pitch)
+        if (without > 0.5 * cache->pair->transverse_base_pitch) {
             return HUGE_VAL;
+        }
     }
     while (step > fine) {
         step *= 0.5;
-        if (exact_at(cache, position, without + step).sum == 0.0)
+        if (exact_at(cache, position, without + step).sum == 0.0) {
             without += step;
+        }
     }
     return without;
 }
@@ -342,18 +362,22 @@ static void fill_column(gm_cache *cache, int pass, int index) {
 /* Filled already, or fills it. */
 static void need_column(gm_cache *cache, int pass, int index) {
     const double start = cache->starts[(size_t)pass * (size_t)cache->columns + (size_t)index];
-    if (start != start)
+    if (start != start) {
         fill_column(cache, pass, index);
+    }
 }
 
 int gm_cache_fill(gm_cache *cache, int first_pass, int count) {
-    if (cache == NULL || cache->pair == NULL)
+    if (cache == NULL || cache->pair == NULL) {
         return GM_ERR_NULL;
-    if (first_pass < 0 || count < 0 || count > cache->passes - first_pass)
+    }
+    if (first_pass < 0 || count < 0 || count > cache->passes - first_pass) {
         return GM_ERR_PARAMETER;
+    }
     for (int pass = first_pass; pass < first_pass + count; ++pass) {
-        for (int index = 0; index < cache->columns; ++index)
+        for (int index = 0; index < cache->columns; ++index) {
             need_column(cache, pass, index);
+        }
     }
     return GM_OK;
 }
@@ -398,10 +422,12 @@ static int read_column(const gm_cache *cache, size_t column, double delta, colum
     const double place = (delta - cache->starts[column]) * cache->per_step;
     const column_value none = {0.0, 0.0, 0.0, 0.0};
     *value = none;
-    if (!(place > 0.0))
+    if (!(place > 0.0)) {
         return 1;
-    if (place >= (double)(cache->nodes - 1))
+    }
+    if (place >= (double)(cache->nodes - 1)) {
         return 0;
+    }
     const int n = (int)place;
     const float *a = values_of(cache, column) + (size_t)n * NODE_VALUES;
     const float *b = a + NODE_VALUES;
@@ -423,10 +449,11 @@ static int column_before(const gm_cache *cache, double phase) {
     int before = 0, behind = cache->columns - 1;
     while (behind - before > 1) {
         const int middle = (before + behind) / 2;
-        if (cache->phases[middle] <= phase)
+        if (cache->phases[middle] <= phase) {
             before = middle;
-        else
+        } else {
             behind = middle;
+        }
     }
     return before;
 }
@@ -440,8 +467,9 @@ static void join_columns(const gm_cache *cache, int index, double phase, const c
     const double value = combine(&at, a->sum, a->by_phase * width, b->sum, b->by_phase * width);
     const double by_delta =
         combine(&at, a->by_delta, a->mixed * width, b->by_delta, b->mixed * width);
-    if (!(value > 0.0))
+    if (!(value > 0.0)) {
         return;
+    }
     const hermite slope = hermite_slope(place);
     const double by_phase =
         combine(&slope, a->sum, a->by_phase * width, b->sum, b->by_phase * width) / width;
@@ -456,18 +484,21 @@ static void join_columns(const gm_cache *cache, int index, double phase, const c
 static int look_up(gm_cache *cache, const gm_position *position, gmi_side_sum *sum) {
     const double delta = gmi_ideal_penetration(cache->pair, cache->side, position->offset);
     *sum = no_contact;
-    if (delta <= cache->lowest)
+    if (delta <= cache->lowest) {
         return 1;
+    }
     const int pass = pass_of(cache, position);
-    if (pass < 0 || position->phase < 0.0 || position->phase > cache->phases[cache->columns - 1])
+    if (pass < 0 || position->phase < 0.0 || position->phase > cache->phases[cache->columns - 1]) {
         return 0;
+    }
     const int index = column_before(cache, position->phase);
     const size_t column = (size_t)pass * (size_t)cache->columns + (size_t)index;
     need_column(cache, pass, index);
     need_column(cache, pass, index + 1);
     column_value a, b;
-    if (!read_column(cache, column, delta, &a) || !read_column(cache, column + 1, delta, &b))
+    if (!read_column(cache, column, delta, &a) || !read_column(cache, column + 1, delta, &b)) {
         return 0;
+    }
     join_columns(cache, index, position->phase, &a, &b, sum);
     return 1;
 }
@@ -491,20 +522,23 @@ static void set_result(const gm_pair *pair, const gmi_side_sum *drive, const gmi
 }
 
 int gm_cache_penetration_at(gm_cache *cache, const gm_position *position, gm_penetration *result) {
-    if (cache == NULL)
+    if (cache == NULL) {
         return gm_penetration_3d_at(NULL, NULL, NULL, position, result);
+    }
     const gm_pair *pair = cache->pair;
     gmi_side_sum sums[2];
     if (result == NULL ||
         gmi_check_evaluation(pair, cache->pinion_flanks, cache->wheel_flanks, position) != GM_OK ||
-        !look_up(cache, position, &sums[cache->side]))
+        !look_up(cache, position, &sums[cache->side])) {
         return gm_penetration_3d_at(pair, cache->pinion_flanks, cache->wheel_flanks, position,
                                     result);
+    }
     const int other = cache->side == GM_DRIVE ? GM_COAST : GM_DRIVE;
     sums[other] = no_contact;
-    if (gmi_ideal_penetration(pair, other, position->offset) > cache->other_lowest)
+    if (gmi_ideal_penetration(pair, other, position->offset) > cache->other_lowest) {
         gmi_side_sum_3d(pair, cache->pinion_flanks, cache->wheel_flanks, other, position,
                         GMI_DERIVATIVES, &sums[other]);
+    }
     set_result(pair, &sums[GM_DRIVE], &sums[GM_COAST], position->offset_rate, result);
     return GM_OK;
 }
@@ -529,14 +563,17 @@ static void add_error(double error, double *largest, double *squares) {
 }
 
 int gm_cache_error(gm_cache *cache, int states, unsigned seed, gm_cache_errors *errors) {
-    if (errors == NULL)
+    if (errors == NULL) {
         return GM_ERR_NULL;
+    }
     errors->sum_largest = errors->sum_rms = gmi_nan();
     errors->contact_largest = errors->contact_rms = gmi_nan();
-    if (cache == NULL || cache->pair == NULL)
+    if (cache == NULL || cache->pair == NULL) {
         return GM_ERR_NULL;
-    if (states < 1)
+    }
+    if (states < 1) {
         return GM_ERR_PARAMETER;
+    }
 
     const double last_phase = cache->phases[cache->columns - 1];
     double sum_largest = 0.0, sum_squares = 0.0, contact_largest = 0.0, contact_squares = 0.0;
@@ -551,8 +588,9 @@ int gm_cache_error(gm_cache *cache, int states, unsigned seed, gm_cache_errors *
         const double delta = start + uniform(&random) * cache->depth;
         gmi_side_sum looked_up;
         const gmi_side_sum exact = exact_at(cache, &position, delta);
-        if (!(start < HUGE_VAL) || !look_up(cache, &position, &looked_up))
+        if (!(start < HUGE_VAL) || !look_up(cache, &position, &looked_up)) {
             continue; /* exact anyway */
+        }
         add_error(looked_up.sum - exact.sum, &sum_largest, &sum_squares);
         add_error(looked_up.contact - exact.contact, &contact_largest, &contact_squares);
     }

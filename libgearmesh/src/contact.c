@@ -22,10 +22,12 @@ static int floor_to_int(double value) {
 }
 
 static int wrap_tooth(int tooth, int teeth) {
-    while (tooth < 0)
+    while (tooth < 0) {
         tooth += teeth;
-    while (tooth >= teeth)
+    }
+    while (tooth >= teeth) {
         tooth -= teeth;
+    }
     return tooth;
 }
 
@@ -106,8 +108,9 @@ static void add_ideal_moments(const gm_pair *pair, int side, const gm_position *
     for (int k = lines.first; k <= lines.last; ++k) {
         const gmi_interval part = gmi_line_clip(&lines, k);
         const double length = part.to - part.from;
-        if (!(length > 0.0))
+        if (!(length > 0.0)) {
             continue;
+        }
         const double middle = 0.5 * (part.from + part.to);
         const double origin = lines.origin + (double)k * pair->transverse_base_pitch;
         total->contact_t1 += length * middle;
@@ -139,8 +142,9 @@ void gmi_side_sum_ideal(const gm_pair *pair, int side, const gm_position *positi
     const int first = -floor_to_int((cover - below) * per_pitch);
     const int last = floor_to_int(above * per_pitch);
     const int lines = last - first + 1;
-    if (lines <= 0 || !(below < above))
+    if (lines <= 0 || !(below < above)) {
         return;
+    }
     total->pairs = lines;
     total->contact = (double)lines;
     if (cover > 0.0) {
@@ -161,6 +165,7 @@ void gmi_side_sum_ideal(const gm_pair *pair, int side, const gm_position *positi
     }
     total->by_delta += total->contact;
     total->sum = delta * total->contact;
-    if (wanted & GMI_MOMENTS)
+    if (wanted & GMI_MOMENTS) {
         add_ideal_moments(pair, side, position, total);
+    }
 }

@@ -81,8 +81,9 @@ static int solve(const problem *p, bracket within, double travel, double reach, 
         const double value = residual(p, travel, result);
         const double slope = -result->d_wheel_angle / p->pair->wheel.base_radius;
         *found = travel;
-        if (fabs(value) <= p->resolution * slope)
+        if (fabs(value) <= p->resolution * slope) {
             return 1;
+        }
         if (value >= 0.0) {
             within.upper = travel;
             within.end = CARRIES;
@@ -94,8 +95,9 @@ static int solve(const problem *p, bracket within, double travel, double reach, 
             within.lower = travel;
         }
 
-        if (within.end != RANGE_ENDS && within.upper - within.lower <= p->resolution)
+        if (within.end != RANGE_ENDS && within.upper - within.lower <= p->resolution) {
             return within.end == CARRIES; /* a step of the sum */
+        }
         const double newton = k < NEWTON_STEPS && slope > 0.0 ? travel - value / slope : gmi_nan();
         if (within.end == RANGE_ENDS) {
             travel = fmin(fmin(newton, travel + reach), within.upper);
@@ -131,8 +133,9 @@ static int solve_before_departure(const problem *p, double lower, double reached
     const double before = departure(p, lower) - 8.0 * p->resolution;
     const int can_fall = fabs(p->pair->twist) < reached - lower;
     gm_penetration there;
-    if (!can_fall || !(before > lower && before < reached) || residual(p, before, &there) < 0.0)
+    if (!can_fall || !(before > lower && before < reached) || residual(p, before, &there) < 0.0) {
         return 0;
+    }
     const bracket within = {lower, before, CARRIES};
     return solve(p, within, before, 0.0, found, result);
 }
@@ -149,13 +152,16 @@ static int find_loaded(const problem *p, double guess, double *found, gm_penetra
     const bracket bent = {lower, limit, LOAD_FALLS};
 
     int carried = guessed && solve(p, open, guess, reach, found, result);
-    if (!carried)
+    if (!carried) {
         carried = solve(p, open, start, reach, found, result);
-    if (!carried)
+    }
+    if (!carried) {
         carried = solve(p, bent, start, reach, found, result);
+    }
     const double reached = carried ? *found : limit;
-    if (solve_before_departure(p, lower, reached, found, result))
+    if (solve_before_departure(p, lower, reached, found, result)) {
         carried = 1;
+    }
     return carried ? GM_OK : GM_NO_EQUILIBRIUM;
 }
 
@@ -168,13 +174,15 @@ static int find_unloaded(const problem *p, double guess, double *found, gm_penet
         clamp(-half_backlash + sum_peak(p, GM_COAST), limit), /* above: no coast contact */
         CARRIES,
     };
-    if (!(within.lower < within.upper))
+    if (!(within.lower < within.upper)) {
         return GM_UNDETERMINED;
+    }
     const int guessed = guess > within.lower && guess < within.upper;
     const double middle = within.lower + 0.5 * (within.upper - within.lower);
     if (!solve(p, within, guessed ? guess : middle, 0.0, found, result) ||
-        !(result->drive_contact > 0.0 && result->coast_contact > 0.0))
+        !(result->drive_contact > 0.0 && result->coast_contact > 0.0)) {
         return GM_UNDETERMINED;
+    }
     return GM_OK;
 }
 
@@ -183,24 +191,30 @@ int gm_static_equilibrium_near(const gm_pair *pair, const gm_flanks *pinion_flan
                                double wheel_torque, double guess, double *offset,
                                gm_penetration *result) {
     gm_penetration found;
-    if (result == NULL)
+    if (result == NULL) {
         result = &found;
+    }
     (void)gm_penetration_3d_at(NULL, NULL, NULL, NULL, result); /* NaN until found */
-    if (offset == NULL)
+    if (offset == NULL) {
         return GM_ERR_NULL;
+    }
     *offset = gmi_nan();
-    if (pair == NULL)
+    if (pair == NULL) {
         return GM_ERR_NULL;
+    }
     if (!(stiffness >= GMI_SMALLEST_STIFFNESS && stiffness <= GMI_LARGEST_STIFFNESS) ||
-        !gmi_is_finite(wheel_torque))
+        !gmi_is_finite(wheel_torque)) {
         return GM_ERR_PARAMETER;
+    }
 
     problem p = {pair, pinion_flanks, wheel_flanks, {0, 0, 0.0, 0.0, 0.0}, 1.0, 0.0, 0.0};
     int status = gm_position_from_pinion_angle(pair, pinion_angle, 0.0, 0.0, &p.position);
-    if (status == GM_OK)
+    if (status == GM_OK) {
         status = gmi_check_evaluation(pair, pinion_flanks, wheel_flanks, &p.position);
-    if (status != GM_OK)
+    }
+    if (status != GM_OK) {
         return status;
+    }
 
     p.direction = wheel_torque < 0.0 ? -1.0 : 1.0;
     p.target = p.direction * wheel_torque / (stiffness * pair->wheel.base_radius);

@@ -16,8 +16,9 @@
 #define LARGEST_TEETH 100000
 
 static int check_side(int tables, int face_nodes, int profile_nodes, int teeth) {
-    if (tables < 0 || tables > teeth + 1)
+    if (tables < 0 || tables > teeth + 1) {
         return 0;
+    }
     return tables == 0 || (face_nodes >= 2 && face_nodes <= LARGEST_NODES && profile_nodes >= 2 &&
                            profile_nodes <= LARGEST_NODES);
 }
@@ -41,8 +42,9 @@ static uint64_t all_doubles(const gm_flanks_params *p) {
 }
 
 size_t gm_flanks_size(const gm_flanks_params *params) {
-    if (params == NULL || !check_params(params))
+    if (params == NULL || !check_params(params)) {
         return 0;
+    }
     const uint64_t bytes =
         all_doubles(params) * sizeof(double) +
         2 * (uint64_t)params->teeth * sizeof(int); /* tooth -> table, both sides */
@@ -75,16 +77,20 @@ static double *side_init(gm_flank_tables *side, int tables, int face_nodes, int 
 
 int gm_flanks_init(gm_flanks *flanks, const gm_flanks_params *params, void *memory,
                    size_t memory_size) {
-    if (flanks == NULL)
+    if (flanks == NULL) {
         return GM_ERR_NULL;
+    }
     memset(flanks, 0, sizeof *flanks);
-    if (params == NULL || memory == NULL)
+    if (params == NULL || memory == NULL) {
         return GM_ERR_NULL;
+    }
     const size_t needed = gm_flanks_size(params);
-    if (needed == 0)
+    if (needed == 0) {
         return GM_ERR_PARAMETER;
-    if (memory_size < needed)
+    }
+    if (memory_size < needed) {
         return GM_ERR_MEMORY;
+    }
 
     double *doubles = (double *)memory;
     int *ints = (int *)(doubles + all_doubles(params));
@@ -114,18 +120,20 @@ static void find_peak(const gm_flanks *flanks, gm_flank_tables *side) {
     side->peak = tooth_peak(side, 0);
     for (int tooth = 1; tooth < flanks->teeth; ++tooth) {
         const double peak = tooth_peak(side, tooth);
-        if (peak > side->peak)
+        if (peak > side->peak) {
             side->peak = peak;
+        }
     }
 }
 
 /* After a change of one tooth, or of all. Looks at all teeth only if the highest one may have come down. */
 static void update_peak(const gm_flanks *flanks, gm_flank_tables *side, int tooth, double before) {
     const double now = tooth == GM_ALL_TEETH ? before : tooth_peak(side, tooth);
-    if (tooth == GM_ALL_TEETH || (before == side->peak && now < before))
+    if (tooth == GM_ALL_TEETH || (before == side->peak && now < before)) {
         find_peak(flanks, side);
-    else if (now > side->peak)
+    } else if (now > side->peak) {
         side->peak = now;
+    }
 }
 
 /* Negated elsewhere, so that NaN is caught. */
@@ -136,8 +144,9 @@ static int is_deviation(double deviation) {
 static int check_deviation(const gm_flank_tables *side, const double *deviation, double factor) {
     const size_t nodes = (size_t)side->face_nodes * (size_t)side->profile_nodes;
     for (size_t k = 0; k < nodes; ++k) {
-        if (!is_deviation(deviation[k] * factor))
+        if (!is_deviation(deviation[k] * factor)) {
             return 0;
+        }
     }
     return 1;
 }
@@ -151,8 +160,9 @@ static void fill_table(const gm_flank_tables *side, double *table, const double 
                        double factor) {
     const size_t nodes = (size_t)side->face_nodes * (size_t)side->profile_nodes;
     const size_t row = (size_t)side->profile_nodes * GMI_NODE_DOUBLES;
-    for (size_t k = 0; k < nodes; ++k)
+    for (size_t k = 0; k < nodes; ++k) {
         table[k * GMI_NODE_DOUBLES] = deviation[k] * factor;
+    }
     for (int face = 0; face < side->face_nodes; ++face) {
         for (int profile = 0; profile < side->profile_nodes; ++profile) {
             double *node = table + (size_t)face * row + (size_t)profile * GMI_NODE_DOUBLES;
@@ -167,23 +177,28 @@ static void fill_table(const gm_flank_tables *side, double *table, const double 
 static double table_maximum(const double *table, size_t doubles) {
     double maximum = table[0];
     for (size_t k = GMI_NODE_DOUBLES; k < doubles; k += GMI_NODE_DOUBLES) {
-        if (table[k] > maximum)
+        if (table[k] > maximum) {
             maximum = table[k];
+        }
     }
     return maximum;
 }
 
 int gm_flanks_set_table(gm_flanks *flanks, int side, int tooth, const double *deviation,
                         double factor) {
-    if (flanks == NULL || deviation == NULL)
+    if (flanks == NULL || deviation == NULL) {
         return GM_ERR_NULL;
+    }
     gm_flank_tables *tables = side_of(flanks, side);
-    if (tables == NULL || tooth < GM_ALL_TEETH || tooth >= flanks->teeth)
+    if (tables == NULL || tooth < GM_ALL_TEETH || tooth >= flanks->teeth) {
         return GM_ERR_TOOTH;
-    if (tables->count >= tables->capacity)
+    }
+    if (tables->count >= tables->capacity) {
         return GM_ERR_MEMORY;
-    if (!check_deviation(tables, deviation, factor))
+    }
+    if (!check_deviation(tables, deviation, factor)) {
         return GM_ERR_DEVIATION;
+    }
 
     const int place = tables->count++;
     double *table = tables->values + (size_t)place * table_doubles(tables);
@@ -193,28 +208,33 @@ int gm_flanks_set_table(gm_flanks *flanks, int side, int tooth, const double *de
     if (tooth != GM_ALL_TEETH) {
         tables->table[tooth] = place;
     } else {
-        for (int k = 0; k < flanks->teeth; ++k)
+        for (int k = 0; k < flanks->teeth; ++k) {
             tables->table[k] = place;
+        }
     }
     update_peak(flanks, tables, tooth, before);
     return GM_OK;
 }
 
 int gm_flanks_set_pitch(gm_flanks *flanks, int side, int tooth, double deviation) {
-    if (flanks == NULL)
+    if (flanks == NULL) {
         return GM_ERR_NULL;
+    }
     gm_flank_tables *tables = side_of(flanks, side);
-    if (tables == NULL || tooth < GM_ALL_TEETH || tooth >= flanks->teeth)
+    if (tables == NULL || tooth < GM_ALL_TEETH || tooth >= flanks->teeth) {
         return GM_ERR_TOOTH;
-    if (!is_deviation(deviation))
+    }
+    if (!is_deviation(deviation)) {
         return GM_ERR_DEVIATION;
+    }
 
     const double before = tooth == GM_ALL_TEETH ? 0.0 : tooth_peak(tables, tooth);
     if (tooth != GM_ALL_TEETH) {
         tables->pitch[tooth] = deviation;
     } else {
-        for (int k = 0; k < flanks->teeth; ++k)
+        for (int k = 0; k < flanks->teeth; ++k) {
             tables->pitch[k] = deviation;
+        }
     }
     update_peak(flanks, tables, tooth, before);
     return GM_OK;
@@ -222,26 +242,31 @@ int gm_flanks_set_pitch(gm_flanks *flanks, int side, int tooth, double deviation
 
 int gm_flanks_set_ramps(gm_flanks *flanks, int side, const gm_flank_ramp *ramps, int count,
                         double factor) {
-    if (flanks == NULL || (ramps == NULL && count > 0))
+    if (flanks == NULL || (ramps == NULL && count > 0)) {
         return GM_ERR_NULL;
+    }
     gm_flank_tables *tables = side_of(flanks, side);
-    if (tables == NULL)
+    if (tables == NULL) {
         return GM_ERR_TOOTH;
-    if (count < 0 || count > GM_FLANK_RAMPS_MAX || !(factor > 0.0))
+    }
+    if (count < 0 || count > GM_FLANK_RAMPS_MAX || !(factor > 0.0)) {
         return GM_ERR_PARAMETER;
+    }
 
     gm_flank_ramp scaled[GM_FLANK_RAMPS_MAX];
     for (int k = 0; k < count; ++k) {
         const gm_flank_ramp ramp = {factor * ramps[k].offset, factor * ramps[k].per_t1,
                                     factor * ramps[k].per_t2};
         if (!(fabs(ramp.offset) <= GMI_LARGEST_RAMP && fabs(ramp.per_t1) <= GMI_LARGEST_RAMP &&
-              fabs(ramp.per_t2) <= GMI_LARGEST_RAMP))
+              fabs(ramp.per_t2) <= GMI_LARGEST_RAMP)) {
             return GM_ERR_DEVIATION;
+        }
         scaled[k] = ramp;
     }
     memcpy(tables->ramps, scaled, (size_t)count * sizeof scaled[0]);
     tables->ramp_count = count;
-    if (tables->capacity == 0) /* places on the flank are then in t1, t2 */
+    if (tables->capacity == 0) { /* places on the flank are then in t1, t2 */
         tables->face_nodes = tables->profile_nodes = count > 0 ? 2 : 0;
+    }
     return GM_OK;
 }

@@ -11,8 +11,9 @@ static double flank_force(double stiffness, double damping, double sum, double r
 }
 
 double gm_contact_force(double stiffness, double damping, const gm_penetration *penetration) {
-    if (penetration == NULL)
+    if (penetration == NULL) {
         return gmi_nan();
+    }
     const double force =
         flank_force(stiffness, damping, penetration->drive, penetration->drive_rate) -
         flank_force(stiffness, damping, penetration->coast, penetration->coast_rate);

@@ -144,8 +144,9 @@ static inline const gm_flank_tables *gmi_flanks_side(const gm_flanks *flanks, in
 
 static inline gmi_flank gmi_flank_of(const gm_flank_tables *tables, int tooth) {
     gmi_flank flank = {NULL, 0.0, 0.0};
-    if (tables == NULL)
+    if (tables == NULL) {
         return flank;
+    }
     const int table = tables->table[tooth];
     flank.pitch = tables->pitch[tooth];
     flank.peak = flank.pitch;

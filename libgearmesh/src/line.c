@@ -140,8 +140,9 @@ SPECIALIZED void cross_face(trace *path, const gmi_grid *grid, double s, int wan
     const double distance = (path->next_profile - s) * grid->rate;
     f->half_slope += grid->face_kick * (ahead + distance * back);
     f->curvature -= grid->bend * back;
-    if (wanted & GMI_DERIVATIVES)
+    if (wanted & GMI_DERIVATIVES) {
         path->slope_rate -= grid->face_ratio * back;
+    }
 }
 
 /* Across the profile line ahead, at the place p between its nodes on the face lines behind and ahead. */
@@ -196,15 +197,17 @@ static inline void add_touching(const piece *part, double begin, double end, int
         total->pinion += length * (part->first_slope + middle * part->first_rate);
         total->wheel += length * (part->second_slope + middle * part->second_rate);
     }
-    if (wanted & GMI_MOMENTS)
+    if (wanted & GMI_MOMENTS) {
         add_moments(part, begin, end, total);
+    }
 }
 
 /* A piece in which f may change its sign: split at the roots of the quadratic. */
 static void add_split(const piece *part, int wanted, gmi_line_sum *total) {
     const quadratic f = part->f;
-    if (!(part->length > 0.0)) /* two crossings at the same t1, up to rounding */
+    if (!(part->length > 0.0)) { /* two crossings at the same t1, up to rounding */
         return;
+    }
     double cuts[4] = {0.0, 0.0, 0.0, part->length};
     const double discriminant = f.half_slope * f.half_slope - f.curvature * f.value;
     if (discriminant > 0.0) {
@@ -218,8 +221,9 @@ static void add_split(const piece *part, int wanted, gmi_line_sum *total) {
     for (int k = 0; k < 3; ++k) {
         const double middle = 0.5 * (cuts[k] + cuts[k + 1]);
         const double at_middle = f.value + middle * (2.0 * f.half_slope + middle * f.curvature);
-        if (cuts[k + 1] > cuts[k] && at_middle > 0.0)
+        if (cuts[k + 1] > cuts[k] && at_middle > 0.0) {
             add_touching(part, cuts[k], cuts[k + 1], wanted, total);
+        }
     }
 }
 
@@ -290,13 +294,15 @@ SPECIALIZED void walk_cell(walk_state *at, const gmi_grid *first, const gmi_grid
             same_faces || at->second.faces <= 0 ? end : smaller(end, at->second.next_face);
         for (;;) {
             if (at->first.next_profile < at->second.next_profile) {
-                if (!(at->first.next_profile < face_line))
+                if (!(at->first.next_profile < face_line)) {
                     break;
+                }
                 advance(at, at->first.next_profile, wanted, split);
                 cross_profile(&at->first, first, at->s, wanted, &at->f);
             } else {
-                if (!(at->second.next_profile < face_line))
+                if (!(at->second.next_profile < face_line)) {
                     break;
+                }
                 advance(at, at->second.next_profile, wanted, split);
                 const double p =
                     same_faces ? at->s : 1.0 - (at->second.next_face - at->s) * second->face_ratio;
@@ -304,8 +310,9 @@ SPECIALIZED void walk_cell(walk_state *at, const gmi_grid *first, const gmi_grid
             }
         }
         advance(at, face_line, wanted, split);
-        if (same_faces || !(face_line < end))
+        if (same_faces || !(face_line < end)) {
             return;
+        }
         cross_face(&at->second, second, face_line, wanted, &at->f);
         at->second.faces -= 1;
         at->second.next_face += 1.0 / second->face_ratio;
@@ -316,16 +323,19 @@ SPECIALIZED void walk_cell(walk_state *at, const gmi_grid *first, const gmi_grid
 SPECIALIZED void enter_next_cell(walk_state *at, const gmi_grid *first, const gmi_grid *second,
                                  int wanted, int same_faces) {
     at->s = 0.0;
-    if (wanted & GMI_MOMENTS)
+    if (wanted & GMI_MOMENTS) {
         at->faces += 1.0;
+    }
     at->first.faces -= 1;
     at->first.next_profile -= 1.0;
     at->second.next_profile -= 1.0;
-    if (!same_faces)
+    if (!same_faces) {
         at->second.next_face -= 1.0;
+    }
     cross_face(&at->first, first, 0.0, wanted, &at->f);
-    if (same_faces)
+    if (same_faces) {
         cross_face(&at->second, second, 0.0, wanted, &at->f);
+    }
 }
 
 /*
@@ -338,8 +348,9 @@ SPECIALIZED void walk(walk_state at, const gmi_grid *first, const gmi_grid *seco
     for (;;) {
         const int is_last = at.first.faces <= 0;
         walk_cell(&at, first, second, is_last ? end_in_last : 1.0, wanted, same_faces, result);
-        if (is_last)
+        if (is_last) {
             break;
+        }
         enter_next_cell(&at, first, second, wanted, same_faces);
     }
 
@@ -412,14 +423,15 @@ static void integrate_tables(const gmi_line *line, const gmi_grid *first, const 
                                  second_face, p, s, &at.f));
     }
     result->at_from = at.f.value;
-    if (!same_faces)
+    if (!same_faces) {
         walk(at, first, second, end, wanted, 0, result);
-    else if (wanted & GMI_MOMENTS)
+    } else if (wanted & GMI_MOMENTS) {
         walk(at, first, second, end, GMI_MOMENTS, 1, result);
-    else if (wanted & GMI_DERIVATIVES)
+    } else if (wanted & GMI_DERIVATIVES) {
         walk(at, first, second, end, GMI_DERIVATIVES, 1, result);
-    else
+    } else {
         walk(at, first, second, end, GMI_SUM, 1, result);
+    }
 }
 
 void gmi_line_integrate(const gmi_line *line, const gmi_grid *pinion, const gmi_grid *wheel,

@@ -66,32 +66,39 @@ static double roll_of(const gm_modifications *of) {
 /* Roll length of the range, from the tip or from the start of the active profile (m). */
 static double profile_length(const gm_modifications *of, const gm_modification *m) {
     const gm_gear *gear = of->gear;
-    if (m->profile_range_by == GM_RANGE_SHARE)
+    if (m->profile_range_by == GM_RANGE_SHARE) {
         return m->profile_range * roll_of(of);
-    if (m->profile_range_by == GM_RANGE_LENGTH)
+    }
+    if (m->profile_range_by == GM_RANGE_LENGTH) {
         return m->profile_range;
+    }
     const double limit = gmi_roll_length(m->profile_range, gear->base_radius);
     return is_at_tip(m->kind) ? gear->tip_roll_length - limit : limit - gear->start_roll_length;
 }
 
 /* Length over which the amount is reached, along the direction of the steepest descent (m). */
 static double length_of(const gm_modifications *of, const gm_modification *m) {
-    if (m->kind == GM_MOD_CROWNING)
+    if (m->kind == GM_MOD_CROWNING) {
         return 0.5 * of->face_width;
-    if (m->kind == GM_MOD_PROFILE_CROWNING)
+    }
+    if (m->kind == GM_MOD_PROFILE_CROWNING) {
         return 0.5 * roll_of(of);
-    if (!has_face_range(m->kind))
+    }
+    if (!has_face_range(m->kind)) {
         return profile_length(of, m);
-    if (!has_profile_range(m->kind))
+    }
+    if (!has_profile_range(m->kind)) {
         return m->face_range;
+    }
     const double along_profile = profile_length(of, m); /* height of the triangle */
     return m->face_range * along_profile / hypot(m->face_range, along_profile);
 }
 
 /* Range as a share of the face width or of the active profile; 0 = the kind has none along this axis. */
 static double range_share(const gm_modifications *of, const gm_modification *m, int axis) {
-    if (axis == FACE)
+    if (axis == FACE) {
         return has_face_range(m->kind) ? m->face_range / of->face_width : 0.0;
+    }
     return has_profile_range(m->kind) ? profile_length(of, m) / roll_of(of) : 0.0;
 }
 
@@ -114,17 +121,20 @@ static problem check_profile_range(const gm_modifications *of, const gm_modifica
     static const char field[] = "profile_range";
     switch (m->profile_range_by) {
     case GM_RANGE_LENGTH:
-        if (!(range > 0.0 && range <= roll_of(of) * (1.0 + 4.0 * DBL_EPSILON)))
+        if (!(range > 0.0 && range <= roll_of(of) * (1.0 + 4.0 * DBL_EPSILON))) {
             return problem_of(field, "a roll length above 0 and within the active profile");
+        }
         break;
     case GM_RANGE_SHARE:
-        if (!(range > 0.0 && range <= 1.0))
+        if (!(range > 0.0 && range <= 1.0)) {
             return problem_of(field, "a share above 0 and at most 1");
+        }
         break;
     case GM_RANGE_RADIUS:
         if (!(range >= of->gear->start_radius && range <= of->gear->tip_radius) ||
-            !(profile_length(of, m) > 0.0))
+            !(profile_length(of, m) > 0.0)) {
             return problem_of(field, "a radius within the active profile that leaves a range");
+        }
         break;
     default:
         return problem_of("profile_range_by", "GM_RANGE_LENGTH, GM_RANGE_SHARE or GM_RANGE_RADIUS");
@@ -133,41 +143,53 @@ static problem check_profile_range(const gm_modifications *of, const gm_modifica
 }
 
 static problem check_shape(const gm_modifications *of, const gm_modification *m) {
-    if (is_plain(m->kind))
+    if (is_plain(m->kind)) {
         return problem_of(NULL, NULL);
-    if (is_crowning(m->kind) && m->shape == GM_SHAPE_LINEAR)
+    }
+    if (is_crowning(m->kind) && m->shape == GM_SHAPE_LINEAR) {
         return problem_of("shape", "GM_SHAPE_PARABOLIC or GM_SHAPE_CIRCULAR");
-    if (m->shape < GM_SHAPE_LINEAR || m->shape > GM_SHAPE_CIRCULAR)
+    }
+    if (m->shape < GM_SHAPE_LINEAR || m->shape > GM_SHAPE_CIRCULAR) {
         return problem_of("shape", "GM_SHAPE_LINEAR, GM_SHAPE_PARABOLIC or GM_SHAPE_CIRCULAR");
-    if (m->shape == GM_SHAPE_CIRCULAR && fabs(m->amount) > 0.5 * length_of(of, m))
+    }
+    if (m->shape == GM_SHAPE_CIRCULAR && fabs(m->amount) > 0.5 * length_of(of, m)) {
         return problem_of("amount", "at most half of the length that a circular shape runs over");
+    }
     return problem_of(NULL, NULL);
 }
 
 static problem check_one(const gm_modifications *of, const gm_modification *m) {
-    if (m->kind < 0 || m->kind >= GM_MODIFICATION_KINDS)
+    if (m->kind < 0 || m->kind >= GM_MODIFICATION_KINDS) {
         return problem_of("kind", "one of enum gm_modification_kind");
-    if (!(fabs(m->amount) <= LARGEST_AMOUNT))
+    }
+    if (!(fabs(m->amount) <= LARGEST_AMOUNT)) {
         return problem_of("amount", "a number of at most 10 mm");
-    if (is_relief(m->kind) && m->amount < 0.0)
+    }
+    if (is_relief(m->kind) && m->amount < 0.0) {
         return problem_of("amount", "a number >= 0: reliefs remove material");
-    if (has_face_range(m->kind) && !(m->face_range > 0.0 && m->face_range <= of->face_width))
+    }
+    if (has_face_range(m->kind) && !(m->face_range > 0.0 && m->face_range <= of->face_width)) {
         return problem_of("face_range", "a length above 0 and at most the face width");
+    }
     if (has_profile_range(m->kind)) {
         const problem found = check_profile_range(of, m);
-        if (found.field != NULL)
+        if (found.field != NULL) {
             return found;
+        }
     }
     return check_shape(of, m);
 }
 
 static problem check_flank(const gm_modifications *of) {
-    if (!(of->face_width > 0.0) || !gmi_is_finite(of->face_width))
+    if (!(of->face_width > 0.0) || !gmi_is_finite(of->face_width)) {
         return problem_of("face_width", "a number > 0");
-    if (!(roll_of(of) > 0.0) || !gmi_is_finite(roll_of(of)))
+    }
+    if (!(roll_of(of) > 0.0) || !gmi_is_finite(roll_of(of))) {
         return problem_of("gear", "a gear of a pair that gm_pair_init() has filled");
-    if (of->count < 0 || of->count > GM_MODIFICATIONS_MAX)
+    }
+    if (of->count < 0 || of->count > GM_MODIFICATIONS_MAX) {
         return problem_of("count", "a number from 0 to 200");
+    }
     return problem_of(NULL, NULL);
 }
 
@@ -184,8 +206,9 @@ static problem check_all(const gm_modifications *of, int *index) {
 
 static int status_of(const gm_modifications *of) {
     int index;
-    if (of == NULL || of->gear == NULL || (of->list == NULL && of->count > 0))
+    if (of == NULL || of->gear == NULL || (of->list == NULL && of->count > 0)) {
         return GM_ERR_NULL;
+    }
     return check_all(of, &index).field == NULL ? GM_OK : GM_ERR_PARAMETER;
 }
 
@@ -194,14 +217,18 @@ int gm_modifications_check(const gm_modifications *modifications, int *index, co
     int at = -1;
     problem found = problem_of(NULL, NULL);
     int status = status_of(modifications);
-    if (status == GM_ERR_PARAMETER)
+    if (status == GM_ERR_PARAMETER) {
         found = check_all(modifications, &at);
-    if (index != NULL)
+    }
+    if (index != NULL) {
         *index = at;
-    if (field != NULL)
+    }
+    if (field != NULL) {
         *field = found.field;
-    if (requirement != NULL)
+    }
+    if (requirement != NULL) {
         *requirement = found.requirement;
+    }
     return status;
 }
 
@@ -214,10 +241,12 @@ int gm_modifications_check(const gm_modifications *modifications, int *index, co
  * ideal flank at s = 0 is R - sqrt(R^2 - (s L)^2) below it, written here without cancellation.
  */
 static double removed(const gm_modification *m, double length, double s) {
-    if (m->shape == GM_SHAPE_LINEAR)
+    if (m->shape == GM_SHAPE_LINEAR) {
         return m->amount * s;
-    if (m->shape == GM_SHAPE_PARABOLIC || m->amount == 0.0)
+    }
+    if (m->shape == GM_SHAPE_PARABOLIC || m->amount == 0.0) {
         return m->amount * s * s;
+    }
     const double depth = fabs(m->amount);
     const double radius = 0.5 * (length * (length / depth) + depth);
     const double along = length * s;
@@ -229,14 +258,18 @@ static double removed(const gm_modification *m, double length, double s) {
 static double share_of_range(const gm_modifications *of, const gm_modification *m, double t1,
                              double t2) {
     double s = 1.0;
-    if (m->kind == GM_MOD_CROWNING)
+    if (m->kind == GM_MOD_CROWNING) {
         return fabs(2.0 * t1 - 1.0);
-    if (m->kind == GM_MOD_PROFILE_CROWNING)
+    }
+    if (m->kind == GM_MOD_PROFILE_CROWNING) {
         return fabs(2.0 * t2 - 1.0);
-    if (has_face_range(m->kind))
+    }
+    if (has_face_range(m->kind)) {
         s -= (is_at_face_ii(m->kind) ? 1.0 - t1 : t1) / range_share(of, m, FACE);
-    if (has_profile_range(m->kind))
+    }
+    if (has_profile_range(m->kind)) {
         s -= (is_at_tip(m->kind) ? 1.0 - t2 : t2) / range_share(of, m, PROFILE);
+    }
     return s > 0.0 ? s : 0.0;
 }
 
@@ -255,14 +288,16 @@ static double value_of(const gm_modifications *of, const gm_modification *m, dou
 
 static double sum_of(const gm_modifications *of, double t1, double t2) {
     double sum = 0.0;
-    for (int k = 0; k < of->count; ++k)
+    for (int k = 0; k < of->count; ++k) {
         sum += value_of(of, &of->list[k], t1, t2);
+    }
     return sum;
 }
 
 double gm_modifications_value(const gm_modifications *modifications, double t1, double t2) {
-    if (status_of(modifications) != GM_OK || !(t1 >= 0.0 && t1 <= 1.0 && t2 >= 0.0 && t2 <= 1.0))
+    if (status_of(modifications) != GM_OK || !(t1 >= 0.0 && t1 <= 1.0 && t2 >= 0.0 && t2 <= 1.0)) {
         return gmi_nan();
+    }
     return sum_of(modifications, t1, t2);
 }
 
@@ -273,16 +308,20 @@ static int are_nodes(int nodes) {
 int gm_modifications_add(const gm_modifications *modifications, int face_nodes, int profile_nodes,
                          double *deviation) {
     const int status = status_of(modifications);
-    if (status != GM_OK)
+    if (status != GM_OK) {
         return status;
-    if (deviation == NULL)
+    }
+    if (deviation == NULL) {
         return GM_ERR_NULL;
-    if (!are_nodes(face_nodes) || !are_nodes(profile_nodes))
+    }
+    if (!are_nodes(face_nodes) || !are_nodes(profile_nodes)) {
         return GM_ERR_PARAMETER;
+    }
     for (int face = 0; face < face_nodes; ++face) {
         const double t1 = (double)face / (face_nodes - 1);
-        for (int profile = 0; profile < profile_nodes; ++profile)
+        for (int profile = 0; profile < profile_nodes; ++profile) {
             *deviation++ += sum_of(modifications, t1, (double)profile / (profile_nodes - 1));
+        }
     }
     return GM_OK;
 }
@@ -310,22 +349,27 @@ static gm_flank_ramp ramp_of(const gm_modifications *of, const gm_modification *
 int gm_modifications_split(const gm_modifications *modifications,
                            gm_flank_ramp ramps[GM_FLANK_RAMPS_MAX], int *ramp_count,
                            gm_modification *rest, int *rest_count) {
-    if (ramp_count == NULL || rest_count == NULL)
+    if (ramp_count == NULL || rest_count == NULL) {
         return GM_ERR_NULL;
+    }
     *ramp_count = *rest_count = 0;
     const int status = status_of(modifications);
-    if (status != GM_OK)
+    if (status != GM_OK) {
         return status;
-    if (ramps == NULL || (rest == NULL && modifications->count > 0))
+    }
+    if (ramps == NULL || (rest == NULL && modifications->count > 0)) {
         return GM_ERR_NULL;
+    }
     for (int k = 0; k < modifications->count; ++k) {
         const gm_modification *m = &modifications->list[k];
-        if (m->amount == 0.0)
+        if (m->amount == 0.0) {
             continue;
-        if (is_relief(m->kind) && m->shape == GM_SHAPE_LINEAR && *ramp_count < GM_FLANK_RAMPS_MAX)
+        }
+        if (is_relief(m->kind) && m->shape == GM_SHAPE_LINEAR && *ramp_count < GM_FLANK_RAMPS_MAX) {
             ramps[(*ramp_count)++] = ramp_of(modifications, m);
-        else
+        } else {
             rest[(*rest_count)++] = *m;
+        }
     }
     return GM_OK;
 }
@@ -337,8 +381,9 @@ int gm_modifications_split(const gm_modifications *modifications,
 /* Largest second derivative of removed() by s (m). That of the circle is largest at its end. */
 static double curvature_of(const gm_modification *m, double length) {
     const double depth = fabs(m->amount);
-    if (m->shape == GM_SHAPE_PARABOLIC || depth == 0.0)
+    if (m->shape == GM_SHAPE_PARABOLIC || depth == 0.0) {
         return 2.0 * depth;
+    }
     const double radius = 0.5 * (length * (length / depth) + depth);
     const double cosine = (length - depth) * (length + depth) / (length * length + depth * depth);
     return length * length / (radius * cosine * cosine * cosine);
@@ -355,29 +400,33 @@ static double error_of(const gm_modifications *of, const gm_modification *m, int
         const double cell = (m->kind == GM_MOD_CROWNING) == (axis == FACE) ? 2.0 / cells : 0.0;
         return curvature_of(m, length_of(of, m)) * cell * cell / 8.0;
     }
-    if (!(share > 0.0))
+    if (!(share > 0.0)) {
         return 0.0;
+    }
     const double cell = 1.0 / (cells * share);
     const double at = cells * share;
     const double part = at - floor(at);
     double error = curvature_of(m, length_of(of, m)) * cell * cell / 8.0;
-    if (m->shape == GM_SHAPE_LINEAR)
+    if (m->shape == GM_SHAPE_LINEAR) {
         error = depth * cell * (is_corner(m->kind) ? 0.25 : part * (1.0 - part));
+    }
     return error < depth ? error : depth;
 }
 
 static double axis_error(const gm_modifications *of, int axis, int cells) {
     double error = 0.0;
-    for (int k = 0; k < of->count; ++k)
+    for (int k = 0; k < of->count; ++k) {
         error += error_of(of, &of->list[k], axis, cells);
+    }
     return error;
 }
 
 /* Fewest cells, a multiple of `base` up to `most`, with an error within the limit; 0 = none. */
 static int fewest_cells(const gm_modifications *of, int axis, int base, int most, double limit) {
     for (int cells = base; cells <= most; cells += base) {
-        if (axis_error(of, axis, cells) <= limit)
+        if (axis_error(of, axis, cells) <= limit) {
             return cells;
+        }
     }
     return 0;
 }
@@ -400,8 +449,9 @@ static int divide_limit(const gm_modifications *of, const int base[2], double li
     for (size_t k = 0; k < sizeof face_part / sizeof face_part[0]; ++k) {
         const int face = fewest_cells(of, FACE, base[FACE], most_cells(FACE, base, base[PROFILE]),
                                       face_part[k] * limit);
-        if (face == 0)
+        if (face == 0) {
             continue;
+        }
         const int profile =
             fewest_cells(of, PROFILE, base[PROFILE], most_cells(PROFILE, base, face),
                          (1.0 - face_part[k]) * limit);
@@ -419,15 +469,17 @@ static void find_cells(const gm_modifications *of, const int base[2], double tol
                        int cells[2]) {
     double kept = tolerance;
     /* At the latest a limit above all amounts is kept, by the grid that is given. */
-    while (!divide_limit(of, base, kept, cells))
+    while (!divide_limit(of, base, kept, cells)) {
         kept *= 4.0;
+    }
     double missed = 0.25 * kept;
     for (int halving = 0; kept > tolerance && halving < 3; ++halving) {
         const double limit = sqrt(missed * kept);
-        if (divide_limit(of, base, limit, cells))
+        if (divide_limit(of, base, limit, cells)) {
             kept = limit;
-        else
+        } else {
             missed = limit;
+        }
     }
 }
 
@@ -446,16 +498,19 @@ static double rounding_of(const gm_modifications *of) {
 
 int gm_modifications_grid_find(const gm_modifications *modifications, int face_nodes,
                                int profile_nodes, double tolerance, gm_modifications_grid *grid) {
-    if (grid == NULL)
+    if (grid == NULL) {
         return GM_ERR_NULL;
+    }
     grid->face_nodes = grid->profile_nodes = 0;
     grid->error = gmi_nan();
     const int status = status_of(modifications);
-    if (status != GM_OK)
+    if (status != GM_OK) {
         return status;
+    }
     if (!are_nodes(face_nodes) || !are_nodes(profile_nodes) || !gmi_is_finite(tolerance) ||
-        !(tolerance >= SMALLEST_TOLERANCE))
+        !(tolerance >= SMALLEST_TOLERANCE)) {
         return GM_ERR_PARAMETER;
+    }
 
     const int base[2] = {face_nodes - 1, profile_nodes - 1};
     int cells[2] = {base[FACE], base[PROFILE]};

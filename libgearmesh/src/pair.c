@@ -34,8 +34,9 @@ typedef struct problem {
 static const problem no_problem = {GM_OK, NULL, NULL};
 
 void gm_pair_params_default(gm_pair_params *params) {
-    if (params == NULL)
+    if (params == NULL) {
         return;
+    }
     const double missing = gmi_nan();
     const gm_pair_params defaults = {
         .base_helix = GM_BASE_HELIX_ISO,
@@ -144,8 +145,9 @@ static void derive_sections(gm_pair *pair, const gm_pair_params *p) {
                                       : tan(p->helix_angle) * cos_transverse;
     pair->base_helix_angle = atan(tan_base_helix);
     pair->twist = p->face_width * tan_base_helix;
-    if (fabs(pair->twist) < DBL_EPSILON * pair->transverse_base_pitch)
+    if (fabs(pair->twist) < DBL_EPSILON * pair->transverse_base_pitch) {
         pair->twist = 0.0; /* a line climbs less than a phase is rounded: a spur pair */
+    }
     pair->normal_to_transverse = sqrt(1.0 + tan_base_helix * tan_base_helix);
 }
 
@@ -172,10 +174,12 @@ static double derive_pose(gm_pair *pair, double center_distance) {
 
 /* What the thickness of a tooth comes from: what was given for it, else for its mate, else the centre distance. */
 static const char *thickness_field(const gm_pair_params *p, int of_pinion) {
-    if (!isnan(of_pinion ? p->pinion_normal_thickness : p->wheel_normal_thickness))
+    if (!isnan(of_pinion ? p->pinion_normal_thickness : p->wheel_normal_thickness)) {
         return of_pinion ? "pinion_normal_thickness" : "wheel_normal_thickness";
-    if (isnan(p->pinion_profile_shift) && isnan(p->wheel_profile_shift))
+    }
+    if (isnan(p->pinion_profile_shift) && isnan(p->wheel_profile_shift)) {
         return "center_distance";
+    }
     const int own_given = !isnan(of_pinion ? p->pinion_profile_shift : p->wheel_profile_shift);
     return own_given == of_pinion ? "pinion_profile_shift" : "wheel_profile_shift";
 }
@@ -184,13 +188,15 @@ static problem check_thickness(const gm_pair *pair, const gm_pair_params *p) {
     const int backlash_given = !isnan(p->backlash);
     const int pinion_fits = pair->pinion.normal_thickness > 0.0;
     const int wheel_fits = pair->wheel.normal_thickness > 0.0;
-    if (!(pinion_fits && wheel_fits))
+    if (!(pinion_fits && wheel_fits)) {
         return geometry_problem(backlash_given ? "backlash" : thickness_field(p, !pinion_fits),
                                 "a value that leaves the teeth thicker than 0");
+    }
     const int pinion_thicker = pair->pinion.normal_thickness > pair->wheel.normal_thickness;
-    if (!(pair->backlash > -pair->transverse_base_pitch))
+    if (!(pair->backlash > -pair->transverse_base_pitch)) {
         return geometry_problem(backlash_given ? "backlash" : thickness_field(p, pinion_thicker),
                                 "a value that leaves the backlash above minus one base pitch");
+    }
     return no_problem;
 }
 
@@ -209,12 +215,13 @@ static problem derive_thickness(gm_pair *pair, const gm_pair_params *p,
                              (2.0 * tan_normal); /* [ISO21771]: no backlash */
     double x_p = p->pinion_profile_shift;
     double x_w = p->wheel_profile_shift;
-    if (isnan(x_p) && isnan(x_w))
+    if (isnan(x_p) && isnan(x_w)) {
         x_p = x_w = 0.5 * shift_sum;
-    else if (isnan(x_p))
+    } else if (isnan(x_p)) {
         x_p = shift_sum - x_w;
-    else if (isnan(x_w))
+    } else if (isnan(x_w)) {
         x_w = shift_sum - x_p;
+    }
     pinion->profile_shift = x_p;
     wheel->profile_shift = x_w;
 
@@ -254,30 +261,36 @@ static problem derive_flank_ends(gm_pair *pair, const gm_pair_params *p) {
     gmi_gear_set_tip(pinion, default_tip(pinion, p->pinion_tip_radius, p->normal_module));
     gmi_gear_set_tip(wheel, default_tip(wheel, p->wheel_tip_radius, p->normal_module));
     static const char above_base[] = "a radius larger than the base radius";
-    if (!(pinion->tip_roll_length > 0.0))
+    if (!(pinion->tip_roll_length > 0.0)) {
         return geometry_problem("pinion_tip_radius", above_base);
-    if (!(wheel->tip_roll_length > 0.0))
+    }
+    if (!(wheel->tip_roll_length > 0.0)) {
         return geometry_problem("wheel_tip_radius", above_base);
+    }
 
-    if (isnan(p->pinion_start_radius))
+    if (isnan(p->pinion_start_radius)) {
         gmi_gear_set_start_roll_length(pinion, pair->line_of_action - wheel->tip_roll_length);
-    else
+    } else {
         gmi_gear_set_start(pinion, p->pinion_start_radius);
-    if (isnan(p->wheel_start_radius))
+    }
+    if (isnan(p->wheel_start_radius)) {
         gmi_gear_set_start_roll_length(wheel, pair->line_of_action - pinion->tip_roll_length);
-    else
+    } else {
         gmi_gear_set_start(wheel, p->wheel_start_radius);
+    }
 
     static const char below_tip[] = "a radius smaller than the tip radius";
     static const char reach[] = "a radius at which the tips of both gears reach each other";
     const int pinion_ends = pinion->start_roll_length < pinion->tip_roll_length;
     const int wheel_ends = wheel->start_roll_length < wheel->tip_roll_length;
-    if (!pinion_ends)
+    if (!pinion_ends) {
         return isnan(p->pinion_start_radius) ? geometry_problem("pinion_tip_radius", reach)
                                              : geometry_problem("pinion_start_radius", below_tip);
-    if (!wheel_ends)
+    }
+    if (!wheel_ends) {
         return isnan(p->wheel_start_radius) ? geometry_problem("wheel_tip_radius", reach)
                                             : geometry_problem("wheel_start_radius", below_tip);
+    }
     return no_problem;
 }
 
@@ -292,20 +305,24 @@ static problem derive_path(gm_pair *pair) {
     pair->overlap_ratio = fabs(pair->twist) / pair->transverse_base_pitch;
     pair->total_contact_ratio = pair->transverse_contact_ratio + pair->overlap_ratio;
 
-    if (!(pair->path_end > pair->path_start))
+    if (!(pair->path_end > pair->path_start)) {
         return geometry_problem(
             "pinion_tip_radius",
             "a radius at which the active flanks of both gears reach each other");
-    if (!(pair->total_contact_ratio <= LARGEST_CONTACT_RATIO))
+    }
+    if (!(pair->total_contact_ratio <= LARGEST_CONTACT_RATIO)) {
         return geometry_problem("face_width",
                                 "a width that gives a total contact ratio below 1000");
+    }
     return no_problem;
 }
 
 /* Absurd thicknesses and distances put the flanks of the teeth at zero angles far from where they meet. */
 static problem check_place(const gm_pair *pair, const gm_pair_params *p) {
-    if (fabs(pair->phase_origin - pair->path_start) <= LARGEST_PLACE * pair->transverse_base_pitch)
+    if (fabs(pair->phase_origin - pair->path_start) <=
+        LARGEST_PLACE * pair->transverse_base_pitch) {
         return no_problem;
+    }
     return geometry_problem(thickness_field(p, 1),
                             "a value with which the teeth at zero angles stand less than 1000 base "
                             "pitches from their path of contact");
@@ -328,31 +345,38 @@ static problem check_finite(const gm_pair *pair) {
         pair->phase_origin,
     };
     for (size_t k = 0; k < sizeof derived / sizeof derived[0]; ++k) {
-        if (!gmi_is_finite(derived[k]))
+        if (!gmi_is_finite(derived[k])) {
             return geometry_problem("normal_module", "one that goes with the other sizes: "
                                                      "together they overflow");
+        }
     }
     return no_problem;
 }
 
 static problem derive(gm_pair *pair, const gm_pair_params *params) {
     problem found = check_fields(params);
-    if (found.field != NULL)
+    if (found.field != NULL) {
         return found;
+    }
     derive_sections(pair, params);
-    if (!(params->center_distance > pair->pinion.base_radius + pair->wheel.base_radius))
+    if (!(params->center_distance > pair->pinion.base_radius + pair->wheel.base_radius)) {
         return geometry_problem("center_distance",
                                 "a distance larger than the sum of the base radii");
+    }
     const double involute_difference = derive_pose(pair, params->center_distance);
     found = derive_thickness(pair, params, involute_difference);
-    if (found.field == NULL)
+    if (found.field == NULL) {
         found = derive_flank_ends(pair, params);
-    if (found.field == NULL)
+    }
+    if (found.field == NULL) {
         found = derive_path(pair);
-    if (found.field == NULL)
+    }
+    if (found.field == NULL) {
         found = check_finite(pair);
-    if (found.field == NULL)
+    }
+    if (found.field == NULL) {
         found = check_place(pair, params);
+    }
     return found;
 }
 
@@ -377,23 +401,28 @@ int gm_pair_params_check(const gm_pair_params *params, const char **field,
         gm_pair pair = pair_nan();
         found = derive(&pair, params);
     }
-    if (field != NULL)
+    if (field != NULL) {
         *field = found.field;
-    if (requirement != NULL)
+    }
+    if (requirement != NULL) {
         *requirement = found.requirement;
+    }
     return found.status;
 }
 
 int gm_pair_init(gm_pair *pair, const gm_pair_params *params) {
-    if (pair == NULL)
+    if (pair == NULL) {
         return GM_ERR_NULL;
+    }
     *pair = pair_nan();
-    if (params == NULL)
+    if (params == NULL) {
         return GM_ERR_NULL;
+    }
     gm_pair derived = pair_nan();
     const problem found = derive(&derived, params);
-    if (found.status == GM_OK)
+    if (found.status == GM_OK) {
         *pair = derived;
+    }
     return found.status;
 }
 
@@ -417,8 +446,9 @@ static double normal_tip_land(const gm_pair *pair, const gm_gear *gear) {
 }
 
 int gm_pair_doubts(const gm_pair *pair, const gm_pair_params *params) {
-    if (pair == NULL || params == NULL)
+    if (pair == NULL || params == NULL) {
         return 0;
+    }
     const gm_gear *pinion = &pair->pinion;
     const gm_gear *wheel = &pair->wheel;
     const double pinion_form = root_form_roll_length(pair, pinion, wheel);
@@ -426,25 +456,35 @@ int gm_pair_doubts(const gm_pair *pair, const gm_pair_params *params) {
     const double least_land = SMALLEST_TIP_LAND * pair->normal_module;
 
     int doubts = 0;
-    if (pinion_form < 0.0)
+    if (pinion_form < 0.0) {
         doubts |= GM_DOUBT_PINION_UNDERCUT;
-    if (wheel_form < 0.0)
+    }
+    if (wheel_form < 0.0) {
         doubts |= GM_DOUBT_WHEEL_UNDERCUT;
-    if (normal_tip_land(pair, pinion) < least_land)
+    }
+    if (normal_tip_land(pair, pinion) < least_land) {
         doubts |= GM_DOUBT_PINION_TIP_LAND;
-    if (normal_tip_land(pair, wheel) < least_land)
+    }
+    if (normal_tip_land(pair, wheel) < least_land) {
         doubts |= GM_DOUBT_WHEEL_TIP_LAND;
-    if (pinion->start_roll_length < pinion_form)
+    }
+    if (pinion->start_roll_length < pinion_form) {
         doubts |= GM_DOUBT_PINION_ROOT_FORM;
-    if (wheel->start_roll_length < wheel_form)
+    }
+    if (wheel->start_roll_length < wheel_form) {
         doubts |= GM_DOUBT_WHEEL_ROOT_FORM;
-    if (pair->transverse_contact_ratio < 1.0)
+    }
+    if (pair->transverse_contact_ratio < 1.0) {
         doubts |= GM_DOUBT_CONTACT_RATIO;
-    if (pair->backlash < -BACKLASH_ROUNDING * pair->transverse_base_pitch)
+    }
+    if (pair->backlash < -BACKLASH_ROUNDING * pair->transverse_base_pitch) {
         doubts |= GM_DOUBT_BACKLASH;
-    if (params->pinion_start_radius < pinion->base_radius)
+    }
+    if (params->pinion_start_radius < pinion->base_radius) {
         doubts |= GM_DOUBT_PINION_START_RADIUS;
-    if (params->wheel_start_radius < wheel->base_radius)
+    }
+    if (params->wheel_start_radius < wheel->base_radius) {
         doubts |= GM_DOUBT_WHEEL_START_RADIUS;
+    }
     return doubts;
 }

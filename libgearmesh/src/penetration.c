@@ -77,8 +77,9 @@ static double line_origin(const gm_pair *pair, const gmi_lines *lines, int k) {
 static void add_line(const gm_pair *pair, const side_view *view, const gmi_flank *pinion,
                      const gmi_flank *wheel, int k, int wanted, gmi_side_sum *side) {
     const gmi_interval part = gmi_line_clip(&view->lines, k);
-    if (!(part.from < part.to))
+    if (!(part.from < part.to)) {
         return;
+    }
     const double rho_origin = line_origin(pair, &view->lines, k);
     const gmi_line line = {
         part.from,
@@ -91,11 +92,12 @@ static void add_line(const gm_pair *pair, const side_view *view, const gmi_flank
         (view->wheel_reach - rho_origin) * view->wheel_grid.per_rho,
     };
     gmi_line_sum sum;
-    if (view->ramps > 0)
+    if (view->ramps > 0) {
         gmi_ramps_integrate(&line, &view->pinion_grid, &view->wheel_grid, view->pinion_tables,
                             view->wheel_tables, wanted, &sum);
-    else
+    } else {
         gmi_line_integrate(&line, &view->pinion_grid, &view->wheel_grid, wanted, &sum);
+    }
 
     side->sum += sum.sum;
     side->contact += sum.contact;
@@ -108,8 +110,9 @@ static void add_line(const gm_pair *pair, const side_view *view, const gmi_flank
         side->by_delta += sum.contact + by_wheel;
         add_end_derivatives(&view->lines, part, sum.at_from, sum.at_to, side);
     }
-    if (wanted & GMI_MOMENTS)
+    if (wanted & GMI_MOMENTS) {
         add_moments(&view->lines, rho_origin, &sum, side);
+    }
 }
 
 static int next_tooth(int tooth, int step, int teeth) {
@@ -123,8 +126,9 @@ static void sum_tables(const gm_pair *pair, side_view *view, gmi_teeth teeth, in
     for (int k = lines->first; k <= lines->last; ++k) {
         const gmi_flank pinion = gmi_flank_of(view->pinion_tables, teeth.pinion);
         const gmi_flank wheel = gmi_flank_of(view->wheel_tables, teeth.wheel);
-        if (lines->delta + pinion.peak + wheel.peak > 0.0)
+        if (lines->delta + pinion.peak + wheel.peak > 0.0) {
             add_line(pair, view, &pinion, &wheel, k, wanted, side);
+        }
         teeth.pinion = next_tooth(teeth.pinion, teeth.step, pair->pinion.teeth);
         teeth.wheel = next_tooth(teeth.wheel, teeth.step, pair->wheel.teeth);
     }
@@ -155,16 +159,20 @@ void gmi_side_sum_3d(const gm_pair *pair, const gm_flanks *pinion_flanks,
 
     /* Nothing reaches across the gap: the usual state of one of both sides. */
     double reach = gmi_ideal_penetration(pair, side, position->offset);
-    if (pinion != NULL)
+    if (pinion != NULL) {
         reach += pinion->peak;
-    if (wheel != NULL)
+    }
+    if (wheel != NULL) {
         reach += wheel->peak;
-    if (reach <= 0.0)
+    }
+    if (reach <= 0.0) {
         return;
-    if (pinion == NULL && wheel == NULL)
+    }
+    if (pinion == NULL && wheel == NULL) {
         gmi_side_sum_ideal(pair, side, position, wanted, total);
-    else
+    } else {
         side_sum_tables(pair, pinion, wheel, side, position, wanted, total);
+    }
 }
 
 static gm_penetration penetration_nan(void) {
@@ -182,15 +190,19 @@ static void set_rates(gm_penetration *result, double offset_rate) {
 
 int gm_penetration_simple_at(const gm_pair *pair, double offset, double offset_rate,
                              gm_penetration *result) {
-    if (result == NULL)
+    if (result == NULL) {
         return GM_ERR_NULL;
+    }
     *result = penetration_nan();
-    if (pair == NULL)
+    if (pair == NULL) {
         return GM_ERR_NULL;
-    if (!gmi_is_finite(offset) || !gmi_is_finite(offset_rate))
+    }
+    if (!gmi_is_finite(offset) || !gmi_is_finite(offset_rate)) {
         return GM_STATE_NOT_FINITE;
-    if (fabs(offset) > GMI_LARGEST_OFFSET || fabs(offset_rate) > GMI_LARGEST_SPEED)
+    }
+    if (fabs(offset) > GMI_LARGEST_OFFSET || fabs(offset_rate) > GMI_LARGEST_SPEED) {
         return GM_STATE_OUT_OF_RANGE;
+    }
 
     const double drive = offset - 0.5 * pair->backlash;
     const double coast = -offset - 0.5 * pair->backlash;
@@ -214,22 +226,26 @@ static inline int is_tooth(int tooth, int teeth) {
 
 int gmi_check_evaluation(const gm_pair *pair, const gm_flanks *pinion_flanks,
                          const gm_flanks *wheel_flanks, const gm_position *position) {
-    if (pair == NULL || position == NULL)
+    if (pair == NULL || position == NULL) {
         return GM_ERR_NULL;
+    }
     if ((pinion_flanks != NULL && pinion_flanks->teeth != pair->pinion.teeth) ||
-        (wheel_flanks != NULL && wheel_flanks->teeth != pair->wheel.teeth))
+        (wheel_flanks != NULL && wheel_flanks->teeth != pair->wheel.teeth)) {
         return GM_ERR_TOOTH;
+    }
     /* Negated, so that NaN is caught; a phase may be rounded up to p_bt. */
     if (!(fabs(position->offset) < 0.5 * pair->transverse_base_pitch) ||
         !(fabs(position->phase) < 1.5 * pair->transverse_base_pitch) ||
-        !(fabs(position->offset_rate) <= GMI_LARGEST_SPEED))
+        !(fabs(position->offset_rate) <= GMI_LARGEST_SPEED)) {
         return gmi_is_finite(position->offset) && gmi_is_finite(position->phase) &&
                        gmi_is_finite(position->offset_rate)
                    ? GM_STATE_OUT_OF_RANGE
                    : GM_STATE_NOT_FINITE;
+    }
     if (!is_tooth(position->pinion_tooth, pair->pinion.teeth) ||
-        !is_tooth(position->wheel_tooth, pair->wheel.teeth))
+        !is_tooth(position->wheel_tooth, pair->wheel.teeth)) {
         return GM_ERR_TOOTH;
+    }
     return GM_OK;
 }
 
@@ -248,8 +264,9 @@ static void set_derivatives(const gm_pair *pair, const gmi_side_sum *drive,
 static int evaluate(const gm_pair *pair, const gm_flanks *pinion_flanks,
                     const gm_flanks *wheel_flanks, const gm_position *position, int wanted,
                     gm_penetration *result) {
-    if (result == NULL)
+    if (result == NULL) {
         return GM_ERR_NULL;
+    }
     const int status = gmi_check_evaluation(pair, pinion_flanks, wheel_flanks, position);
     if (status != GM_OK) {
         *result = penetration_nan();
@@ -266,10 +283,11 @@ static int evaluate(const gm_pair *pair, const gm_flanks *pinion_flanks,
     result->drive_pairs = drive.pairs;
     result->coast_pairs = coast.pairs;
     set_rates(result, position->offset_rate);
-    if (wanted & GMI_DERIVATIVES)
+    if (wanted & GMI_DERIVATIVES) {
         set_derivatives(pair, &drive, &coast, result);
-    else
+    } else {
         result->d_pinion_angle = result->d_wheel_angle = gmi_nan();
+    }
     return GM_OK;
 }
 
@@ -288,8 +306,9 @@ int gm_penetration_3d_sum_at(const gm_pair *pair, const gm_flanks *pinion_flanks
 int gm_penetration_3d(const gm_pair *pair, const gm_flanks *pinion_flanks,
                       const gm_flanks *wheel_flanks, const gm_state *state,
                       gm_penetration *result) {
-    if (result == NULL)
+    if (result == NULL) {
         return GM_ERR_NULL;
+    }
     gm_position position;
     const int status = gm_position_from_state(pair, state, &position);
     if (status != GM_OK) {

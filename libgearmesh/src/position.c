@@ -27,10 +27,11 @@ static reduced_angle subtract_pitches(const gm_gear *gear, double angle, double 
 static reduced_angle reduce_angle(const gm_gear *gear, double angle) {
     reduced_angle reduced = subtract_pitches(gear, angle, floor(angle / gear->pitch_angle));
     /* The quotient's rounding may be off by one tooth at a boundary. */
-    if (reduced.remainder < 0.0)
+    if (reduced.remainder < 0.0) {
         reduced = subtract_pitches(gear, angle, reduced.turned - 1.0);
-    else if (reduced.remainder >= gear->pitch_angle)
+    } else if (reduced.remainder >= gear->pitch_angle) {
         reduced = subtract_pitches(gear, angle, reduced.turned + 1.0);
+    }
     return reduced;
 }
 
@@ -74,31 +75,37 @@ static double offset_rate_from(const gm_pair *pair, const gm_state *state) {
 
 static int check_state(const gm_state *state) {
     if (!gmi_is_finite(state->pinion_angle) || !gmi_is_finite(state->wheel_angle) ||
-        !gmi_is_finite(state->pinion_speed) || !gmi_is_finite(state->wheel_speed))
+        !gmi_is_finite(state->pinion_speed) || !gmi_is_finite(state->wheel_speed)) {
         return GM_STATE_NOT_FINITE;
+    }
     if (!is_angle(state->pinion_angle) || !is_angle(state->wheel_angle) ||
-        !is_speed(state->pinion_speed) || !is_speed(state->wheel_speed))
+        !is_speed(state->pinion_speed) || !is_speed(state->wheel_speed)) {
         return GM_STATE_OUT_OF_RANGE;
+    }
     return GM_OK;
 }
 
 static int finish(const gm_pair *pair, gm_position *position) {
     if (fabs(position->offset) < 0.5 * pair->transverse_base_pitch &&
-        is_speed(position->offset_rate))
+        is_speed(position->offset_rate)) {
         return GM_OK;
+    }
     *position = position_nan();
     return GM_STATE_OUT_OF_RANGE;
 }
 
 int gm_position_from_state(const gm_pair *pair, const gm_state *state, gm_position *position) {
-    if (position == NULL)
+    if (position == NULL) {
         return GM_ERR_NULL;
+    }
     *position = position_nan();
-    if (pair == NULL || state == NULL)
+    if (pair == NULL || state == NULL) {
         return GM_ERR_NULL;
+    }
     const int status = check_state(state);
-    if (status != GM_OK)
+    if (status != GM_OK) {
         return status;
+    }
 
     const reduced_angle pinion = reduce_angle(&pair->pinion, state->pinion_angle);
     const reduced_angle wheel = reduce_angle(&pair->wheel, state->wheel_angle);
@@ -110,15 +117,19 @@ int gm_position_from_state(const gm_pair *pair, const gm_state *state, gm_positi
 
 int gm_position_from_pinion_angle(const gm_pair *pair, double pinion_angle, double offset,
                                   double offset_rate, gm_position *position) {
-    if (position == NULL)
+    if (position == NULL) {
         return GM_ERR_NULL;
+    }
     *position = position_nan();
-    if (pair == NULL)
+    if (pair == NULL) {
         return GM_ERR_NULL;
-    if (!gmi_is_finite(pinion_angle) || !gmi_is_finite(offset) || !gmi_is_finite(offset_rate))
+    }
+    if (!gmi_is_finite(pinion_angle) || !gmi_is_finite(offset) || !gmi_is_finite(offset_rate)) {
         return GM_STATE_NOT_FINITE;
-    if (!is_angle(pinion_angle))
+    }
+    if (!is_angle(pinion_angle)) {
         return GM_STATE_OUT_OF_RANGE;
+    }
 
     set_pinion(pair, reduce_angle(&pair->pinion, pinion_angle), position);
     position->offset = offset;
@@ -127,8 +138,9 @@ int gm_position_from_pinion_angle(const gm_pair *pair, double pinion_angle, doub
 }
 
 int gm_penetration_simple(const gm_pair *pair, const gm_state *state, gm_penetration *result) {
-    if (pair == NULL || state == NULL || result == NULL)
+    if (pair == NULL || state == NULL || result == NULL) {
         return gm_penetration_simple_at(NULL, gmi_nan(), gmi_nan(), result);
+    }
     const int status = check_state(state);
     if (status != GM_OK) {
         (void)gm_penetration_simple_at(pair, gmi_nan(), gmi_nan(), result);

@@ -43,8 +43,9 @@ static void add_traces(traces *found, const gm_flank_tables *tables, const gmi_g
     const int count = tables == NULL ? 0 : tables->ramp_count;
     for (int k = 0; k < count; ++k) {
         const trace along = trace_of(&tables->ramps[k], grid, profile);
-        if (height(&along, from) > 0.0 || height(&along, to) > 0.0)
+        if (height(&along, from) > 0.0 || height(&along, to) > 0.0) {
             found->list[found->all++] = along;
+        }
     }
 }
 
@@ -54,8 +55,9 @@ static double next_edge(const traces *ramps, double from, double to) {
     for (int k = 0; k < ramps->all; ++k) {
         /* Not a finite number if the line runs along it. */
         const double edge = -ramps->list[k].at_zero / ramps->list[k].per_t1;
-        if (edge > from && edge < next)
+        if (edge > from && edge < next) {
             next = edge;
+        }
     }
     return next;
 }
@@ -69,8 +71,9 @@ static double take_off(gmi_line *part, const traces *ramps, int first, int last)
     double per_profile = 0.0;
     for (int k = first; k < last; ++k) {
         const trace *ramp = &ramps->list[k];
-        if (!(height(ramp, middle) > 0.0))
+        if (!(height(ramp, middle) > 0.0)) {
             continue;
+        }
         part->gap -= height(ramp, part->from);
         part->half_slope -= 0.5 * ramp->per_t1;
         per_profile += ramp->per_profile;
@@ -109,8 +112,9 @@ void gmi_ramps_integrate(const gmi_line *line, const gmi_grid *pinion, const gmi
         sum.pinion -= by_pinion * sum.contact;
         sum.wheel -= by_wheel * sum.contact;
         add_part(&sum, result);
-        if (from == line->from)
+        if (from == line->from) {
             result->at_from = sum.at_from;
+        }
         result->at_to = sum.at_to;
         from = part.to;
     }

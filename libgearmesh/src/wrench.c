@@ -23,8 +23,9 @@ static side_force force_of(const gmi_side_sum *sum, double approach_speed, doubl
     const double viscous = damping * approach_speed;
     side_force result = {0.0, 0.0, 0.0};
     const double force = stiffness * sum->sum + viscous * sum->contact;
-    if (force < 0.0) /* teeth do not pull */
+    if (force < 0.0) { /* teeth do not pull */
         return result;
+    }
     result.force = force;
     result.force_t1 = stiffness * sum->sum_t1 + viscous * sum->contact_t1;
     result.force_rho = stiffness * sum->sum_rho + viscous * sum->contact_rho;
@@ -78,14 +79,17 @@ static void wrench_nan(gm_wrench *wrench) {
 int gm_wrench_3d_at(const gm_pair *pair, const gm_flanks *pinion_flanks,
                     const gm_flanks *wheel_flanks, const gm_position *position, double stiffness,
                     double damping, gm_wrench *wrench) {
-    if (wrench == NULL)
+    if (wrench == NULL) {
         return GM_ERR_NULL;
+    }
     wrench_nan(wrench);
     const int status = gmi_check_evaluation(pair, pinion_flanks, wheel_flanks, position);
-    if (status != GM_OK)
+    if (status != GM_OK) {
         return status;
-    if (!(fabs(stiffness) <= GMI_LARGEST_STIFFNESS) || !(fabs(damping) <= GMI_LARGEST_STIFFNESS))
+    }
+    if (!(fabs(stiffness) <= GMI_LARGEST_STIFFNESS) || !(fabs(damping) <= GMI_LARGEST_STIFFNESS)) {
         return GM_ERR_PARAMETER;
+    }
 
     gmi_side_sum drive, coast;
     gmi_side_sum_3d(pair, pinion_flanks, wheel_flanks, GM_DRIVE, position, GMI_MOMENTS, &drive);

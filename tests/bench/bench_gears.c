@@ -25,8 +25,9 @@ double bench_uniform(unsigned long long *seed) {
 /* Twelve uniform numbers less six: near enough to normal, and without logarithms. */
 static double normal(unsigned long long *seed) {
     double sum = -6.0;
-    for (int k = 0; k < 12; ++k)
+    for (int k = 0; k < 12; ++k) {
         sum += bench_uniform(seed);
+    }
     return sum;
 }
 
@@ -36,14 +37,16 @@ static void stop(const char *what, const char *why) {
 }
 
 void bench_check(int status, const char *what) {
-    if (status != GM_OK)
+    if (status != GM_OK) {
         stop(what, gm_status_text(status));
+    }
 }
 
 static void *allocate(size_t size) {
     void *memory = malloc(size);
-    if (memory == NULL)
+    if (memory == NULL) {
         stop("memory", "none left");
+    }
     return memory;
 }
 
@@ -185,8 +188,9 @@ static void set_ramps(gm_flanks *flanks, const gm_modifications *reliefs, double
     gm_modification rest[RELIEFS];
     int count, rest_count;
     bench_check(gm_modifications_split(reliefs, ramps, &count, rest, &rest_count), "ramps");
-    for (int side = GM_DRIVE; side <= GM_COAST; ++side)
+    for (int side = GM_DRIVE; side <= GM_COAST; ++side) {
         bench_check(gm_flanks_set_ramps(flanks, side, ramps, count, factor), "ramps");
+    }
 }
 
 /* Flanks without tables, or with the finest table of the reliefs that gearsim would have taken. */
@@ -205,15 +209,18 @@ static void make_relief_flanks(bench_flanks *own, const gm_modifications *relief
     const size_t nodes = (size_t)grid.face_nodes * (size_t)grid.profile_nodes;
     own->memory = allocate(size);
     bench_check(gm_flanks_init(&own->flanks, &sizes, own->memory, size), "flanks");
-    if (!in_table)
+    if (!in_table) {
         return;
+    }
     double *values = allocate(nodes * sizeof *values);
-    for (size_t k = 0; k < nodes; ++k)
+    for (size_t k = 0; k < nodes; ++k) {
         values[k] = 0.0;
+    }
     bench_check(gm_modifications_add(reliefs, grid.face_nodes, grid.profile_nodes, values),
                 "table");
-    for (int side = GM_DRIVE; side <= GM_COAST; ++side)
+    for (int side = GM_DRIVE; side <= GM_COAST; ++side) {
         bench_check(gm_flanks_set_table(&own->flanks, side, GM_ALL_TEETH, values, factor), "table");
+    }
     free(values);
 }
 
@@ -224,11 +231,13 @@ static void make_reliefs(bench_gears *gears, const bench_params *params) {
         gm_modification list[RELIEFS];
         const gm_modifications reliefs = {list, RELIEFS, gear[k], pair->face_width};
         list_reliefs(list);
-        if (params->profile_nodes == 0)
+        if (params->profile_nodes == 0) {
             make_relief_flanks(&gears->own[k], &reliefs, params->reliefs == BENCH_RELIEF_TABLE,
                                pair->normal_to_transverse);
-        if (params->reliefs == BENCH_RAMPS)
+        }
+        if (params->reliefs == BENCH_RAMPS) {
             set_ramps(&gears->own[k].flanks, &reliefs, pair->normal_to_transverse);
+        }
     }
 }
 
@@ -261,12 +270,14 @@ static void count_pieces(bench_gears *gears, const gm_position *position,
         const double at_upper = (upper - origin) / pair->twist;
         const double from = fmax(0.0, fmin(at_lower, at_upper));
         const double to = fmin(1.0, fmax(at_lower, at_upper));
-        if (!(from < to))
+        if (!(from < to)) {
             continue;
+        }
         gears->mean_lines += 1.0;
         gears->mean_pieces += 1.0;
-        if (params->profile_nodes == 0)
+        if (params->profile_nodes == 0) {
             continue;
+        }
         gears->mean_pieces +=
             crossings(0.0, face_lines, from, to) +
             crossings((origin - pair->pinion.start_roll_length) * pinion_scale,
@@ -311,8 +322,9 @@ void bench_gears_make(bench_gears *gears, const bench_params *params) {
         make_flanks(&gears->own[0], &gears->pair, params->pinion_teeth, params, &seed);
         make_flanks(&gears->own[1], &gears->pair, params->wheel_teeth, params, &seed);
     }
-    if (params->reliefs != BENCH_NO_RELIEFS)
+    if (params->reliefs != BENCH_NO_RELIEFS) {
         make_reliefs(gears, params);
+    }
     if (params->profile_nodes > 0 || params->reliefs != BENCH_NO_RELIEFS) {
         gears->pinion = &gears->own[0].flanks;
         gears->wheel = &gears->own[1].flanks;

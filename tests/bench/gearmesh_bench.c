@@ -113,9 +113,10 @@ static void run_curve(const bench *b, long count) {
 static void run_slices(const bench *b, long count, enum slice_pairs pairs) {
     const bench_gears *g = b->gears;
     double sum = 0.0;
-    for (long k = 0; k < count; ++k)
+    for (long k = 0; k < count; ++k) {
         sum += slices_sum(&g->pair, g->pinion, g->wheel, &g->positions[k % BENCH_STATES], b->slices,
                           pairs);
+    }
     sink = sum;
 }
 
@@ -165,12 +166,14 @@ enum { CASES = sizeof cases / sizeof cases[0] };
 
 static const bench_case *find_case(const char *name) {
     for (int k = 0; k < CASES; ++k) {
-        if (strcmp(cases[k].name, name) == 0)
+        if (strcmp(cases[k].name, name) == 0) {
             return &cases[k];
+        }
     }
     fprintf(stderr, "gearmesh_bench: no such case: %s; there are:", name);
-    for (int k = 0; k < CASES; ++k)
+    for (int k = 0; k < CASES; ++k) {
         fprintf(stderr, " %s", cases[k].name);
+    }
     fprintf(stderr, "\n");
     exit(2);
 }
@@ -193,8 +196,9 @@ static double measure(const bench_case *c, const bench *b) {
         count *= shortest < 0.1 * shortest_batch_s ? 8 : 2;
         shortest = batch_seconds(c, b, count);
     }
-    for (int k = 1; k < REPETITIONS; ++k)
+    for (int k = 1; k < REPETITIONS; ++k) {
         shortest = fmin(shortest, batch_seconds(c, b, count));
+    }
     return shortest / (double)count;
 }
 
@@ -217,8 +221,10 @@ static int read_counts(counts *read, const char *file_name) {
         return 2;
     }
     while (read->number < COUNTS_MAX && fgets(line, sizeof line, file) != NULL) {
-        if (sscanf(line, "%40[^,],%lf", read->name[read->number], &read->value[read->number]) == 2)
+        if (sscanf(line, "%40[^,],%lf", read->name[read->number], &read->value[read->number]) ==
+            2) {
             read->number++;
+        }
     }
     fclose(file);
     return 0;
@@ -226,8 +232,9 @@ static int read_counts(counts *read, const char *file_name) {
 
 static double count_of(const counts *read, const char *name) {
     for (int k = 0; k < read->number; ++k) {
-        if (strcmp(read->name[k], name) == 0)
+        if (strcmp(read->name[k], name) == 0) {
             return read->value[k];
+        }
     }
     return (double)NAN;
 }
@@ -239,10 +246,11 @@ static void print_table(const bench_gears gears[FLANKS], const counts *counted) 
         const double seconds = measure(&cases[k], &b);
         const double instructions = count_of(counted, cases[k].name);
         printf("%-34s %14.0f %14.1f ", cases[k].text, 1.0 / seconds, 1e9 * seconds);
-        if (instructions > 0.0)
+        if (instructions > 0.0) {
             printf("%14.0f\n", instructions);
-        else
+        } else {
             printf("%14s\n", "-");
+        }
         fflush(stdout);
     }
     printf(
@@ -320,12 +328,15 @@ static int read_options(int argc, char **argv, bench_params *params, int *slices
 
 static bench_params params_of(int flanks) {
     bench_params params = bench_params_default();
-    if (flanks != TABLES && flanks != TABLES_AND_RAMPS)
+    if (flanks != TABLES && flanks != TABLES_AND_RAMPS) {
         params.face_nodes = params.profile_nodes = 0;
-    if (flanks == RAMPS || flanks == TABLES_AND_RAMPS)
+    }
+    if (flanks == RAMPS || flanks == TABLES_AND_RAMPS) {
         params.reliefs = BENCH_RAMPS;
-    if (flanks == RELIEF_TABLE)
+    }
+    if (flanks == RELIEF_TABLE) {
         params.reliefs = BENCH_RELIEF_TABLE;
+    }
     return params;
 }
 
@@ -335,13 +346,15 @@ static int run_one(const char *name, long count, int argc, char **argv) {
     const bench_case *c = find_case(name);
     bench_params params = params_of(c->flanks);
     bench b = {&gears, 51};
-    if (read_options(argc, argv, &params, &b.slices) != 0)
+    if (read_options(argc, argv, &params, &b.slices) != 0) {
         return 2;
+    }
     bench_gears_make(&gears, &params);
-    if (count < 0)
+    if (count < 0) {
         printf("%.1f,%.2f,%.1f\n", 1e9 * measure(c, &b), gears.mean_lines, gears.mean_pieces);
-    else
+    } else {
         c->run(&b, count);
+    }
     bench_gears_free(&gears);
     return 0;
 }
@@ -349,31 +362,38 @@ static int run_one(const char *name, long count, int argc, char **argv) {
 static int run_all(const char *command, const char *instructions) {
     static bench_gears gears[FLANKS];
     static counts counted;
-    if (instructions != NULL && read_counts(&counted, instructions) != 0)
+    if (instructions != NULL && read_counts(&counted, instructions) != 0) {
         return 2;
+    }
     for (int flanks = 0; flanks < FLANKS; ++flanks) {
         const bench_params params = params_of(flanks);
         bench_gears_make(&gears[flanks], &params);
     }
-    if (strcmp(command, "--slices") == 0)
+    if (strcmp(command, "--slices") == 0) {
         print_slices(&gears[TABLES]);
-    else
+    } else {
         print_table(gears, &counted);
-    for (int flanks = 0; flanks < FLANKS; ++flanks)
+    }
+    for (int flanks = 0; flanks < FLANKS; ++flanks) {
         bench_gears_free(&gears[flanks]);
+    }
     return 0;
 }
 
 int main(int argc, char **argv) {
     const char *command = argc > 1 ? argv[1] : "";
-    if (strcmp(command, "--count") == 0 && argc >= 4)
+    if (strcmp(command, "--count") == 0 && argc >= 4) {
         return run_one(argv[2], atol(argv[3]), argc - 4, argv + 4);
-    if (strcmp(command, "--time") == 0 && argc >= 3)
+    }
+    if (strcmp(command, "--time") == 0 && argc >= 3) {
         return run_one(argv[2], -1, argc - 3, argv + 3);
-    if (argc == 1 || strcmp(command, "--slices") == 0)
+    }
+    if (argc == 1 || strcmp(command, "--slices") == 0) {
         return run_all(command, NULL);
-    if (strcmp(command, "--instructions") == 0 && argc == 3)
+    }
+    if (strcmp(command, "--instructions") == 0 && argc == 3) {
         return run_all(command, argv[2]);
+    }
     print_help();
     return strcmp(command, "--help") == 0 ? 0 : 2;
 }

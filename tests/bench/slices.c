@@ -90,8 +90,9 @@ double slices_sum(const gm_pair *pair, const gm_flanks *pinion, const gm_flanks 
         }
         for (int k = first; k <= last; ++k) {
             const double rho = origin + k * pitch;
-            if (rho < s.lower || rho > s.upper)
+            if (rho < s.lower || rho > s.upper) {
                 continue;
+            }
             sum += pair_penetration(&s, wrap(position->pinion_tooth + k, pair->pinion.teeth),
                                     wrap(position->wheel_tooth + k, pair->wheel.teeth), place, rho);
         }

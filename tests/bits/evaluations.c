@@ -31,8 +31,9 @@ static void stop(const char *what) {
 }
 
 static void check(int status) {
-    if (status != GM_OK)
+    if (status != GM_OK) {
         stop(gm_status_text(status));
+    }
 }
 
 static gm_pair make_pair(int number) {
@@ -59,13 +60,15 @@ static gm_flanks make_flanks(int teeth, int coast_face_nodes, uint64_t *seed, vo
     double values[FACE_NODES * PROFILE_NODES];
     gm_flanks flanks;
     *memory = malloc(size);
-    if (*memory == NULL)
+    if (*memory == NULL) {
         stop("no memory");
+    }
     check(gm_flanks_init(&flanks, &sizes, *memory, size));
     for (int tooth = 0; tooth < teeth; ++tooth) {
         for (int side = GM_DRIVE; side <= GM_COAST; ++side) {
-            for (int k = 0; k < FACE_NODES * PROFILE_NODES; ++k)
+            for (int k = 0; k < FACE_NODES * PROFILE_NODES; ++k) {
                 values[k] = uniform(seed, -3e-6, 3e-6);
+            }
             check(gm_flanks_set_table(&flanks, side, tooth, values, 1.125));
             check(gm_flanks_set_pitch(&flanks, side, tooth, uniform(seed, -2e-6, 2e-6)));
         }
@@ -127,21 +130,26 @@ int main(int argc, char **argv) {
     gm_pair pairs[PAIRS];
     uint64_t seed = 11;
     const int writes = argc == 3 && strcmp(argv[2], "--write") == 0;
-    if (argc != 2 && !writes)
+    if (argc != 2 && !writes) {
         stop("usage: evaluations FILE [--write]");
+    }
 
     memset(pairs, 0, sizeof pairs);
     if (writes) {
-        for (int k = 0; k < PAIRS; ++k)
+        for (int k = 0; k < PAIRS; ++k) {
             pairs[k] = make_pair(k);
+        }
     }
     FILE *file = fopen(argv[1], writes ? "wb" : "rb");
-    if (file == NULL ||
-        (writes ? fwrite(pairs, sizeof pairs, 1, file) : fread(pairs, sizeof pairs, 1, file)) != 1)
+    if (file == NULL || (writes ? fwrite(pairs, sizeof pairs, 1, file)
+                                : fread(pairs, sizeof pairs, 1, file)) != 1) {
         stop("the file of the pairs");
-    if (fclose(file) != 0)
+    }
+    if (fclose(file) != 0) {
         stop("the file of the pairs");
-    for (int k = 0; k < PAIRS; ++k)
+    }
+    for (int k = 0; k < PAIRS; ++k) {
         print_pair(&pairs[k], &seed);
+    }
     return 0;
 }

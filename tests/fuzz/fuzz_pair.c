@@ -42,8 +42,9 @@ static void take_params(fuzz_bytes *bytes, int how, gm_pair_params *params) {
         &params->wheel_start_radius,
     };
     if (how & RAW_PARAMS) {
-        for (size_t k = 0; k < sizeof fields / sizeof *fields; ++k)
+        for (size_t k = 0; k < sizeof fields / sizeof *fields; ++k) {
             *fields[k] = fuzz_any(bytes);
+        }
         return;
     }
 
@@ -58,22 +59,30 @@ static void take_params(fuzz_bytes *bytes, int how, gm_pair_params *params) {
     params->helix_angle = helix;
     params->center_distance = (rp + rw) * fuzz_between(bytes, 0.9, 1.1);
     params->face_width = m * fuzz_between(bytes, 0.01, 40.0);
-    if (given & 1)
+    if (given & 1) {
         params->pinion_profile_shift = fuzz_between(bytes, -1.0, 1.5);
-    if (given & 2)
+    }
+    if (given & 2) {
         params->wheel_profile_shift = fuzz_between(bytes, -1.0, 1.5);
-    if (given & 4)
+    }
+    if (given & 4) {
         params->backlash = m * fuzz_between(bytes, -0.2, 0.5);
-    if (given & 8)
+    }
+    if (given & 8) {
         params->pinion_tip_radius = rp + m * fuzz_between(bytes, -1.0, 2.0);
-    if (given & 16)
+    }
+    if (given & 16) {
         params->wheel_tip_radius = rw + m * fuzz_between(bytes, -1.0, 2.0);
-    if (given & 32)
+    }
+    if (given & 32) {
         params->pinion_start_radius = rp + m * fuzz_between(bytes, -3.0, 1.0);
-    if (given & 64)
+    }
+    if (given & 64) {
         params->wheel_start_radius = rw + m * fuzz_between(bytes, -3.0, 1.0);
-    if (given & 128)
+    }
+    if (given & 128) {
         params->pinion_normal_thickness = m * fuzz_between(bytes, 0.5, 2.5);
+    }
 }
 
 /* A few tables, pitch deviations and ramps; NULL if the bytes ask for ideal flanks. */
@@ -95,9 +104,10 @@ static void *take_flanks(fuzz_bytes *bytes, int how, int teeth, double m, gm_fla
     }
     for (int calls = fuzz_byte(bytes) % 8; calls > 0; --calls) {
         double values[25];
-        for (int k = 0; k < 25; ++k)
+        for (int k = 0; k < 25; ++k) {
             values[k] =
                 how & RAW_DEVIATIONS ? fuzz_any(bytes) : m * fuzz_between(bytes, -0.02, 0.02);
+        }
         const int side = fuzz_byte(bytes) % 3;
         const int tooth = fuzz_byte(bytes) - 1;
         const int status = fuzz_byte(bytes) & 1
@@ -111,9 +121,10 @@ static void *take_flanks(fuzz_bytes *bytes, int how, int teeth, double m, gm_fla
         const int count = fuzz_byte(bytes) % (GM_FLANK_RAMPS_MAX + 1);
         for (int k = 0; k < count; ++k) {
             double *const fields[] = {&ramps[k].offset, &ramps[k].per_t1, &ramps[k].per_t2};
-            for (int field = 0; field < 3; ++field)
+            for (int field = 0; field < 3; ++field) {
                 *fields[field] =
                     how & RAW_DEVIATIONS ? fuzz_any(bytes) : m * fuzz_between(bytes, -0.1, 0.1);
+            }
         }
         const int status = gm_flanks_set_ramps(flanks, side, ramps, count, 1.0);
         FUZZ_CLAIM(status == GM_OK || status == GM_ERR_DEVIATION);
@@ -123,8 +134,9 @@ static void *take_flanks(fuzz_bytes *bytes, int how, int teeth, double m, gm_fla
 
 /* All finite on success, all NaN on any error. */
 static void claim_numbers(int status, const double *numbers, size_t count) {
-    for (size_t k = 0; k < count; ++k)
+    for (size_t k = 0; k < count; ++k) {
         FUZZ_CLAIM(status == GM_OK ? isfinite(numbers[k]) : isnan(numbers[k]));
+    }
 }
 
 static void claim_penetration(int status, const gm_penetration *result) {
@@ -218,8 +230,9 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size) {
         const double length = fabs(torque) / (stiffness * pair.wheel.base_radius);
         const double little = 0.02 * pair.transverse_base_pitch;
         if (!(how & RAW_DEVIATIONS) && pair.transverse_contact_ratio > 0.5 &&
-            pair.backlash > -little && length < little && length > 1e-15 * pair.center_distance)
+            pair.backlash > -little && length < little && length > 1e-15 * pair.center_distance) {
             FUZZ_CLAIM(again == found);
+        }
         claim_numbers(again, &offset, 1);
         claim_penetration(again, &result);
     }

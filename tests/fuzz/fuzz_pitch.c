@@ -21,9 +21,10 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size) {
     }
     FUZZ_CLAIM(gm_pitch_write(&read, copy, &error) == GM_IO_OK);
     FUZZ_CLAIM(gm_pitch_read(&again, copy, teeth, &error) == GM_IO_OK);
-    for (int tooth = 0; tooth < teeth; ++tooth)
+    for (int tooth = 0; tooth < teeth; ++tooth) {
         FUZZ_CLAIM(again.drive[tooth] == read.drive[tooth] &&
                    again.coast[tooth] == read.coast[tooth]);
+    }
     gm_pitch_free(&again);
     gm_pitch_free(&read);
     return 0;

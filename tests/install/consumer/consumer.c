@@ -21,8 +21,9 @@ int main(void) {
     const gm_state state = {.pinion_angle = 1e-3, .wheel_angle = 0, .pinion_speed = 100};
     gm_penetration result;
     int status = gm_pair_init(&pair, &params);
-    if (status == GM_OK)
+    if (status == GM_OK) {
         status = gm_penetration_3d(&pair, NULL, NULL, &state, &result);
+    }
     if (status != GM_OK) {
         fprintf(stderr, "%s\n", gm_status_text(status));
         return 1;
