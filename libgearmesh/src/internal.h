@@ -8,6 +8,7 @@
 #ifndef GEARMESH_INTERNAL_H
 #define GEARMESH_INTERNAL_H
 
+#include "arithmetic.h"
 #include "gearmesh/gearmesh.h"
 
 #include <math.h>
