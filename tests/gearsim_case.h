@@ -8,7 +8,7 @@
 #ifndef GEARSIM_CASE_H
 #define GEARSIM_CASE_H
 
-#include "gearbox.h"
+#include "gear_mesh.h"
 #include "reference_gear.h"
 
 static const double case_wheel_inertia = 2.1e-3, case_pinion_inertia = 1.7e-3; /* kg m2 */
@@ -36,8 +36,8 @@ static inline config case_config(enum mesh_model model, enum drive_kind drive) {
 }
 
 /* Ideal flanks. */
-static inline gearbox case_gearbox(const config *conf) {
-    gearbox gears = {.pinion_flanks = NULL};
+static inline gear_mesh case_mesh(const config *conf) {
+    gear_mesh gears = {.pinion_flanks = NULL};
     gm_pair_init(&gears.pair, &conf->gears);
     gears.simple_stiffness = conf->stiffness * gears.pair.transverse_contact_ratio;
     gears.simple_damping = conf->damping * gears.pair.transverse_contact_ratio;

@@ -21,7 +21,7 @@ static integrator *create(const gear_model *model, enum solver_method method, do
 /* Largest error of x (um) of an oscillator let go 1 um from its rest, over ten vibrations. */
 static double oscillator_error(enum solver_method method, double tolerance, long *steps) {
     const config conf = case_config(MODEL_SIMPLE, DRIVE_SPEED);
-    const gearbox gears = case_gearbox(&conf);
+    const gear_mesh gears = case_mesh(&conf);
     gear_model model;
     double rest[STATES_MAX], start[STATES_MAX], largest = 0.0;
     model_init(&model, &conf, &gears);
@@ -81,7 +81,7 @@ static void bouncing_keeps_energy_and_period(void) {
         config conf = case_config(MODEL_SIMPLE, DRIVE_SPEED);
         conf.mean_load = 0.0;
         conf.damping = 0.0;
-        const gearbox gears = case_gearbox(&conf);
+        const gear_mesh gears = case_mesh(&conf);
         gear_model model;
         model_init(&model, &conf, &gears);
 
@@ -116,8 +116,8 @@ static void bouncing_keeps_energy_and_period(void) {
 }
 
 /* x'' of the simple model from its definition, with the load as it is. */
-static double simple_acceleration(const gearbox *gears, const load_signal *load, double t, double x,
-                                  double v) {
+static double simple_acceleration(const gear_mesh *gears, const load_signal *load, double t,
+                                  double x, double v) {
     const double r_bw = gears->pair.wheel.base_radius;
     const double over = fabs(x) - 0.5 * gears->pair.backlash, sign = x > 0.0 ? 1.0 : -1.0;
     const double spring = gears->simple_stiffness * over + sign * gears->simple_damping * v;
@@ -127,7 +127,7 @@ static double simple_acceleration(const gearbox *gears, const load_signal *load,
 }
 
 /* One step of the classical Runge-Kutta method of order 4. */
-static void runge_kutta(const gearbox *gears, const load_signal *load, double t, double h,
+static void runge_kutta(const gear_mesh *gears, const load_signal *load, double t, double h,
                         double *x, double *v) {
     const double k1x = *v, k1v = simple_acceleration(gears, load, t, *x, *v);
     const double k2x = *v + 0.5 * h * k1v,
@@ -156,7 +156,7 @@ static void noise_errors(const noise_case *noise, double errors[METHODS], double
     conf.noise_amplitude = noise->amplitude;
     conf.damping *= noise->damping;
     conf.seed = 3;
-    const gearbox gears = case_gearbox(&conf);
+    const gear_mesh gears = case_mesh(&conf);
     gear_model models[METHODS]; /* each has its own look back at the noise */
     integrator *solvers[METHODS];
     double state[STATES_MAX];
@@ -232,7 +232,7 @@ static void undamped_error(integrator *solver, double w0, double rest, double t,
 static void values_within_a_step_are_as_good_as_its_ends(void) {
     config conf = case_config(MODEL_SIMPLE, DRIVE_SPEED);
     conf.damping = 0.0;
-    const gearbox gears = case_gearbox(&conf);
+    const gear_mesh gears = case_mesh(&conf);
     gear_model model;
     double start[STATES_MAX], from[2], inside[2], to[2], longest = 0.0;
     model_init(&model, &conf, &gears);
@@ -265,7 +265,7 @@ static void values_within_a_step_are_as_good_as_its_ends(void) {
 /* Samples may lie anywhere between the solver's steps, and more than one in a step. */
 static void the_first_sample_is_the_start(void) {
     const config conf = case_config(MODEL_3D, DRIVE_TORQUE);
-    const gearbox gears = case_gearbox(&conf);
+    const gear_mesh gears = case_mesh(&conf);
     gear_model model;
     double start[STATES_MAX], state[STATES_MAX];
     model_init(&model, &conf, &gears);
@@ -286,7 +286,7 @@ static void the_first_sample_is_the_start(void) {
 /* Thrown at the flanks so hard that the mesh would skip a tooth: the reason is told, not a number. */
 static void a_skipped_tooth_is_a_failure_with_its_reason(void) {
     const config conf = case_config(MODEL_3D, DRIVE_SPEED);
-    const gearbox gears = case_gearbox(&conf);
+    const gear_mesh gears = case_mesh(&conf);
     gear_model model;
     model_init(&model, &conf, &gears);
 
@@ -313,7 +313,7 @@ static void no_tooth_is_stepped_over(void) {
 
     for (int i = 0; i < 2 * METHODS; ++i) {
         const config conf = case_config(MODEL_3D, DRIVE_SPEED);
-        const gearbox gears = case_gearbox(&conf);
+        const gear_mesh gears = case_mesh(&conf);
         const integrator_options options = {.method = methods[i / 2],
                                             .relative_tolerance = 1e-4,
                                             .absolute_tolerance = 1e-10,

@@ -42,7 +42,7 @@ static void bodies_obey_newton(void) {
     for (int d = 0; d < 2; ++d) {
         config conf = case_config(MODEL_SIMPLE, drives[d]);
         conf.end_speed = 400.0;
-        const gearbox gears = case_gearbox(&conf);
+        const gear_mesh gears = case_mesh(&conf);
         gear_model model;
         GM_ASSERT_INT(model_init(&model, &conf, &gears), 0);
 
@@ -96,7 +96,7 @@ static void jacobian_is_that_of_differences(void) {
     for (int m = 0; m < 2; ++m) {
         for (int d = 0; d < 2; ++d) {
             config conf = case_config(meshes[m], drives[d]);
-            const gearbox gears = case_gearbox(&conf);
+            const gear_mesh gears = case_mesh(&conf);
             gear_model model;
             int compared = 0, kinks = 0;
             uint64_t seed = 5;
@@ -130,7 +130,7 @@ static void jacobian_is_that_of_differences(void) {
 /* The damping's entry needs x' != 0 on neither side of zero: in firm contact it is D times the contact. */
 static void jacobian_knows_when_flanks_would_pull(void) {
     const config conf = case_config(MODEL_SIMPLE, DRIVE_SPEED);
-    const gearbox gears = case_gearbox(&conf);
+    const gear_mesh gears = case_mesh(&conf);
     gear_model model;
     double state[STATES_MAX], jacobian[STATES_MAX][STATES_MAX];
     model_init(&model, &conf, &gears);
@@ -162,7 +162,7 @@ static void start_is_an_equilibrium(void) {
                 conf.mean_load = loads[l];
                 conf.drive_torque = 1.2 * loads[l];
                 conf.end_speed = 400.0;
-                const gearbox gears = case_gearbox(&conf);
+                const gear_mesh gears = case_mesh(&conf);
                 gear_model model;
                 double state[STATES_MAX], offset, pinion;
                 model_init(&model, &conf, &gears);
@@ -184,7 +184,7 @@ static void start_is_an_equilibrium(void) {
 static void simple_start_is_the_closed_form(void) {
     config conf = case_config(MODEL_SIMPLE, DRIVE_SPEED);
     conf.end_speed = 400.0;
-    const gearbox gears = case_gearbox(&conf);
+    const gear_mesh gears = case_mesh(&conf);
     const double r_bp = gears.pair.pinion.base_radius, r_bw = gears.pair.wheel.base_radius;
     const double force = (20.0 + case_wheel_inertia * 300.0 * r_bp / r_bw) / r_bw;
     gear_model model;
@@ -200,7 +200,7 @@ static void without_a_force_it_starts_in_the_middle(void) {
     for (int m = 0; m < 2; ++m) {
         config conf = case_config(meshes[m], DRIVE_SPEED);
         conf.mean_load = 0.0;
-        const gearbox gears = case_gearbox(&conf);
+        const gear_mesh gears = case_mesh(&conf);
         gear_model model;
         double state[STATES_MAX];
 
@@ -219,7 +219,7 @@ static void negative_backlash_starts_preloaded(void) {
         config conf = case_config(MODEL_SIMPLE, DRIVE_SPEED);
         conf.gears.backlash = -10e-6;
         conf.mean_load = loads[i];
-        const gearbox gears = case_gearbox(&conf);
+        const gear_mesh gears = case_mesh(&conf);
         gear_model model;
         double state[STATES_MAX], offset, pinion;
 
@@ -235,7 +235,7 @@ static void negative_backlash_starts_preloaded(void) {
 /* The library's status comes through: a skipped tooth is for a smaller step, a bad call is for nobody. */
 static void library_status_is_handed_on(void) {
     const config conf = case_config(MODEL_3D, DRIVE_SPEED);
-    const gearbox gears = case_gearbox(&conf);
+    const gear_mesh gears = case_mesh(&conf);
     gear_model model;
     double state[STATES_MAX], derivative[STATES_MAX], jacobian[STATES_MAX][STATES_MAX];
     model_init(&model, &conf, &gears);
@@ -251,7 +251,7 @@ static void library_status_is_handed_on(void) {
 /* However far the pinion has turned, its tolerance is the same: relative ones would grow without end. */
 static void tolerance_of_the_angle_never_loosens(void) {
     const config conf = case_config(MODEL_3D, DRIVE_TORQUE);
-    const gearbox gears = case_gearbox(&conf);
+    const gear_mesh gears = case_mesh(&conf);
     gear_model model;
     double state[STATES_MAX], early[STATES_MAX], late[STATES_MAX];
     model_init(&model, &conf, &gears);
@@ -273,7 +273,7 @@ static void longest_step_is_a_part_of_a_tooth(void) {
     config conf = case_config(MODEL_3D, DRIVE_SPEED);
     conf.start_speed = 0.0;
     conf.end_speed = 1000.0;
-    const gearbox gears = case_gearbox(&conf);
+    const gear_mesh gears = case_mesh(&conf);
     gear_model model;
     double state[STATES_MAX];
     model_init(&model, &conf, &gears);

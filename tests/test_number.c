@@ -1,7 +1,7 @@
 /* SPDX-FileCopyrightText: The gearmesh authors */
 /* SPDX-License-Identifier: BSD-3-Clause */
 
-/* apps/gearsim/number.c: the same text as printf("%.*g"), for any value and number of digits. */
+/* apps/common/number.c: the same text as printf("%.*g"), for any value and number of digits. */
 #include "number.h"
 
 #include "gm_test.h"

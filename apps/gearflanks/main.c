@@ -5,7 +5,7 @@
  * gearflanks: makes the flank and pitch files of a gear, of a class of ISO 1328-1, with amounts that scatter, or from
  * measured traces, and says which class such files measure to. `gearflanks --help` says all of its use.
  */
-#include "gearbox.h"
+#include "gear_mesh.h"
 #include "make.h"
 #include "measured.h"
 #include "report.h"
@@ -30,16 +30,16 @@ static int load_and_do(const flanks_options *options) {
                                     .quiet = 1, /* doubts about the gears are gearsim's to tell */
                                     .purpose = CONFIG_FOR_GEOMETRY};
     config conf;
-    gearbox box;
+    gear_mesh mesh;
     int status = config_load(&conf, &request);
 
     if (status != 0) {
         return status;
     }
-    status = gearbox_open(&box, &conf);
+    status = gear_mesh_open(&mesh, &conf);
     if (status == 0) {
-        status = do_with_gears(options, &box.pair, &conf);
-        gearbox_close(&box);
+        status = do_with_gears(options, &mesh.pair, &conf);
+        gear_mesh_close(&mesh);
     }
     config_free(&conf);
     return status;

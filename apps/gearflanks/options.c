@@ -2,7 +2,7 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 
 #include "options.h"
-#include "output.h"
+#include "paths.h"
 #include "scatter.h"
 
 #include <errno.h>
@@ -430,7 +430,7 @@ static int check_outputs(const flanks_options *options) {
         }
     }
     for (int i = 0; i < 2; ++i) {
-        const char *reason = outputs[i] != NULL ? output_obstacle(outputs[i]) : NULL;
+        const char *reason = outputs[i] != NULL ? path_obstacle(outputs[i]) : NULL;
         if (reason != NULL) {
             fprintf(stderr, "%s: cannot be written: it %s\n", outputs[i], reason);
             return EXIT_BAD_INPUT;

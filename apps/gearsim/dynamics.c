@@ -226,7 +226,7 @@ static int start_filter(dynamic_run *run) {
     return run->filter != NULL ? 0 : out_of_memory();
 }
 
-static int start_run(dynamic_run *run, const gearbox *gears) {
+static int start_run(dynamic_run *run, const gear_mesh *gears) {
     if (model_init(&run->model, run->conf, gears) != 0) {
         return out_of_memory();
     }
@@ -264,7 +264,7 @@ static int end_run(dynamic_run *run, int exit_code) {
     return exit_code != 0 ? exit_code : closed;
 }
 
-int dynamics_run(const config *conf, const gearbox *gears) {
+int dynamics_run(const config *conf, const gear_mesh *gears) {
     dynamic_run run = {.conf = conf,
                        .rows = floor(conf->duration * conf->output_rate + 1e-9) + 1.0};
 

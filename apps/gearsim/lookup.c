@@ -19,7 +19,7 @@ static int is_wanted(const config *conf) {
            conf->analysis == ANALYSIS_DYNAMIC;
 }
 
-int lookup_check(const config *conf, const gearbox *gears) {
+int lookup_check(const config *conf, const gear_mesh *gears) {
     const double deepest = 0.25 * gears->pair.transverse_base_pitch;
 
     if (!is_wanted(conf)) {
@@ -41,7 +41,7 @@ int lookup_check(const config *conf, const gearbox *gears) {
     return 0;
 }
 
-int lookup_create(gm_cache **cache, const config *conf, const gearbox *gears) {
+int lookup_create(gm_cache **cache, const config *conf, const gear_mesh *gears) {
     const gm_cache_params params = params_of(conf);
 
     *cache = NULL;

@@ -5,13 +5,13 @@
 #ifndef GEARSIM_LOOKUP_H
 #define GEARSIM_LOOKUP_H
 
-#include "gearbox.h"
+#include "gear_mesh.h"
 
 /* Whether these gears can have what is asked for. Returns 0, or EXIT_BAD_INPUT after a message on stderr. */
-int lookup_check(const config *conf, const gearbox *gears);
+int lookup_check(const config *conf, const gear_mesh *gears);
 
 /* NULL if the run is not to use one. Returns 0, or EXIT_RUN_FAILED if there is no memory. */
-int lookup_create(gm_cache **cache, const config *conf, const gearbox *gears);
+int lookup_create(gm_cache **cache, const config *conf, const gear_mesh *gears);
 void lookup_free(gm_cache *cache);
 
 #endif

@@ -11,7 +11,9 @@
  */
 #include "arguments.h"
 #include "dynamics.h"
-#include "gearbox.h"
+#include "gear_mesh.h"
+#include "geometry_listing.h"
+#include "lookup.h"
 #include "output.h"
 #include "statics.h"
 
@@ -24,34 +26,36 @@ static int check_output(const config *conf) {
                : output_check(conf, dynamic_columns, dynamic_column_count);
 }
 
-static int run(const config *conf, const gearbox *box) {
-    return conf->analysis == ANALYSIS_STATIC ? statics_run(conf, box) : dynamics_run(conf, box);
+static int run(const config *conf, const gear_mesh *mesh) {
+    return conf->analysis == ANALYSIS_STATIC ? statics_run(conf, mesh) : dynamics_run(conf, mesh);
 }
 
-static int perform(enum task task, const config *conf, const gearbox *box) {
-    int status;
-
+static int perform(enum task task, const config *conf, const gear_mesh *mesh) {
     if (task == TASK_GEOMETRY) {
-        gearbox_print_geometry(box, conf, stdout);
+        geometry_print(mesh, conf, stdout);
         return EXIT_DONE;
     }
-    status = check_output(conf);
-    return status != 0 || task == TASK_CHECK ? status : run(conf, box);
+
+    int status = lookup_check(conf, mesh);
+    if (status == 0) {
+        status = check_output(conf);
+    }
+    return status != 0 || task == TASK_CHECK ? status : run(conf, mesh);
 }
 
 static int load_and_perform(const arguments *args) {
     config conf;
-    gearbox box;
+    gear_mesh mesh;
     int status = config_load(&conf, &args->request);
 
     if (status != 0) {
         return status;
     }
-    status = gearbox_open(&box, &conf);
+    status = gear_mesh_open(&mesh, &conf);
     if (status == 0) {
-        gearbox_note(&box, &conf);
-        status = perform(args->task, &conf, &box);
-        gearbox_close(&box);
+        gear_mesh_note(&mesh, &conf);
+        status = perform(args->task, &conf, &mesh);
+        gear_mesh_close(&mesh);
     }
     config_free(&conf);
     return status;

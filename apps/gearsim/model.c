@@ -41,7 +41,7 @@ static double square(double value) {
 }
 
 static void init_mesh(gear_model *model, const config *conf) {
-    const gearbox *gears = model->gears;
+    const gear_mesh *gears = model->gears;
 
     if (model->mesh == MODEL_SIMPLE) {
         model->stiffness = gears->simple_stiffness;
@@ -93,7 +93,7 @@ static int init_response(gear_model *model) {
     return 0;
 }
 
-int model_init(gear_model *model, const config *conf, const gearbox *gears) {
+int model_init(gear_model *model, const config *conf, const gear_mesh *gears) {
     model->gears = gears;
     model->noise = NULL;
     model->lookup = NULL;
@@ -136,7 +136,7 @@ static double simple_equilibrium(const gear_model *model, double force) {
 }
 
 static int equilibrium(const gear_model *model, double force, double *offset) {
-    const gearbox *gears = model->gears;
+    const gear_mesh *gears = model->gears;
 
     /* Nothing to carry: the middle of the backlash. */
     if (force == 0.0 && gears->pair.backlash >= 0.0) {
@@ -229,7 +229,7 @@ gear_motion model_motion(const gear_model *model, double time, const double stat
 /* The one of the library's exact functions that does no more than is asked for. */
 static int exact_penetration(const gear_model *model, const gear_motion *motion, int derivatives,
                              gm_penetration *penetration) {
-    const gearbox *gears = model->gears;
+    const gear_mesh *gears = model->gears;
 
     if (model->mesh == MODEL_SIMPLE) {
         return gm_penetration_simple_at(&gears->pair, motion->offset, motion->offset_rate,

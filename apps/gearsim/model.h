@@ -24,7 +24,7 @@
 #define GEARSIM_MODEL_H
 
 #include "drive.h"
-#include "gearbox.h"
+#include "gear_mesh.h"
 #include "load.h"
 #include "lookup.h"
 #include "response.h"
@@ -39,7 +39,7 @@ enum model_state {
 };
 
 typedef struct gear_model {
-    const gearbox *gears;
+    const gear_mesh *gears;
     enum mesh_model mesh;
     pinion_drive drive;
     load_signal load;
@@ -66,7 +66,7 @@ typedef struct gear_motion {
 } gear_motion;
 
 /* Returns 0, or EXIT_RUN_FAILED if there is no memory. */
-int model_init(gear_model *model, const config *conf, const gearbox *gears);
+int model_init(gear_model *model, const config *conf, const gear_mesh *gears);
 void model_free(gear_model *model);
 
 /* State in which x' = x'' = 0 at the mean load. Returns a library status. */

@@ -3,6 +3,7 @@
 #define _XOPEN_SOURCE 700
 
 #include "output_format.h"
+#include "paths.h"
 
 #include <errno.h>
 #include <fcntl.h>
@@ -68,26 +69,11 @@ static char *resolved(const char *path) {
     return target != NULL ? target : copy_of(path, "");
 }
 
-const char *output_obstacle(const char *path) {
-    struct stat status;
-
-    if (stat(path, &status) != 0) {
-        return NULL;
-    }
-    if (S_ISDIR(status.st_mode)) {
-        return "is a folder; name a file";
-    }
-    if (!S_ISREG(status.st_mode)) {
-        return "is not a regular file; name a file";
-    }
-    return access(path, W_OK) != 0 ? "is write-protected" : NULL;
-}
-
 /* The same for the result or the file that it grows in. */
 static const char *obstacle(const char *path, const char *part) {
-    const char *reason = output_obstacle(path);
+    const char *reason = path_obstacle(path);
 
-    return reason != NULL ? reason : output_obstacle(part);
+    return reason != NULL ? reason : path_obstacle(part);
 }
 
 /* The folder must be there and take new files. NULL if so. */

@@ -13,10 +13,6 @@
 
 typedef struct output_file output_file;
 
-/* Why what is at `path` cannot become a result, NULL if it can or nothing is there. A device or pipe would be
- * replaced by a file. */
-const char *output_obstacle(const char *path);
-
 /* Checks that the columns asked for exist among `names` and that the file can be written, without
  * touching an existing FILE. Used by --check as well. Returns 0, EXIT_BAD_INPUT after a message. */
 int output_check(const config *conf, const char *const names[], int name_count);

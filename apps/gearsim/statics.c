@@ -61,7 +61,7 @@ typedef struct sweep {
     double slope;  /* its derivative by the pinion angle (m/rad) */
 } sweep;
 
-static int write_position(const config *conf, const gearbox *gears, double angle, sweep *before,
+static int write_position(const config *conf, const gear_mesh *gears, double angle, sweep *before,
                           output_file *output, int *status) {
     const gm_pair *pair = &gears->pair;
     const double guess = before->offset + before->slope * (angle - before->angle);
@@ -125,7 +125,7 @@ static int interrupted(output_file *output, double load, double angle) {
 }
 
 /* The period under one load; 0, or an exit code and the file is closed. */
-static int write_period(const config *conf, const gearbox *gears, double load,
+static int write_period(const config *conf, const gear_mesh *gears, double load,
                         output_file *output) {
     sweep before = {load, 0.0, (double)NAN, 0.0};
 
@@ -143,7 +143,7 @@ static int write_period(const config *conf, const gearbox *gears, double load,
     return 0;
 }
 
-static int write_all(const config *conf, const gearbox *gears, output_file *output) {
+static int write_all(const config *conf, const gear_mesh *gears, output_file *output) {
     for (int index = 0; index < conf->loads; ++index) {
         const int exit_code = write_period(conf, gears, load_of(conf, index), output);
         if (exit_code != 0) {
@@ -153,7 +153,7 @@ static int write_all(const config *conf, const gearbox *gears, output_file *outp
     return output_close(output, NULL);
 }
 
-int statics_run(const config *conf, const gearbox *gears) {
+int statics_run(const config *conf, const gear_mesh *gears) {
     int exit_code = 0;
 
     interrupt_watch();

@@ -5,9 +5,9 @@
 #ifndef GEARSIM_STATICS_H
 #define GEARSIM_STATICS_H
 
-#include "gearbox.h"
+#include "gear_mesh.h"
 
 /* Returns an exit code, after a message on stderr if it is not EXIT_DONE. */
-int statics_run(const config *conf, const gearbox *gears);
+int statics_run(const config *conf, const gear_mesh *gears);
 
 #endif

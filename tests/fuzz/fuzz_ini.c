@@ -9,7 +9,8 @@
 #include "fuzz_file.h"
 
 #include <config.h>
-#include <gearbox.h>
+#include <gear_mesh.h>
+#include <geometry_listing.h>
 #include <math.h>
 
 static void claim_config(const config *conf) {
@@ -31,18 +32,18 @@ static int load(enum config_purpose purpose) {
     claim_config(&conf);
 
     /* Flank files have fuzzers of their own, and a name may be that of a device. */
-    gearbox box;
+    gear_mesh mesh;
     int opened = 0;
     if (conf.pinion_flanks.deviations == NULL && conf.pinion_flanks.pitch == NULL &&
         conf.wheel_flanks.deviations == NULL && conf.wheel_flanks.pitch == NULL) {
-        opened = gearbox_open(&box, &conf);
+        opened = gear_mesh_open(&mesh, &conf);
         FUZZ_CLAIM(opened == 0 || opened == EXIT_BAD_INPUT);
         if (opened == 0) {
             FILE *nowhere = fopen("/dev/null", "w");
             FUZZ_CLAIM(nowhere != NULL);
-            gearbox_print_geometry(&box, &conf, nowhere);
+            geometry_print(&mesh, &conf, nowhere);
             fclose(nowhere);
-            gearbox_close(&box);
+            gear_mesh_close(&mesh);
         }
     }
     config_free(&conf);

@@ -5,8 +5,10 @@
  * What a run is asked to do: the INI file and the command line, checked and converted to SI once. NaN in
  * an optional number means that the key is missing.
  */
-#ifndef GEARSIM_CONFIG_H
-#define GEARSIM_CONFIG_H
+#ifndef APPS_CONFIG_H
+#define APPS_CONFIG_H
+
+#include "exit_code.h"
 
 #include <gearmesh/gearmesh.h>
 #include <stdint.h>
@@ -110,9 +112,6 @@ typedef struct config {
 /* Room for config_note(). */
 enum { PROVENANCE_NOTES = 24 };
 
-/* Exit codes of gearsim. */
-enum exit_code { EXIT_DONE = 0, EXIT_RUN_FAILED = 1, EXIT_BAD_INPUT = 2, EXIT_INTERRUPTED = 130 };
-
 /* What the command line asks for. */
 typedef struct config_request {
     const char *path;       /* of the INI file */
@@ -134,9 +133,6 @@ typedef struct config_request {
 int config_load(config *config, const config_request *request);
 
 void config_free(config *config);
-
-/* Whether two paths lead to one file, also by links. 0 or 1. */
-int is_same_file(const char *a, const char *b);
 
 /* Where a key was set, for messages about its value that only a later step can find: prints
  * "file:line: section.key: " (or "--set section.key: ") and then the formatted message and a newline. */

@@ -5,8 +5,8 @@
  * Reads an INI file into the struct that a table of keys fills. Faults are told on stderr as they are met, as
  * `file:line: section.key: what is wrong (got VALUE), and what would be right`, and counted.
  */
-#ifndef GEARSIM_KEY_READER_H
-#define GEARSIM_KEY_READER_H
+#ifndef APPS_KEY_READER_H
+#define APPS_KEY_READER_H
 
 #include "key_table.h"
 

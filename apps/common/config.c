@@ -10,12 +10,12 @@
 #include "key_reader.h"
 #include "keys.h"
 #include "modification_keys.h"
+#include "paths.h"
 
 #include <math.h>
 #include <stdarg.h>
 #include <stdlib.h>
 #include <string.h>
-#include <sys/stat.h>
 
 enum { NAME_SIZE = 128 }; /* "section.key" of any key */
 
@@ -249,16 +249,6 @@ static int check_dynamic(const config *conf) {
         ++faults;
     }
     return faults;
-}
-
-int is_same_file(const char *a, const char *b) {
-    struct stat status_a, status_b;
-
-    if (strcmp(a, b) == 0) {
-        return 1;
-    }
-    return stat(a, &status_a) == 0 && stat(b, &status_b) == 0 &&
-           status_a.st_dev == status_b.st_dev && status_a.st_ino == status_b.st_ino;
 }
 
 static int check_not_input(const config *conf, const char *output, const char *input,

@@ -5,8 +5,8 @@
  * The text of an INI file, line by line: UTF-8, byte order mark and CRLF accepted; `;` and `#` begin a
  * comment, also after white space behind a value; no continuation lines.
  */
-#ifndef GEARSIM_INI_FILE_H
-#define GEARSIM_INI_FILE_H
+#ifndef APPS_INI_FILE_H
+#define APPS_INI_FILE_H
 
 /* What the reader meets, in the order of the file. Strings live as long as the call. */
 typedef struct ini_events {

@@ -2,8 +2,8 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 
 /* The keys of gearsim's INI file, and which of them a configuration uses. */
-#ifndef GEARSIM_KEYS_H
-#define GEARSIM_KEYS_H
+#ifndef APPS_KEYS_H
+#define APPS_KEYS_H
 
 #include "config.h"
 #include "key_table.h"

@@ -2,8 +2,8 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 
 /* How the rows of key tables are written. */
-#ifndef GEARSIM_KEY_MACROS_H
-#define GEARSIM_KEY_MACROS_H
+#ifndef APPS_KEY_MACROS_H
+#define APPS_KEY_MACROS_H
 
 #include "key_table.h"
 

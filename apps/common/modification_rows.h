@@ -6,8 +6,8 @@
  * Every key exists for each gear with and without a flank; a row is written once and --help shows it once, as a family
  * of keys.
  */
-#ifndef GEARSIM_MODIFICATION_ROWS_H
-#define GEARSIM_MODIFICATION_ROWS_H
+#ifndef APPS_MODIFICATION_ROWS_H
+#define APPS_MODIFICATION_ROWS_H
 
 /* clang-format off */
 static const char modification_legend[] =

@@ -5,8 +5,8 @@
  * [modifications]: from its keys to the designed modifications of each flank. A key with a flank replaces the one
  * without there, key by key; the three ways to give a range count as one key.
  */
-#ifndef GEARSIM_MODIFICATION_KEYS_H
-#define GEARSIM_MODIFICATION_KEYS_H
+#ifndef APPS_MODIFICATION_KEYS_H
+#define APPS_MODIFICATION_KEYS_H
 
 #include "config.h"
 

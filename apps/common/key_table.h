@@ -6,8 +6,8 @@
  * default, which kind of run uses it, and where it goes in a struct; reading, checks, defaults, provenance
  * and --help all follow it.
  */
-#ifndef GEARSIM_KEY_TABLE_H
-#define GEARSIM_KEY_TABLE_H
+#ifndef APPS_KEY_TABLE_H
+#define APPS_KEY_TABLE_H
 
 #include <stddef.h>
 #include <stdio.h>

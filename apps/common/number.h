@@ -5,8 +5,8 @@
  * Numbers as text, the same as printf("%.*g") but several times faster: writing numbers would
  * otherwise cost as much as computing them.
  */
-#ifndef GEARSIM_NUMBER_H
-#define GEARSIM_NUMBER_H
+#ifndef APPS_NUMBER_H
+#define APPS_NUMBER_H
 
 enum { NUMBER_TEXT_SIZE = 32 };
 

@@ -1,0 +1,231 @@
+/* SPDX-FileCopyrightText: The gearmesh authors */
+/* SPDX-License-Identifier: BSD-3-Clause */
+
+#include "flank_loading.h"
+#include "modification_keys.h"
+
+#include <gearmesh/gearmesh_io.h>
+#include <stdio.h>
+#include <string.h>
+
+/* One gear's part of [flanks]. */
+typedef struct flank_task {
+    const char *deviations_key;
+    const char *pitch_key;
+    const flank_files *files;
+    int gear; /* 0 = pinion, 1 = wheel */
+    int teeth;
+} flank_task;
+
+static flank_task task_of(const config *conf, const gm_pair *pair, int gear) {
+    const flank_task pinion = {"flanks.pinion", "flanks.pinion_pitch", &conf->pinion_flanks, 0,
+                               pair->pinion.teeth};
+    const flank_task wheel = {"flanks.wheel", "flanks.wheel_pitch", &conf->wheel_flanks, 1,
+                              pair->wheel.teeth};
+
+    return gear == 0 ? pinion : wheel;
+}
+
+/* The file is at fault, and the key that names it tells where it came from. */
+static int refuse_file(const config *conf, const char *key, const gm_io_error *error) {
+    const char *file = error->file[0] != '\0' ? error->file : conf->path;
+
+    if (error->line > 0) {
+        fprintf(stderr, "%s:%ld: %s\n", file, error->line, error->text);
+    } else {
+        fprintf(stderr, "%s: %s\n", file, error->text);
+    }
+    config_complain(conf, key, "names this file");
+    return EXIT_BAD_INPUT;
+}
+
+static void note_ideal_teeth(const config *conf, const char *file, int drive, int coast,
+                             int teeth) {
+    if (conf->quiet || (drive == 0 && coast == 0)) {
+        return;
+    }
+    fprintf(
+        stderr,
+        "%s: note: no rows for the drive flank of %d and the coast flank of %d of %d teeth: these "
+        "are ideal\n",
+        file, drive, coast, teeth);
+}
+
+static int read_deviations(const config *conf, const flank_task *task, gm_deviations *deviations) {
+    gm_io_error error = {0};
+
+    if (gm_deviations_read(deviations, task->files->deviations, task->teeth, &error) != GM_IO_OK) {
+        return refuse_file(conf, task->deviations_key, &error);
+    }
+    note_ideal_teeth(conf, task->files->deviations, gm_deviations_ideal_teeth(deviations, GM_DRIVE),
+                     gm_deviations_ideal_teeth(deviations, GM_COAST), task->teeth);
+    return 0;
+}
+
+static int read_pitch(const config *conf, const flank_task *task, gm_pitch *pitch) {
+    gm_io_error error = {0};
+
+    if (gm_pitch_read(pitch, task->files->pitch, task->teeth, &error) != GM_IO_OK) {
+        return refuse_file(conf, task->pitch_key, &error);
+    }
+    note_ideal_teeth(conf, task->files->pitch, gm_pitch_ideal_teeth(pitch, GM_DRIVE),
+                     gm_pitch_ideal_teeth(pitch, GM_COAST), task->teeth);
+    return 0;
+}
+
+static gm_flanks_options flank_options(const config *conf, const gm_pair *pair) {
+    const int normal = conf->deviation_direction == DEVIATION_NORMAL;
+    gm_flanks_options options;
+
+    gm_flanks_options_default(&options);
+    options.scale = conf->flank_scale;
+    options.normal_factor = normal ? pair->normal_to_transverse : 1;
+    options.profile_from = conf->profile_from;
+    options.profile_to = conf->profile_to;
+    options.profile_blend = conf->profile_blend;
+    return options;
+}
+
+static const char *const flank_names[2][2] = {{"pinion_drive", "pinion_coast"},
+                                              {"wheel_drive", "wheel_coast"}};
+
+/* What holds a design and how true it is: a note, or a warning where the tolerance is missed. */
+static void note_design(const config *conf, const char *flank, const design_form *form) {
+    const char *key = "modifications.tolerance_um";
+    const gm_modifications_grid *grid = &form->grid;
+    char ramps[64] = "", table[128] = "";
+
+    if (grid->error > conf->modification_tolerance) {
+        config_warn(conf, key,
+                    "missed: the table of %s with %d x %d nodes is off by up to %.3g um, a finer "
+                    "one would have too many nodes",
+                    flank, grid->face_nodes, grid->profile_nodes, 1e6 * grid->error);
+    } else if (!conf->quiet) {
+        if (form->ramps > 0) {
+            snprintf(ramps, sizeof ramps, "%d linear relief%s, exact", form->ramps,
+                     form->ramps > 1 ? "s" : "");
+        }
+        if (grid->face_nodes > 0) {
+            snprintf(table, sizeof table, "table of %d x %d nodes, off by at most %.3g um",
+                     grid->face_nodes, grid->profile_nodes, 1e6 * grid->error);
+        }
+        fprintf(stderr, "%s: note: [modifications] of %s: %s%s%s\n", conf->path, flank, ramps,
+                ramps[0] != '\0' && table[0] != '\0' ? "; " : "", table);
+    }
+}
+
+/* What gm_flanks_build() will find as well. */
+static design_form form_of(const gm_modifications *design, const config *conf,
+                           const gm_deviations *deviations) {
+    gm_flank_ramp ramps[GM_FLANK_RAMPS_MAX];
+    gm_modification list[GM_MODIFICATION_KINDS];
+    gm_modifications rest = *design;
+    design_form form = {0};
+
+    rest.list = list;
+    (void)gm_modifications_split(design, ramps, &form.ramps, list, &rest.count);
+    if (rest.count > 0) {
+        (void)gm_modifications_grid_find(&rest, deviations != NULL ? deviations->face_nodes : 2,
+                                         deviations != NULL ? deviations->profile_nodes : 2,
+                                         conf->modification_tolerance, &form.grid);
+    }
+    return form;
+}
+
+static void find_forms(gear_flanks *flanks, const config *conf, int gear, const gear_design *design,
+                       const gm_deviations *deviations) {
+    for (int side = GM_DRIVE; side <= GM_COAST; ++side) {
+        design_form *form = &flanks->design_form[side];
+        *form = form_of(&design->of[side], conf, deviations);
+        if (form->ramps > 0 || form->grid.face_nodes > 0) {
+            note_design(conf, flank_names[gear][side], form);
+        }
+    }
+}
+
+static int refuse_flanks(const config *conf, const flank_task *task, const gm_io_error *error) {
+    if (task->files->deviations != NULL) {
+        return refuse_file(conf, task->deviations_key, error);
+    }
+    if (task->files->pitch != NULL) {
+        return refuse_file(conf, task->pitch_key, error);
+    }
+    fprintf(stderr, "%s: [modifications]: %s\n", conf->path, error->text);
+    return EXIT_BAD_INPUT;
+}
+
+static int build_flanks(gear_flanks *flanks, const config *conf, const gm_pair *pair,
+                        const flank_task *task, const gear_design *design,
+                        const gm_deviations *deviations, const gm_pitch *pitch) {
+    gm_flanks_options options = flank_options(conf, pair);
+    gm_io_error error = {0};
+
+    options.drive_modifications = &design->of[GM_DRIVE];
+    options.coast_modifications = &design->of[GM_COAST];
+    options.modification_tolerance = conf->modification_tolerance;
+    find_forms(flanks, conf, task->gear, design, deviations);
+    if (gm_flanks_build(&flanks->storage, &flanks->memory, task->teeth, deviations, pitch, &options,
+                        &error) == GM_IO_OK) {
+        return 0;
+    }
+    return refuse_flanks(conf, task, &error);
+}
+
+int gear_flanks_load(gear_flanks *flanks, const config *conf, const gm_pair *pair, int gear) {
+    const flank_task task = task_of(conf, pair, gear);
+    const int has_deviations = task.files->deviations != NULL;
+    const int has_pitch = task.files->pitch != NULL;
+    gm_deviations deviations = {0};
+    gm_pitch pitch = {0};
+
+    /* What is designed, and what was measured. */
+    gear_design design;
+    int status = gear_design_make(&design, conf, pair, gear);
+    const int has_design = design.of[GM_DRIVE].count + design.of[GM_COAST].count > 0;
+    if (status == 0 && has_deviations) {
+        status = read_deviations(conf, &task, &deviations);
+    }
+    if (status == 0 && has_pitch) {
+        status = read_pitch(conf, &task, &pitch);
+    }
+
+    /* All of it in the form that the model evaluates. */
+    if (status == 0 && (has_deviations || has_pitch || has_design)) {
+        status = build_flanks(flanks, conf, pair, &task, &design,
+                              has_deviations ? &deviations : NULL, has_pitch ? &pitch : NULL);
+    }
+    gm_deviations_free(&deviations);
+    gm_pitch_free(&pitch);
+    return status;
+}
+
+void gear_flanks_free(gear_flanks *flanks) {
+    gm_flanks_memory_free(flanks->memory);
+    memset(flanks, 0, sizeof *flanks);
+}
+
+static void note_value(config *conf, const char *flank, const char *what, double value) {
+    char name[64];
+
+    snprintf(name, sizeof name, "%s_modification_%s", flank, what);
+    config_note(conf, name, value);
+}
+
+/* What holds a design. */
+static void note_form(config *conf, const char *flank, const design_form *form) {
+    if (form->ramps == 0 && form->grid.face_nodes == 0) {
+        return;
+    }
+    note_value(conf, flank, "ramps", form->ramps);
+    if (form->grid.face_nodes > 0) {
+        note_value(conf, flank, "face_nodes", form->grid.face_nodes);
+        note_value(conf, flank, "profile_nodes", form->grid.profile_nodes);
+    }
+    note_value(conf, flank, "error_um", 1e6 * form->grid.error);
+}
+
+void gear_flanks_note(const gear_flanks *flanks, config *conf, int gear) {
+    for (int side = GM_DRIVE; side <= GM_COAST; ++side) {
+        note_form(conf, flank_names[gear][side], &flanks->design_form[side]);
+    }
+}

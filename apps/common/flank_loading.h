@@ -1,0 +1,31 @@
+/* SPDX-FileCopyrightText: The gearmesh authors */
+/* SPDX-License-Identifier: BSD-3-Clause */
+
+/* From the files of [flanks] and the designs of [modifications] to the prepared flanks of a gear. */
+#ifndef APPS_FLANK_LOADING_H
+#define APPS_FLANK_LOADING_H
+
+#include "config.h"
+
+/* What holds the design of a flank; all zero = no design. */
+typedef struct design_form {
+    int ramps;                  /* linear reliefs, exact */
+    gm_modifications_grid grid; /* of the table of the others, 0 nodes = none */
+} design_form;
+
+/* All zero = ideal. */
+typedef struct gear_flanks {
+    gm_flanks storage;
+    void *memory;               /* what `storage` points into, NULL = the flanks are ideal */
+    design_form design_form[2]; /* [GM_DRIVE, GM_COAST] */
+} gear_flanks;
+
+/* Files and design of one gear (0 = pinion, 1 = wheel) become prepared flanks, if there are any; `flanks` is all zero
+ * before. Returns 0 or an exit code after a message. */
+int gear_flanks_load(gear_flanks *flanks, const config *conf, const gm_pair *pair, int gear);
+void gear_flanks_free(gear_flanks *flanks);
+
+/* Notes for the head of the output what holds the designs of a gear. */
+void gear_flanks_note(const gear_flanks *flanks, config *conf, int gear);
+
+#endif

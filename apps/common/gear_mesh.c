@@ -1,0 +1,85 @@
+/* SPDX-FileCopyrightText: The gearmesh authors */
+/* SPDX-License-Identifier: BSD-3-Clause */
+
+#include "gear_mesh.h"
+#include "drawing.h"
+
+#include <math.h>
+#include <string.h>
+
+static const double pi = 3.14159265358979323846;
+
+/* Both models shall share eigenfrequency and damping ratio unless told otherwise. */
+static void derive_simple_model(gear_mesh *mesh, const config *conf) {
+    const double contact_ratio = mesh->pair.transverse_contact_ratio;
+
+    mesh->simple_stiffness =
+        isnan(conf->simple_stiffness) ? conf->stiffness * contact_ratio : conf->simple_stiffness;
+    mesh->simple_damping = conf->damping * contact_ratio;
+}
+
+static int load_flanks(gear_mesh *mesh, const config *conf) {
+    gear_flanks *pinion = &mesh->loaded_flanks[0];
+    gear_flanks *wheel = &mesh->loaded_flanks[1];
+
+    int status = gear_flanks_load(pinion, conf, &mesh->pair, 0);
+    if (status == 0) {
+        status = gear_flanks_load(wheel, conf, &mesh->pair, 1);
+    }
+
+    mesh->pinion_flanks = pinion->memory != NULL ? &pinion->storage : NULL;
+    mesh->wheel_flanks = wheel->memory != NULL ? &wheel->storage : NULL;
+    return status;
+}
+
+int gear_mesh_open(gear_mesh *mesh, const config *conf) {
+    memset(mesh, 0, sizeof *mesh);
+
+    int status = drawing_derive(&mesh->pair, conf);
+    if (status != 0) {
+        return status;
+    }
+    drawing_warn(conf, &mesh->pair);
+    derive_simple_model(mesh, conf);
+
+    if (conf->model == MODEL_3D && conf->purpose == CONFIG_FOR_RUN) {
+        status = load_flanks(mesh, conf);
+    }
+    if (status != 0) {
+        gear_mesh_close(mesh);
+    }
+    return status;
+}
+
+void gear_mesh_close(gear_mesh *mesh) {
+    gear_flanks_free(&mesh->loaded_flanks[0]);
+    gear_flanks_free(&mesh->loaded_flanks[1]);
+    memset(mesh, 0, sizeof *mesh);
+}
+
+double gear_mesh_mean_stiffness(const gear_mesh *mesh, const config *conf) {
+    return conf->model == MODEL_SIMPLE ? mesh->simple_stiffness
+                                       : conf->stiffness * mesh->pair.transverse_contact_ratio;
+}
+
+double gear_mesh_eigenfrequency(const gear_mesh *mesh, const config *conf) {
+    const double r_bp = mesh->pair.pinion.base_radius;
+    const double r_bw = mesh->pair.wheel.base_radius;
+    double mobility = r_bw * r_bw / conf->wheel_inertia;
+
+    if (conf->drive == DRIVE_TORQUE) {
+        mobility += r_bp * r_bp / conf->pinion_inertia;
+    }
+    return sqrt(gear_mesh_mean_stiffness(mesh, conf) * mobility) / (2 * pi);
+}
+
+void gear_mesh_note(const gear_mesh *mesh, config *conf) {
+    const double frequency = gear_mesh_eigenfrequency(mesh, conf);
+
+    for (int gear = 0; gear < 2; ++gear) {
+        gear_flanks_note(&mesh->loaded_flanks[gear], conf, gear);
+    }
+    if (isfinite(frequency)) {
+        config_note(conf, "eigenfrequency_Hz", frequency);
+    }
+}

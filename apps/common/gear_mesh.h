@@ -1,0 +1,36 @@
+/* SPDX-FileCopyrightText: The gearmesh authors */
+/* SPDX-License-Identifier: BSD-3-Clause */
+
+/* The two gears in mesh as a configuration says: pair, flanks and stiffness; shared read-only by all analyses. */
+#ifndef APPS_GEAR_MESH_H
+#define APPS_GEAR_MESH_H
+
+#include "config.h"
+#include "flank_loading.h"
+
+typedef struct gear_mesh {
+    gm_pair pair;
+    const gm_flanks *pinion_flanks; /* NULL = ideal */
+    const gm_flanks *wheel_flanks;
+    double simple_stiffness; /* K_simple, N/m: of the simple model */
+    double simple_damping;   /* D_simple = D eps_alpha, N s/m */
+
+    gear_flanks loaded_flanks[2]; /* what the pointers point to */
+} gear_mesh;
+
+/* Derives the pair, warns of its drawing, and for a run loads the flanks. Returns 0 or an exit code after a message. The
+ * mesh must stay where it is. */
+int gear_mesh_open(gear_mesh *mesh, const config *conf);
+void gear_mesh_close(gear_mesh *mesh);
+
+/* K eps_alpha, or K_simple for the simple model; NaN without the keys that it needs (N/m). */
+double gear_mesh_mean_stiffness(const gear_mesh *mesh, const config *conf);
+
+/* Of the wheel on the mesh if the pinion's speed is prescribed, else of both bodies against each other; NaN without the
+ * keys that it needs (Hz). */
+double gear_mesh_eigenfrequency(const gear_mesh *mesh, const config *conf);
+
+/* Notes what follows from the configuration and a reader of the output needs. */
+void gear_mesh_note(const gear_mesh *mesh, config *conf);
+
+#endif

@@ -1,0 +1,56 @@
+/* SPDX-FileCopyrightText: The gearmesh authors */
+/* SPDX-License-Identifier: BSD-3-Clause */
+
+#include "geometry_listing.h"
+
+#include <math.h>
+
+static const double pi = 3.14159265358979323846;
+
+/* Nothing is printed of a quantity whose inputs are missing (NaN), or that no number holds. */
+static void print_value(FILE *stream, const char *name, double value) {
+    if (isfinite(value)) {
+        fprintf(stream, "%s = %.17g\n", name, value);
+    }
+}
+
+static double degrees(double angle) {
+    return angle * (180 / pi);
+}
+
+static double millimetres(double length) {
+    return length * 1e3;
+}
+
+static void print_pair(const gm_pair *pair, FILE *stream) {
+    print_value(stream, "transverse_module_mm", millimetres(pair->transverse_module));
+    print_value(stream, "transverse_pressure_angle_deg", degrees(pair->transverse_pressure_angle));
+    print_value(stream, "working_pressure_angle_deg", degrees(pair->working_pressure_angle));
+    print_value(stream, "base_helix_angle_deg", degrees(pair->base_helix_angle));
+    print_value(stream, "reference_center_distance_mm",
+                millimetres(pair->reference_center_distance));
+    print_value(stream, "pinion_profile_shift", pair->pinion.profile_shift);
+    print_value(stream, "wheel_profile_shift", pair->wheel.profile_shift);
+    print_value(stream, "pinion_base_radius_mm", millimetres(pair->pinion.base_radius));
+    print_value(stream, "wheel_base_radius_mm", millimetres(pair->wheel.base_radius));
+    print_value(stream, "pinion_tip_radius_mm", millimetres(pair->pinion.tip_radius));
+    print_value(stream, "wheel_tip_radius_mm", millimetres(pair->wheel.tip_radius));
+    print_value(stream, "pinion_start_radius_mm", millimetres(pair->pinion.start_radius));
+    print_value(stream, "wheel_start_radius_mm", millimetres(pair->wheel.start_radius));
+    print_value(stream, "transverse_base_pitch_mm", millimetres(pair->transverse_base_pitch));
+    print_value(stream, "line_of_action_mm", millimetres(pair->line_of_action));
+    print_value(stream, "path_start_mm", millimetres(pair->path_start));
+    print_value(stream, "path_end_mm", millimetres(pair->path_end));
+    print_value(stream, "transverse_contact_ratio", pair->transverse_contact_ratio);
+    print_value(stream, "overlap_ratio", pair->overlap_ratio);
+    print_value(stream, "total_contact_ratio", pair->total_contact_ratio);
+    print_value(stream, "backlash_um", 1e6 * pair->backlash);
+}
+
+void geometry_print(const gear_mesh *mesh, const config *conf, FILE *stream) {
+    print_pair(&mesh->pair, stream);
+    print_value(stream, "mean_mesh_stiffness_N_per_um",
+                1e-6 * gear_mesh_mean_stiffness(mesh, conf));
+    print_value(stream, "eigenfrequency_Hz", gear_mesh_eigenfrequency(mesh, conf));
+    print_value(stream, "mesh_frequency_per_rpm_Hz", mesh->pair.pinion.teeth / 60.0);
+}
