@@ -35,7 +35,7 @@ static void read_flanks(fixture *f, int gear, const char *deviation_file, const 
     GM_ASSERT_INT(gm_deviations_read(&deviations, deviation_file, teeth, NULL), GM_IO_OK);
     GM_ASSERT_INT(gm_pitch_read(&pitch, pitch_file, teeth, NULL), GM_IO_OK);
     GM_ASSERT_INT(gm_flanks_build(&f->flanks[gear], &f->flank_memory[gear], teeth, &deviations,
-                                  &pitch, &options, NULL),
+                                  &pitch, &options, NULL, NULL),
                   GM_IO_OK);
     gm_deviations_free(&deviations);
     gm_pitch_free(&pitch);

@@ -18,6 +18,7 @@ static gm_deviations deviations;
 static gm_flanks_options options;
 static gm_flanks flanks;
 static void *memory;
+static gm_flanks_report report;
 static gm_io_error error;
 
 /* Tip relief, which becomes a ramp, and crowning and a root relief, which need a table. */
@@ -45,7 +46,7 @@ static void add_set(int tooth, int side) {
 
 static int build(int with_file) {
     return gm_flanks_build(&flanks, &memory, pair.pinion.teeth, with_file ? &deviations : NULL,
-                           NULL, &options, &error);
+                           NULL, &options, &report, &error);
 }
 
 static void end(void) {
@@ -96,6 +97,63 @@ static void nodes_are(const gm_flank_tables *side, int tooth, int set, double fi
     }
     /* some ten roundings of values below 50 um */
     GM_ASSERT_ABS(worst, 0.0, 1e-14 * 50 * UM);
+}
+
+/* Largest distance of a side's flank from the design between the nodes: the flank is the table and the ramps. */
+static double distance_from_design(const gm_flank_tables *side) {
+    enum { STEPS = 211 };
+    double worst = 0.0;
+    for (int i = 0; i <= STEPS; ++i) {
+        for (int k = 0; k <= STEPS; ++k) {
+            const double t1 = (double)i / STEPS, t2 = (double)k / STEPS;
+
+            /* Bilinear within the cell. */
+            const double along_face = t1 * (side->face_nodes - 1);
+            const double along_profile = t2 * (side->profile_nodes - 1);
+            const int face = (int)fmin(along_face, side->face_nodes - 2);
+            const int profile = (int)fmin(along_profile, side->profile_nodes - 2);
+            const double u = along_face - face, v = along_profile - profile;
+            const double table = (1 - u) * ((1 - v) * node_of(side, 0, face, profile) +
+                                            v * node_of(side, 0, face, profile + 1)) +
+                                 u * ((1 - v) * node_of(side, 0, face + 1, profile) +
+                                      v * node_of(side, 0, face + 1, profile + 1));
+
+            const double got = table + ramps_at(side, t1, t2);
+            worst = fmax(worst, fabs(got - gm_modifications_value(&design, t1, t2)));
+        }
+    }
+    return worst;
+}
+
+static void the_report_says_what_holds_the_design_and_how_well(void) {
+    begin();
+    options.modification_tolerance = 0.05 * UM;
+    GM_ASSERT_INT(build(0), GM_IO_OK);
+    GM_ASSERT_INT(report.drive.ramps, 1);
+    GM_ASSERT_INT(report.drive.face_nodes, flanks.drive.face_nodes);
+    GM_ASSERT_INT(report.drive.profile_nodes, flanks.drive.profile_nodes);
+
+    /* A bound that holds and is not far off: tables of parabolas are worst in the middle of a cell. */
+    const double found = distance_from_design(&flanks.drive);
+    GM_ASSERT(report.drive.error <= options.modification_tolerance);
+    GM_ASSERT(found <= report.drive.error * (1 + 1e-9) && found > 0.2 * report.drive.error);
+
+    /* Nothing is said of the side without a design, nor after an error. */
+    GM_ASSERT_INT(report.coast.ramps + report.coast.face_nodes + report.coast.profile_nodes, 0);
+    GM_ASSERT_ABS(report.coast.error, 0.0, 0.0);
+    end();
+    options.scale = (double)NAN;
+    GM_ASSERT_INT(build(0), GM_IO_ERR_OPTION);
+    GM_ASSERT_INT(report.drive.ramps + report.drive.face_nodes, 0);
+
+    /* A ramp alone needs no table. */
+    begin();
+    design.count = 1;
+    GM_ASSERT_INT(build(0), GM_IO_OK);
+    GM_ASSERT_INT(report.drive.ramps, 1);
+    GM_ASSERT_INT(report.drive.face_nodes, 0);
+    GM_ASSERT_ABS(report.drive.error, 0.0, 0.0);
+    end();
 }
 
 static void a_design_alone_takes_one_table_for_all_teeth_of_its_side(void) {
@@ -298,7 +356,7 @@ static gm_flanks flanks_of(const gm_gear *gear, const gm_modification *relief, v
     gm_flanks built;
     gm_flanks_options_default(&options);
     options.drive_modifications = &tips;
-    GM_ASSERT_INT(gm_flanks_build(&built, place, gear->teeth, NULL, NULL, &options, &error),
+    GM_ASSERT_INT(gm_flanks_build(&built, place, gear->teeth, NULL, NULL, &options, NULL, &error),
                   GM_IO_OK);
     return built;
 }
@@ -366,7 +424,7 @@ static void the_same_design_on_the_other_flank_is_its_mirror_image(void) {
     gm_flanks_options_default(&options);
     options.drive_modifications = options.coast_modifications = &of;
     GM_ASSERT_INT(
-        gm_flanks_build(&flanks, &memory, pair.pinion.teeth, NULL, NULL, &options, &error),
+        gm_flanks_build(&flanks, &memory, pair.pinion.teeth, NULL, NULL, &options, NULL, &error),
         GM_IO_OK);
     double largest = 0.0;
     for (int k = 0; k < 40; k++) {
@@ -383,6 +441,7 @@ static void the_same_design_on_the_other_flank_is_its_mirror_image(void) {
 int main(int argc, char **argv) {
     static const gm_test tests[] = {
         GM_TEST(a_design_alone_takes_one_table_for_all_teeth_of_its_side),
+        GM_TEST(the_report_says_what_holds_the_design_and_how_well),
         GM_TEST(linear_reliefs_alone_need_no_table),
         GM_TEST(each_side_has_a_design_and_a_grid_of_its_own),
         GM_TEST(an_empty_design_is_none),

@@ -42,7 +42,7 @@ static void add_set(int tooth, int side, double level) {
 }
 
 static int build(const gm_deviations *of, const gm_pitch *with) {
-    return gm_flanks_build(&flanks, &memory, TEETH, of, with, &options, &error);
+    return gm_flanks_build(&flanks, &memory, TEETH, of, with, &options, NULL, &error);
 }
 
 static void end(void) {
@@ -182,7 +182,7 @@ static void the_defaults_change_nothing(void) {
     GM_ASSERT_REL(options.profile_blend, 0.1, 0.0);
     begin();
     add_set(-1, -1, 1e-6);
-    GM_ASSERT_INT(gm_flanks_build(&flanks, &memory, TEETH, &deviations, &pitch, NULL, NULL),
+    GM_ASSERT_INT(gm_flanks_build(&flanks, &memory, TEETH, &deviations, &pitch, NULL, NULL, NULL),
                   GM_IO_OK);
     GM_ASSERT_REL(node_value(GM_DRIVE, 0, 0, 0), 1e-6, 0.0);
     GM_ASSERT_REL(node_value(GM_DRIVE, 0, 0, 10), 11e-6, 1e-15);
@@ -306,7 +306,8 @@ static void another_number_of_teeth_is_refused(void) {
     pitch.teeth = TEETH - 1;
     refused("pitch deviations are for 4 teeth; the gear has 5");
     begin();
-    GM_ASSERT_INT(gm_flanks_build(&flanks, &memory, 2, NULL, NULL, NULL, &error), GM_IO_ERR_OPTION);
+    GM_ASSERT_INT(gm_flanks_build(&flanks, &memory, 2, NULL, NULL, NULL, NULL, &error),
+                  GM_IO_ERR_OPTION);
     assert_error(&error, "", 0, "a gear of 2 teeth", "3 to 100000");
 }
 
@@ -344,8 +345,10 @@ static void two_sets_for_the_same_flank_are_refused(void) {
 
 static void a_call_without_a_required_pointer_is_refused(void) {
     begin();
-    GM_ASSERT_INT(gm_flanks_build(NULL, &memory, TEETH, NULL, NULL, NULL, NULL), GM_IO_ERR_NULL);
-    GM_ASSERT_INT(gm_flanks_build(&flanks, NULL, TEETH, NULL, NULL, NULL, NULL), GM_IO_ERR_NULL);
+    GM_ASSERT_INT(gm_flanks_build(NULL, &memory, TEETH, NULL, NULL, NULL, NULL, NULL),
+                  GM_IO_ERR_NULL);
+    GM_ASSERT_INT(gm_flanks_build(&flanks, NULL, TEETH, NULL, NULL, NULL, NULL, NULL),
+                  GM_IO_ERR_NULL);
     gm_flanks_memory_free(NULL);
     gm_flanks_options_default(NULL);
 }

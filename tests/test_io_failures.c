@@ -145,7 +145,7 @@ static int read_pitch(void) {
 }
 
 static int build(void) {
-    return gm_flanks_build(&flanks, &memory, TEETH, &deviations, &pitch, NULL, &error);
+    return gm_flanks_build(&flanks, &memory, TEETH, &deviations, &pitch, NULL, NULL, &error);
 }
 
 /* The same with a crowning and a ramp on both sides. */
@@ -158,7 +158,7 @@ static int build_with_design(void) {
     gm_flanks_options options;
     gm_flanks_options_default(&options);
     options.drive_modifications = options.coast_modifications = &design;
-    return gm_flanks_build(&flanks, &memory, TEETH, &deviations, &pitch, &options, &error);
+    return gm_flanks_build(&flanks, &memory, TEETH, &deviations, &pitch, &options, NULL, &error);
 }
 
 static gm_pair gears;
@@ -381,8 +381,9 @@ static void refusing_to_write_or_to_build_leaves_nothing_behind(void) {
     gm_flanks_options_default(&options);
     options.scale = 1e308;
     options.normal_factor = 1e308;
-    GM_ASSERT_INT(gm_flanks_build(&flanks, &memory, TEETH, &deviations, &pitch, &options, &error),
-                  GM_IO_ERR_OPTION);
+    GM_ASSERT_INT(
+        gm_flanks_build(&flanks, &memory, TEETH, &deviations, &pitch, &options, NULL, &error),
+        GM_IO_ERR_OPTION);
     pitch.drive[0] = (double)NAN;
     GM_ASSERT_INT(build(), GM_IO_ERR_OPTION);
     GM_ASSERT_INT(gm_pitch_write(&pitch, IO_TEST_PATH("out.csv"), &error), GM_IO_ERR_OPTION);

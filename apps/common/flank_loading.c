@@ -89,58 +89,36 @@ static gm_flanks_options flank_options(const config *conf, const gm_pair *pair) 
 static const char *const flank_names[2][2] = {{"pinion_drive", "pinion_coast"},
                                               {"wheel_drive", "wheel_coast"}};
 
+static int has_design(const gm_flanks_side_report *form) {
+    return form->ramps > 0 || form->face_nodes > 0;
+}
+
 /* What holds a design and how true it is: a note, or a warning where the tolerance is missed. */
-static void note_design(const config *conf, const char *flank, const design_form *form) {
+static void note_design(const config *conf, const char *flank, const gm_flanks_side_report *form) {
     const char *key = "modifications.tolerance_um";
-    const gm_modifications_grid *grid = &form->grid;
     char ramps[64] = "", table[128] = "";
 
-    if (grid->error > conf->modification_tolerance) {
+    if (form->error > conf->modification_tolerance) {
         config_warn(conf, key,
                     "missed: the table of %s with %d x %d nodes is off by up to %.3g um, a finer "
                     "one would have too many nodes",
-                    flank, grid->face_nodes, grid->profile_nodes, 1e6 * grid->error);
-    } else if (!conf->quiet) {
-        if (form->ramps > 0) {
-            snprintf(ramps, sizeof ramps, "%d linear relief%s, exact", form->ramps,
-                     form->ramps > 1 ? "s" : "");
-        }
-        if (grid->face_nodes > 0) {
-            snprintf(table, sizeof table, "table of %d x %d nodes, off by at most %.3g um",
-                     grid->face_nodes, grid->profile_nodes, 1e6 * grid->error);
-        }
-        fprintf(stderr, "%s: note: [modifications] of %s: %s%s%s\n", conf->path, flank, ramps,
-                ramps[0] != '\0' && table[0] != '\0' ? "; " : "", table);
+                    flank, form->face_nodes, form->profile_nodes, 1e6 * form->error);
+        return;
     }
-}
-
-/* What gm_flanks_build() will find as well. */
-static design_form form_of(const gm_modifications *design, const config *conf,
-                           const gm_deviations *deviations) {
-    gm_flank_ramp ramps[GM_FLANK_RAMPS_MAX];
-    gm_modification list[GM_MODIFICATION_KINDS];
-    gm_modifications rest = *design;
-    design_form form = {0};
-
-    rest.list = list;
-    (void)gm_modifications_split(design, ramps, &form.ramps, list, &rest.count);
-    if (rest.count > 0) {
-        (void)gm_modifications_grid_find(&rest, deviations != NULL ? deviations->face_nodes : 2,
-                                         deviations != NULL ? deviations->profile_nodes : 2,
-                                         conf->modification_tolerance, &form.grid);
+    if (conf->quiet || !has_design(form)) {
+        return;
     }
-    return form;
-}
 
-static void find_forms(gear_flanks *flanks, const config *conf, int gear, const gear_design *design,
-                       const gm_deviations *deviations) {
-    for (int side = GM_DRIVE; side <= GM_COAST; ++side) {
-        design_form *form = &flanks->design_form[side];
-        *form = form_of(&design->of[side], conf, deviations);
-        if (form->ramps > 0 || form->grid.face_nodes > 0) {
-            note_design(conf, flank_names[gear][side], form);
-        }
+    if (form->ramps > 0) {
+        snprintf(ramps, sizeof ramps, "%d linear relief%s, exact", form->ramps,
+                 form->ramps > 1 ? "s" : "");
     }
+    if (form->face_nodes > 0) {
+        snprintf(table, sizeof table, "table of %d x %d nodes, off by at most %.3g um",
+                 form->face_nodes, form->profile_nodes, 1e6 * form->error);
+    }
+    fprintf(stderr, "%s: note: [modifications] of %s: %s%s%s\n", conf->path, flank, ramps,
+            ramps[0] != '\0' && table[0] != '\0' ? "; " : "", table);
 }
 
 static int refuse_flanks(const config *conf, const flank_task *task, const gm_io_error *error) {
@@ -163,12 +141,14 @@ static int build_flanks(gear_flanks *flanks, const config *conf, const gm_pair *
     options.drive_modifications = &design->of[GM_DRIVE];
     options.coast_modifications = &design->of[GM_COAST];
     options.modification_tolerance = conf->modification_tolerance;
-    find_forms(flanks, conf, task->gear, design, deviations);
     if (gm_flanks_build(&flanks->storage, &flanks->memory, task->teeth, deviations, pitch, &options,
-                        &error) == GM_IO_OK) {
-        return 0;
+                        &flanks->report, &error) != GM_IO_OK) {
+        return refuse_flanks(conf, task, &error);
     }
-    return refuse_flanks(conf, task, &error);
+
+    note_design(conf, flank_names[task->gear][GM_DRIVE], &flanks->report.drive);
+    note_design(conf, flank_names[task->gear][GM_COAST], &flanks->report.coast);
+    return 0;
 }
 
 int gear_flanks_load(gear_flanks *flanks, const config *conf, const gm_pair *pair, int gear) {
@@ -212,20 +192,19 @@ static void note_value(config *conf, const char *flank, const char *what, double
 }
 
 /* What holds a design. */
-static void note_form(config *conf, const char *flank, const design_form *form) {
-    if (form->ramps == 0 && form->grid.face_nodes == 0) {
+static void note_form(config *conf, const char *flank, const gm_flanks_side_report *form) {
+    if (!has_design(form)) {
         return;
     }
     note_value(conf, flank, "ramps", form->ramps);
-    if (form->grid.face_nodes > 0) {
-        note_value(conf, flank, "face_nodes", form->grid.face_nodes);
-        note_value(conf, flank, "profile_nodes", form->grid.profile_nodes);
+    if (form->face_nodes > 0) {
+        note_value(conf, flank, "face_nodes", form->face_nodes);
+        note_value(conf, flank, "profile_nodes", form->profile_nodes);
     }
-    note_value(conf, flank, "error_um", 1e6 * form->grid.error);
+    note_value(conf, flank, "error_um", 1e6 * form->error);
 }
 
 void gear_flanks_note(const gear_flanks *flanks, config *conf, int gear) {
-    for (int side = GM_DRIVE; side <= GM_COAST; ++side) {
-        note_form(conf, flank_names[gear][side], &flanks->design_form[side]);
-    }
+    note_form(conf, flank_names[gear][GM_DRIVE], &flanks->report.drive);
+    note_form(conf, flank_names[gear][GM_COAST], &flanks->report.coast);
 }

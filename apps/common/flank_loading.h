@@ -7,17 +7,13 @@
 
 #include "config.h"
 
-/* What holds the design of a flank; all zero = no design. */
-typedef struct design_form {
-    int ramps;                  /* linear reliefs, exact */
-    gm_modifications_grid grid; /* of the table of the others, 0 nodes = none */
-} design_form;
+#include <gearmesh/gearmesh_io.h>
 
 /* All zero = ideal. */
 typedef struct gear_flanks {
     gm_flanks storage;
-    void *memory;               /* what `storage` points into, NULL = the flanks are ideal */
-    design_form design_form[2]; /* [GM_DRIVE, GM_COAST] */
+    void *memory;            /* what `storage` points into, NULL = the flanks are ideal */
+    gm_flanks_report report; /* what holds the designs */
 } gear_flanks;
 
 /* Files and design of one gear (0 = pinion, 1 = wheel) become prepared flanks, if there are any; `flanks` is all zero

@@ -40,6 +40,7 @@ static int find_grid(gmi_design *design, const gm_modifications *modifications, 
     }
     design->nodes[0] = grid.face_nodes;
     design->nodes[1] = grid.profile_nodes;
+    design->error = grid.error;
     return GM_IO_OK;
 }
 

@@ -17,6 +17,7 @@ typedef struct gmi_design {
     int file_nodes[2]; /**< grid of the file's tables, along t1 and t2; 2 x 2 if there is no file */
     int nodes[2];      /**< grid of the design, which holds all nodes of the file's */
     double *values;    /**< [nodes[0]][nodes[1]] what ramps do not hold (m); NULL = nothing */
+    double error;      /**< bound of the error of the table (m) */
 } gmi_design;
 
 /**

@@ -321,8 +321,21 @@ static int check_inputs(int teeth, const gm_deviations *deviations, const gm_pit
     return status == GM_IO_OK && pitch != NULL ? gmi_pitch_check(pitch, error) : status;
 }
 
+/* What holds the design of a side. */
+static gm_flanks_side_report report_of(const gmi_design *design) {
+    gm_flanks_side_report report = {.ramps = design->ramp_count};
+
+    if (design->values != NULL) {
+        report.face_nodes = design->nodes[0];
+        report.profile_nodes = design->nodes[1];
+        report.error = design->error;
+    }
+    return report;
+}
+
 /* On an error memory may be allocated and the flanks half done: for the caller to undo. */
-static int build_flanks(builder *build, int teeth, const gm_pitch *pitch, void **memory) {
+static int build_flanks(builder *build, int teeth, const gm_pitch *pitch, void **memory,
+                        gm_flanks_report *report) {
     int *set_of_slot = NULL;
     int status = check_inputs(teeth, build->deviations, pitch, build->options, build->error);
     if (status == GM_IO_OK && build->deviations != NULL) {
@@ -338,6 +351,10 @@ static int build_flanks(builder *build, int teeth, const gm_pitch *pitch, void *
     if (status == GM_IO_OK) {
         status = fill_flanks(build, pitch);
     }
+    if (status == GM_IO_OK && report != NULL) {
+        report->drive = report_of(&build->design[GM_DRIVE]);
+        report->coast = report_of(&build->design[GM_COAST]);
+    }
     gmi_design_free(&build->design[GM_DRIVE]);
     gmi_design_free(&build->design[GM_COAST]);
     free(set_of_slot);
@@ -345,8 +362,12 @@ static int build_flanks(builder *build, int teeth, const gm_pitch *pitch, void *
 }
 
 int gm_flanks_build(gm_flanks *flanks, void **memory, int teeth, const gm_deviations *deviations,
-                    const gm_pitch *pitch, const gm_flanks_options *options, gm_io_error *error) {
+                    const gm_pitch *pitch, const gm_flanks_options *options,
+                    gm_flanks_report *report, gm_io_error *error) {
     gmi_error_begin(error, NULL);
+    if (report != NULL) {
+        memset(report, 0, sizeof *report);
+    }
     if (flanks != NULL) {
         memset(flanks, 0, sizeof *flanks);
     }
@@ -363,7 +384,7 @@ int gm_flanks_build(gm_flanks *flanks, void **memory, int teeth, const gm_deviat
                      .options = options != NULL ? options : &defaults,
                      .error = error};
 
-    const int status = build_flanks(&build, teeth, pitch, memory);
+    const int status = build_flanks(&build, teeth, pitch, memory, report);
     if (status != GM_IO_OK) {
         free(*memory);
         *memory = NULL;

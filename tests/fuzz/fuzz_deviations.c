@@ -28,7 +28,7 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size) {
     /* What was read makes flanks, or is out of range. */
     gm_flanks flanks;
     void *memory;
-    if (gm_flanks_build(&flanks, &memory, teeth, &read, NULL, NULL, &error) == GM_IO_OK) {
+    if (gm_flanks_build(&flanks, &memory, teeth, &read, NULL, NULL, NULL, &error) == GM_IO_OK) {
         gm_flanks_memory_free(memory);
     }
     gm_deviations_free(&again);

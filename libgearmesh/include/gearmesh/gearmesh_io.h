@@ -121,6 +121,21 @@ typedef struct gm_flanks_options {
 
 GM_API void gm_flanks_options_default(gm_flanks_options *options);
 
+/** What holds the designed modifications of one side; all zero = there are none. */
+typedef struct gm_flanks_side_report {
+    int ramps;      /**< linear reliefs and corners, held exactly */
+    int face_nodes; /**< grid of the table that holds the others; 0 = no table is needed */
+    int profile_nodes;
+    double error; /**< bound of the error of that table (m); above the tolerance: a finer grid
+                            would have too many nodes */
+} gm_flanks_side_report;
+
+/** What gm_flanks_build() has made. */
+typedef struct gm_flanks_report {
+    gm_flanks_side_report drive;
+    gm_flanks_side_report coast;
+} gm_flanks_report;
+
 /**
  * Builds the prepared flanks of a gear. The more special set wins (tooth and flank, then tooth, then
  * flank, then `*`,`*`). Scale and profile window act on node values, so that a table stays bilinear.
@@ -134,13 +149,15 @@ GM_API void gm_flanks_options_default(gm_flanks_options *options);
  * @param[in]  deviations  NULL = none
  * @param[in]  pitch       NULL = none
  * @param[in]  options     NULL = defaults
+ * @param[out] report      how the modifications are held, all zero on an error; may be NULL
  * @param[out] error       why it failed; may be NULL
  * @return GM_IO_OK, GM_IO_ERR_NULL, GM_IO_ERR_OPTION (also another number of teeth, or values that are
  *         not finite), GM_IO_ERR_MEMORY; on an error memory is NULL and the flanks are all zero
  */
 GM_API int gm_flanks_build(gm_flanks *flanks, void **memory, int teeth,
                            const gm_deviations *deviations, const gm_pitch *pitch,
-                           const gm_flanks_options *options, gm_io_error *error);
+                           const gm_flanks_options *options, gm_flanks_report *report,
+                           gm_io_error *error);
 
 /** Frees what gm_flanks_build() allocated; NULL is fine. */
 GM_API void gm_flanks_memory_free(void *memory);
