@@ -257,12 +257,13 @@ void random_flanks_make(random_flanks *f, uint64_t *seed, const gm_pair *pair, i
     f->memory = malloc(size + 1);
     GM_ASSERT_INT(gm_flanks_init(&f->flanks, &sizes, f->memory, size), GM_OK);
     const int normal = chance(seed, 50);
-    const long double exact = 1.0L / cosl(atanl((long double)pair->twist / pair->face_width));
+    const long double exact =
+        1.0L / cosl(atanl((long double)pair->face_advance / pair->face_width));
     uint64_t ramp_seed = *seed; /* a sequence of their own */
     for (int side = 0; side < 2; side++) {
         fill_side(f, seed, side, tables[side], face_nodes[side], profile_nodes[side], amplitude,
                   normal ? pair->normal_to_transverse : 1.0, normal ? exact : 1.0L);
-        const double climb = (side == wheel ? 1.0 : -1.0) * pair->twist /
+        const double climb = (side == wheel ? 1.0 : -1.0) * pair->face_advance /
                              (gear->tip_roll_length - gear->start_roll_length);
         set_ramps(f, &ramp_seed, side, amplitude, climb, normal ? pair->normal_to_transverse : 1.0,
                   normal ? exact : 1.0L);

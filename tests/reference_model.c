@@ -109,7 +109,7 @@ void model_pair_init(model_pair *pair, const gm_pair_params *params) {
     pair->line_of_action = sqrtl((d - base_sum) * (d + base_sum));
     pair->base_pitch = pi * pair->transverse_module * cosl(pair->alpha_t);
     pair->face_width = params->face_width;
-    pair->twist = pair->face_width * tanl(pair->beta_b);
+    pair->face_advance = pair->face_width * tanl(pair->beta_b);
 
     const long double shift_sum = (params->pinion_teeth + params->wheel_teeth) *
                                   (involute(pair->alpha_wt) - involute(pair->alpha_t)) /
@@ -355,7 +355,8 @@ void model_evaluate(const model_pair *pair, const model_flanks *pinion, const mo
     const long double phi_w = reduce(wheel_angle, z_w, &turns_w);
 
     /* Teeth far beyond both ends of the lines of action of all sections. */
-    const long long reach = 2 * z_p + (long long)ceill(2 * fabsl(pair->twist) / pair->base_pitch);
+    const long long reach =
+        2 * z_p + (long long)ceill(2 * fabsl(pair->face_advance) / pair->base_pitch);
 
     *result = (model_result){0};
     result->offset = r_bp * phi_p - r_bw * phi_w + pair->base_pitch * (turns_p - turns_w);
@@ -371,8 +372,8 @@ void model_evaluate(const model_pair *pair, const model_flanks *pinion, const mo
             line l = {.pair = pair, .extra = approach};
             l.rho[0] = r_bp * (pair->alpha_wt + pair->psi[0] + s * angle_p);
             l.rho[1] = r_bw * (pair->alpha_wt + pair->psi[1] - s * angle_w);
-            l.climb[0] = s * pair->twist;
-            l.climb[1] = -s * pair->twist;
+            l.climb[0] = s * pair->face_advance;
+            l.climb[1] = -s * pair->face_advance;
             if (pinion != NULL) {
                 l.table[0] = &pinion->table[side][tooth_p];
                 l.ramp[0] = pinion->ramp[side];

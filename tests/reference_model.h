@@ -34,8 +34,8 @@ typedef struct model_pair {
     long double line_of_action; /**< T0 (m) */
     long double base_pitch;     /**< p_bt (m) */
     long double face_width;
-    long double twist;    /**< b tan(beta_b) (m) */
-    long double backlash; /**< transverse, along the line of action (m) */
+    long double face_advance; /**< b tan(beta_b) (m) */
+    long double backlash;     /**< transverse, along the line of action (m) */
 } model_pair;
 
 /** Deviations of one flank; nodes = 0: ideal. */

@@ -517,7 +517,7 @@ static void ideal_flanks_need_one_pass(void) {
             if (delta <= 0.0) {
                 GM_ASSERT(r.penetration == 0.0);
             }
-            /* A kink is a change of slope by delta / twist; a cubic that starts with the wrong one is off by
+            /* A kink is a change of slope by delta / advance; a cubic that starts with the wrong one is off by
              * 4/27 of the cell: 41 um and 1 um, of 9.5 mm and a length of 1.6: 4e-4 of the sum. */
             GM_ASSERT_REL(r.penetration, exact.penetration, 5e-4);
         }

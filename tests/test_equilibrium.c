@@ -54,7 +54,7 @@ static void equilibrium_inverts_the_sum(void) {
         const int status = gm_static_equilibrium(&c.pair, c.use[0], c.use[1], c.pinion_angle,
                                                  stiffness, torque, &x, &r);
         /* Spur gears may jump across the torque: no exact solution then. All else has one. */
-        const int helical = fabs((double)c.model.twist) > 0.05 * m_n;
+        const int helical = fabs((double)c.model.face_advance) > 0.05 * m_n;
         if (helical) {
             if (!GM_ASSERT_INT(status, GM_OK)) {
                 random_case_free(&c);
@@ -173,17 +173,17 @@ static void every_equilibrium_found_carries_the_torque(void) {
                                   1e8 * r_bw * target, &x, &r) == GM_OK) {
             const gm_penetration there = at(&c.pair, c.use[0], c.use[1], c.pinion_angle, x);
             /* x is a double: steps of its rounding times the contact length, and of almost spur
-             * lines times delta / twist. */
+             * lines times delta / advance. */
             const double e = 8.0 * 0x1p-53 * c.params.center_distance;
-            const double twist = fabs((double)c.model.twist);
+            const double advance = fabs((double)c.model.face_advance);
             const double steep =
-                twist > 0.0 ? fmin(1.0, e / twist) * (fabs(target) + c.amplitude) : 0.0;
+                advance > 0.0 ? fmin(1.0, e / advance) * (fabs(target) + c.amplitude) : 0.0;
             const double tolerance = 1e-12 * fabs(target) + 10.0 * steep +
                                      e * (1.0 + there.drive_contact + there.coast_contact);
             /* A spur pair's sum may step over the torque where a pair enters: x is that place. */
             const gm_penetration before = at(&c.pair, c.use[0], c.use[1], c.pinion_angle, x - e);
             const gm_penetration behind = at(&c.pair, c.use[0], c.use[1], c.pinion_angle, x + e);
-            const int steps_over = twist == 0.0 && before.penetration < target - tolerance &&
+            const int steps_over = advance == 0.0 && before.penetration < target - tolerance &&
                                    behind.penetration > target + tolerance;
             good = steps_over || GM_ASSERT_ABS(there.penetration, target, tolerance);
             found++;
@@ -363,7 +363,7 @@ static void bisection_of_the_sum_gives_the_same(void) {
         double x = NAN;
         gm_penetration r;
         /* Next to spur the sum falls where a line leaves, and more than one x carries the torque. */
-        const int grows = fabs(c.pair.twist) > 0.05 * c.params.normal_module;
+        const int grows = fabs(c.pair.face_advance) > 0.05 * c.params.normal_module;
         if (grows && gm_static_equilibrium(&c.pair, c.use[0], c.use[1], c.pinion_angle, 1e8, torque,
                                            &x, &r) == GM_OK) {
             /* Where little touches, the rounding of the sum moves x by more. */
@@ -389,13 +389,13 @@ static void no_torque_is_carried_where_both_sides_touch(void) {
         gm_test_context("case %d, helix %g", i, c.params.helix_angle);
         const double overlap = bisect(&c, COAST, -1e-300) - bisect(&c, DRIVE, 0.0);
         /* Next to spur the only line may have left where bisection looks for it. */
-        const int grows = fabs(c.pair.twist) > 0.05 * c.params.normal_module;
+        const int grows = fabs(c.pair.face_advance) > 0.05 * c.params.normal_module;
         double x = NAN;
         gm_penetration r;
         const int status =
             gm_static_equilibrium(&c.pair, c.use[0], c.use[1], c.pinion_angle, 1e8, 0.0, &x, &r);
         if (overlap > 1e-9) {
-            if (GM_ASSERT_INT(status, GM_OK) && fabs(c.pair.twist) > 0.0) {
+            if (GM_ASSERT_INT(status, GM_OK) && fabs(c.pair.face_advance) > 0.0) {
                 GM_ASSERT(r.drive > 0.0 && r.coast > 0.0);
                 GM_ASSERT_ABS(r.drive, r.coast, 1e-14 * c.params.center_distance);
             }

@@ -577,25 +577,25 @@ class Geometry(Case):
                      arguments=["--set", "gears.center_distance_mm=100", "--set", "gears.pinion_profile_shift=0", "--set",
                                 "gears.wheel_profile_shift=0"])
 
-    def doubts(self, *overrides):
+    def warnings(self, *overrides):
         self.write("run.ini", PARAMS)
         options = [part for override in overrides for part in ("--set", "gears." + override)]
         self.assertEqual(self.accepted("run.ini", "--geometry", "--quiet", *options).stderr, "")
         return self.accepted("run.ini", "--geometry", *options).stderr
 
     def test_doubtful_gears_are_warned_of_with_numbers(self):
-        self.assertEqual(self.doubts(), "")
-        self.assertRegex(self.doubts("backlash_um=-20"), r"--set gears\.backlash_um: warning: .* -20 um, negative")
-        self.assertRegex(self.doubts("wheel_tip_diameter_mm=80"),
+        self.assertEqual(self.warnings(), "")
+        self.assertRegex(self.warnings("backlash_um=-20"), r"--set gears\.backlash_um: warning: .* -20 um, negative")
+        self.assertRegex(self.warnings("wheel_tip_diameter_mm=80"),
                          r"run\.ini:7: gears\.center_distance_mm: warning: the transverse contact ratio is 0\.\d+, below 1")
-        self.assertRegex(self.doubts("pinion_tip_diameter_mm=95.6"),
+        self.assertRegex(self.warnings("pinion_tip_diameter_mm=95.6"),
                          r"gears\.pinion_tip_diameter_mm: warning: .* 0\.\d+ normal modules thick .* 95\.6 mm, less than 0\.2")
-        self.assertRegex(self.doubts("wheel_tip_diameter_mm=88.8"),
+        self.assertRegex(self.warnings("wheel_tip_diameter_mm=88.8"),
                          r"gears\.wheel_tip_diameter_mm: warning: pointed tip: .* 88\.8 mm")
-        self.assertRegex(self.doubts("pinion_teeth=8", "center_distance_mm=40.5", "helix_angle_deg=0",
+        self.assertRegex(self.warnings("pinion_teeth=8", "center_distance_mm=40.5", "helix_angle_deg=0",
                                      "pinion_tip_diameter_mm=16.5", "wheel_tip_diameter_mm=70.9"),
                          r"gears\.pinion_teeth: warning: undercut: .* \(8 teeth, profile shift ")
-        self.assertRegex(self.doubts("wheel_start_diameter_mm=77"),
+        self.assertRegex(self.warnings("wheel_start_diameter_mm=77"),
                          r"gears\.wheel_start_diameter_mm: warning: .* diameter of 77 mm, below the root form")
 
     def test_zero_backlash_is_not_taken_for_negative(self):
@@ -612,7 +612,7 @@ class Geometry(Case):
             self.assertGreater(values["eigenfrequency_Hz"], 0)
 
     def test_start_below_the_base_circle_is_the_base_circle(self):
-        text = self.doubts("pinion_start_diameter_mm=80")
+        text = self.warnings("pinion_start_diameter_mm=80")
         self.assertRegex(text, r"gears\.pinion_start_diameter_mm: warning: below the base circle .* 83\.7719 mm is taken")
         values = self.listing("--set", "gears.pinion_start_diameter_mm=80")
         self.assertEqual(values["pinion_start_radius_mm"], values["pinion_base_radius_mm"])

@@ -1,7 +1,7 @@
 /* SPDX-FileCopyrightText: The gearmesh authors */
 /* SPDX-License-Identifier: BSD-3-Clause */
 
-/* From a drawing to a pair: derived values, defaults, every range, every doubt. */
+/* From a drawing to a pair: derived values, defaults, every range, every warning. */
 #include "gearmesh/gearmesh.h"
 #include "gm_test.h"
 #include "reference_gear.h"
@@ -30,7 +30,7 @@ static void list_pair(const gm_pair *p, double out[PAIR_DOUBLES]) {
                                p->base_helix_angle,
                                p->transverse_base_pitch,
                                p->face_width,
-                               p->twist,
+                               p->face_advance,
                                p->normal_to_transverse,
                                p->center_distance,
                                p->reference_center_distance,
@@ -75,7 +75,7 @@ static void reference_gears_have_their_known_geometry(void) {
     GM_ASSERT_ABS(p.working_pressure_angle, 19.65262 * degree, 0.5e-5 * degree);
     GM_ASSERT_ABS(p.line_of_action, 28.586911 * mm, 0.5e-6 * mm);
     GM_ASSERT_ABS(p.transverse_base_pitch, 5.848379 * mm, 0.5e-6 * mm);
-    GM_ASSERT_ABS(p.twist, 10.753467 * mm, 0.5e-6 * mm);
+    GM_ASSERT_ABS(p.face_advance, 10.753467 * mm, 0.5e-6 * mm);
     GM_ASSERT_ABS(p.normal_to_transverse, 1.17371, 0.5e-5);
     /* The tip radii are given to 1e-6 mm; at rho they count r_a / rho = 2.3 times as much. */
     GM_ASSERT_ABS(p.path_start, 8.764840 * mm, 0.5e-6 * mm + 1.2e-6 * mm);
@@ -124,9 +124,9 @@ static void paper_base_helix_is_there_on_request_only(void) {
     const gm_pair paper = make_pair(&params);
     GM_ASSERT_ABS(paper.base_helix_angle, 34.46244 * degree, 0.5e-5 * degree);
     GM_ASSERT_ABS(paper.overlap_ratio, 2.3470, 0.5e-4);
-    GM_ASSERT_ABS(paper.twist, 13.726e-3, 0.5e-6);
+    GM_ASSERT_ABS(paper.face_advance, 13.726e-3, 0.5e-6);
     const gm_pair iso = reference_pair(20e-3);
-    GM_ASSERT_ABS(iso.twist, 12.290e-3, 0.5e-6);
+    GM_ASSERT_ABS(iso.face_advance, 12.290e-3, 0.5e-6);
     GM_ASSERT_REL(paper.transverse_base_pitch, iso.transverse_base_pitch, 0.0);
 }
 
@@ -135,10 +135,10 @@ static void left_hand_changes_signs_alone(void) {
     const gm_pair right = make_pair(&params);
     params.helix_angle = -params.helix_angle;
     gm_pair left = make_pair(&params);
-    GM_ASSERT(left.helix_angle < 0.0 && left.base_helix_angle < 0.0 && left.twist < 0.0);
+    GM_ASSERT(left.helix_angle < 0.0 && left.base_helix_angle < 0.0 && left.face_advance < 0.0);
     left.helix_angle = -left.helix_angle;
     left.base_helix_angle = -left.base_helix_angle;
-    left.twist = -left.twist;
+    left.face_advance = -left.face_advance;
     double a[PAIR_DOUBLES];
     double b[PAIR_DOUBLES];
     list_pair(&right, a);
@@ -291,9 +291,9 @@ static void a_start_below_the_base_circle_is_raised(void) {
     GM_ASSERT_REL(p.pinion.start_roll_length, 0.0, 0.0);
     GM_ASSERT_REL(p.wheel.start_radius, p.wheel.base_radius, 0.0);
     GM_ASSERT_REL(p.wheel.start_roll_length, 0.0, 0.0);
-    GM_ASSERT_INT(gm_pair_doubts(&p, &params) &
-                      (GM_DOUBT_PINION_START_RADIUS | GM_DOUBT_WHEEL_START_RADIUS),
-                  GM_DOUBT_PINION_START_RADIUS | GM_DOUBT_WHEEL_START_RADIUS);
+    GM_ASSERT_INT(gm_pair_warnings(&p, &params) &
+                      (GM_WARN_PINION_START_RADIUS | GM_WARN_WHEEL_START_RADIUS),
+                  GM_WARN_PINION_START_RADIUS | GM_WARN_WHEEL_START_RADIUS);
     /* The mate's tips still limit the path. */
     const gm_pair reference = reference_pair(REFERENCE_FACE_WIDTH);
     GM_ASSERT_REL(p.path_start, reference.path_start, 1e-15);
@@ -618,26 +618,26 @@ static void success_means_finite(void) {
 }
 
 /* ---------------------------------------------------------------------------------------------
- * Doubts
+ * Warnings
  * ------------------------------------------------------------------------------------------- */
 
-static int doubts_of(const gm_pair_params *params) {
+static int warnings_of(const gm_pair_params *params) {
     const gm_pair pair = make_pair(params);
-    return gm_pair_doubts(&pair, params);
+    return gm_pair_warnings(&pair, params);
 }
 
-static void reference_gears_are_beyond_doubt(void) {
+static void reference_gears_give_no_warning(void) {
     const gm_pair_params params = reference_params(REFERENCE_FACE_WIDTH);
-    GM_ASSERT_INT(doubts_of(&params), 0);
+    GM_ASSERT_INT(warnings_of(&params), 0);
 }
 
-static void doubts_need_both_pointers(void) {
+static void warnings_need_both_pointers(void) {
     gm_pair_params params = reference_params(REFERENCE_FACE_WIDTH);
     params.backlash = -10e-6;
     const gm_pair pair = make_pair(&params);
-    GM_ASSERT_INT(gm_pair_doubts(&pair, &params), GM_DOUBT_BACKLASH);
-    GM_ASSERT_INT(gm_pair_doubts(NULL, &params), 0);
-    GM_ASSERT_INT(gm_pair_doubts(&pair, NULL), 0);
+    GM_ASSERT_INT(gm_pair_warnings(&pair, &params), GM_WARN_BACKLASH);
+    GM_ASSERT_INT(gm_pair_warnings(NULL, &params), 0);
+    GM_ASSERT_INT(gm_pair_warnings(&pair, NULL), 0);
 }
 
 /** A small spur gear without shift, cut by a standard rack, with a large mate; by role. */
@@ -659,14 +659,14 @@ static gm_pair_params undercut_params(int small_is_pinion) {
 /* A rack undercuts below z = 2 (h + 0.05) / sin^2(alpha) = 18 teeth of 20 degrees. */
 static void few_teeth_without_shift_are_undercut(void) {
     const gm_pair_params pinion = undercut_params(1);
-    GM_ASSERT_INT(doubts_of(&pinion) & (GM_DOUBT_PINION_UNDERCUT | GM_DOUBT_WHEEL_UNDERCUT),
-                  GM_DOUBT_PINION_UNDERCUT);
+    GM_ASSERT_INT(warnings_of(&pinion) & (GM_WARN_PINION_UNDERCUT | GM_WARN_WHEEL_UNDERCUT),
+                  GM_WARN_PINION_UNDERCUT);
     const gm_pair_params wheel = undercut_params(0);
-    GM_ASSERT_INT(doubts_of(&wheel) & (GM_DOUBT_PINION_UNDERCUT | GM_DOUBT_WHEEL_UNDERCUT),
-                  GM_DOUBT_WHEEL_UNDERCUT);
+    GM_ASSERT_INT(warnings_of(&wheel) & (GM_WARN_PINION_UNDERCUT | GM_WARN_WHEEL_UNDERCUT),
+                  GM_WARN_WHEEL_UNDERCUT);
 }
 
-static void thin_and_pointed_tips_are_doubted(void) {
+static void thin_and_pointed_tips_are_warned_of(void) {
     /* s_t at the tip = 2 r_a (psi_b - inv(alpha_a)): the reference gear's land is 0.5 m_n; a tip 0.8 mm
      * larger leaves less than 0.2 m_n, one 2 mm larger nothing. */
     static const double longer[] = {0.8e-3, 2.0e-3};
@@ -679,38 +679,38 @@ static void thin_and_pointed_tips_are_doubted(void) {
         const double land =
             2.0 * p.pinion.tip_radius * (p.pinion.base_half_thickness - (chi - atan(chi)));
         GM_ASSERT(land * cos(p.helix_angle) < 0.2 * p.normal_module);
-        GM_ASSERT_INT(gm_pair_doubts(&p, &params) &
-                          (GM_DOUBT_PINION_TIP_LAND | GM_DOUBT_WHEEL_TIP_LAND),
-                      GM_DOUBT_PINION_TIP_LAND);
+        GM_ASSERT_INT(gm_pair_warnings(&p, &params) &
+                          (GM_WARN_PINION_TIP_LAND | GM_WARN_WHEEL_TIP_LAND),
+                      GM_WARN_PINION_TIP_LAND);
         params = reference_params(REFERENCE_FACE_WIDTH);
         params.wheel_tip_radius += longer[k];
-        GM_ASSERT_INT(doubts_of(&params) & (GM_DOUBT_PINION_TIP_LAND | GM_DOUBT_WHEEL_TIP_LAND),
-                      GM_DOUBT_WHEEL_TIP_LAND);
+        GM_ASSERT_INT(warnings_of(&params) & (GM_WARN_PINION_TIP_LAND | GM_WARN_WHEEL_TIP_LAND),
+                      GM_WARN_WHEEL_TIP_LAND);
     }
 }
 
-static void a_start_below_the_root_form_is_doubted(void) {
+static void a_start_below_the_root_form_is_warned_of(void) {
     /* A straight rack flank 0.05 m_n deeper than needed ends near rho = 7 mm: the base circle is deeper. */
     gm_pair_params params = reference_params(REFERENCE_FACE_WIDTH);
     params.pinion_start_radius = 41.886e-3;
-    GM_ASSERT_INT(doubts_of(&params), GM_DOUBT_PINION_ROOT_FORM);
+    GM_ASSERT_INT(warnings_of(&params), GM_WARN_PINION_ROOT_FORM);
     params = reference_params(REFERENCE_FACE_WIDTH);
     params.wheel_start_radius = 38.163e-3;
-    GM_ASSERT_INT(doubts_of(&params), GM_DOUBT_WHEEL_ROOT_FORM);
-    /* Below the base circle both doubts are named. */
+    GM_ASSERT_INT(warnings_of(&params), GM_WARN_WHEEL_ROOT_FORM);
+    /* Below the base circle both warnings are named. */
     params.wheel_start_radius = 38.0e-3;
-    GM_ASSERT_INT(doubts_of(&params), GM_DOUBT_WHEEL_ROOT_FORM | GM_DOUBT_WHEEL_START_RADIUS);
+    GM_ASSERT_INT(warnings_of(&params), GM_WARN_WHEEL_ROOT_FORM | GM_WARN_WHEEL_START_RADIUS);
     params = reference_params(REFERENCE_FACE_WIDTH);
     params.pinion_start_radius = 41.0e-3;
-    GM_ASSERT_INT(doubts_of(&params), GM_DOUBT_PINION_ROOT_FORM | GM_DOUBT_PINION_START_RADIUS);
+    GM_ASSERT_INT(warnings_of(&params), GM_WARN_PINION_ROOT_FORM | GM_WARN_PINION_START_RADIUS);
 }
 
-static void short_paths_are_doubted(void) {
+static void short_paths_are_warned_of(void) {
     gm_pair_params params = reference_params(REFERENCE_FACE_WIDTH);
     params.pinion_tip_radius = 45.3e-3;
     params.wheel_tip_radius = 41.3e-3;
     GM_ASSERT(make_pair(&params).transverse_contact_ratio < 1.0);
-    GM_ASSERT_INT(doubts_of(&params), GM_DOUBT_CONTACT_RATIO);
+    GM_ASSERT_INT(warnings_of(&params), GM_WARN_CONTACT_RATIO);
 }
 
 int main(int argc, char **argv) {
@@ -738,12 +738,12 @@ int main(int argc, char **argv) {
         GM_TEST(the_gear_at_fault_is_named),
         GM_TEST(null_pointers_are_refused),
         GM_TEST(success_means_finite),
-        GM_TEST(reference_gears_are_beyond_doubt),
-        GM_TEST(doubts_need_both_pointers),
+        GM_TEST(reference_gears_give_no_warning),
+        GM_TEST(warnings_need_both_pointers),
         GM_TEST(few_teeth_without_shift_are_undercut),
-        GM_TEST(thin_and_pointed_tips_are_doubted),
-        GM_TEST(a_start_below_the_root_form_is_doubted),
-        GM_TEST(short_paths_are_doubted),
+        GM_TEST(thin_and_pointed_tips_are_warned_of),
+        GM_TEST(a_start_below_the_root_form_is_warned_of),
+        GM_TEST(short_paths_are_warned_of),
     };
     return gm_test_main("unit.pair", tests, GM_TEST_COUNT(tests), argc, argv);
 }

@@ -11,10 +11,10 @@ static const double pi = 3.14159265358979323846;
 
 /** Compares all fields of two results. `length` as above; `sign` = -1 where net changes sign. */
 static int same_result(const gm_penetration *got, const gm_penetration *expected, double length,
-                       double twist, double radius, int sign, int swapped) {
+                       double advance, double radius, int sign, int swapped) {
     const gm_penetration *e = expected;
-    /* A limit of a line that moves by `length` changes its part of the face by length / twist. */
-    const double part = 8.0 * length / fabs(twist);
+    /* A limit of a line that moves by `length` changes its part of the face by length / advance. */
+    const double part = 8.0 * length / fabs(advance);
     const double total = (1.0 + e->drive_contact + e->coast_contact);
     const double sum =
         length * total + 1e-12 * (e->drive + e->coast) + part * (e->drive + e->coast);
@@ -108,9 +108,9 @@ static void roll_mean_of_the_contact_length_is_path_over_base_pitch(void) {
         double highest = 0.0;
         const double mean =
             roll_mean(&pair, pair.backlash / 2 + deltas[d], STEPS, &lowest, &highest);
-        /* Rectangle rule on a line with four kinks of slope p_bt / twist per base pitch: at most
+        /* Rectangle rule on a line with four kinks of slope p_bt / advance per base pitch: at most
          * h^2 / 8 for each, h = 1 / STEPS. */
-        const double quadrature = 4.0 / 8.0 / STEPS / STEPS * p_bt / pair.twist;
+        const double quadrature = 4.0 / 8.0 / STEPS / STEPS * p_bt / pair.face_advance;
         GM_ASSERT_ABS(mean, (path_of(&pair) - deltas[d]) / p_bt, quadrature + 1e-12);
     }
     /* errata of the paper, 5 um: 2.12275, not eps_alpha = 2.12360 (printed digits) */
@@ -304,8 +304,8 @@ static int compare_with_image(const random_case *c, enum symmetry symmetry) {
         maps[0] = maps[1] = opposite_tooth;
     } else if (symmetry == MIRRORED_Z) {
         /* The section z = 0 is the other end now. */
-        image.pinion_angle += (double)(c->model.twist / c->model.base_radius[0]);
-        image.wheel_angle += (double)(c->model.twist / c->model.base_radius[1]);
+        image.pinion_angle += (double)(c->model.face_advance / c->model.base_radius[0]);
+        image.wheel_angle += (double)(c->model.face_advance / c->model.base_radius[1]);
     } else {
         image.pinion_angle = -state.pinion_angle;
         image.wheel_angle = -state.wheel_angle;
@@ -342,7 +342,7 @@ static int compare_with_image(const random_case *c, enum symmetry symmetry) {
         length_rounding(&pair) + 2.0 * 0x1p-53 * radius *
                                      (fabs(c->pinion_angle) + fabs(c->wheel_angle) +
                                       fabs(image.pinion_angle) + fabs(image.wheel_angle));
-    good &= same_result(&got, &expected, length, pair.twist, radius,
+    good &= same_result(&got, &expected, length, pair.face_advance, radius,
                         symmetry == MIRRORED_Y ? -1 : 1, symmetry == MIRRORED_Y);
     free(memory[0]);
     free(memory[1]);
@@ -429,7 +429,7 @@ static void all_lengths_scale_together(void) {
         expected.coast *= scale;
         expected.d_pinion_angle *= scale;
         expected.d_wheel_angle *= scale;
-        if (!same_result(&large, &expected, length_rounding(&scaled), scaled.twist,
+        if (!same_result(&large, &expected, length_rounding(&scaled), scaled.face_advance,
                          scaled.pinion.base_radius + scaled.wheel.base_radius, 1, 0)) {
             return;
         }
@@ -786,14 +786,15 @@ static void spur_jumps_where_a_pair_enters_and_helical_does_not(void) {
     for (int k = -10; k <= 20; k++) {
         gm_test_context("step %d", k);
         const double part = k / 10.0;
-        const double roll = last - helical.twist + part * helical.twist;
+        const double roll = last - helical.face_advance + part * helical.face_advance;
         const double got = at(&helical, NULL, NULL, roll / helical.pinion.base_radius, x).drive;
         if (k == -10) {
             first = got;
         }
         const double left = part < 0.0 ? 0.0 : part > 1.0 ? 1.0 : part;
-        /* Lengths are certain to their rounding, delta times that over the twist. */
-        const double allowed = 4.0 * length_rounding(&helical) * (1.0 + delta / helical.twist);
+        /* Lengths are certain to their rounding, delta times that over the advance. */
+        const double allowed =
+            4.0 * length_rounding(&helical) * (1.0 + delta / helical.face_advance);
         GM_ASSERT_ABS(first - got, left * delta, allowed);
         if (k > -10) {
             GM_ASSERT(fabs(got - previous) < 0.11 * delta);

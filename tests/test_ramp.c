@@ -328,7 +328,7 @@ static void ramps_that_take_nothing_off_change_nothing(void) {
 static void edges_along_the_lines_of_contact_are_none(void) {
     const gm_pair pair = reference_pair(REFERENCE_FACE_WIDTH);
     const double roll = pair.pinion.tip_roll_length - pair.pinion.start_roll_length;
-    const double climb = pair.twist / roll;
+    const double climb = pair.face_advance / roll;
     const double rise = 40.0 * UM;
     int lower = 0;
     gm_flanks flanks = flanks_of(&pair, 0, 0);
@@ -352,8 +352,8 @@ static void edges_along_the_lines_of_contact_are_none(void) {
                                 pair.pinion.tip_roll_length};
         for (int i = -4; i <= 4; i++) {
             const double rho = pair.phase_origin + position.phase + i * pair.transverse_base_pitch;
-            const double from = fmax(0.0, (path[0] - rho) / pair.twist);
-            const double to = fmin(1.0, (path[1] - rho) / pair.twist);
+            const double from = fmax(0.0, (path[0] - rho) / pair.face_advance);
+            const double to = fmin(1.0, (path[1] - rho) / pair.face_advance);
             const double lacks = rise * (i * pair.transverse_base_pitch / roll + beside);
             if (to > from) {
                 expected += (to - from) * fmax(0.0, 20.0 * UM - fmax(0.0, lacks));

@@ -388,8 +388,8 @@ static void free_model_flanks(model_flanks *flanks) {
 }
 
 /** What the cases allow for fractions and lengths in t1. */
-static double fraction_tolerance(const case_record *c, double twist) {
-    return 1e-9 + (twist != 0.0 ? c->tolerance / fabs(twist) : 0.0);
+static double fraction_tolerance(const case_record *c, double advance) {
+    return 1e-9 + (advance != 0.0 ? c->tolerance / fabs(advance) : 0.0);
 }
 
 /* ---------------------------------------------------------------------------------------------
@@ -470,7 +470,7 @@ static void penetration_of_every_state(void) {
             GM_ASSERT_NEAR(got.drive, c->side[GM_DRIVE].sum, relative_tolerance, c->tolerance);
             GM_ASSERT_NEAR(got.coast, c->side[GM_COAST].sum, relative_tolerance, c->tolerance);
             GM_ASSERT_NEAR(got.penetration, c->net, relative_tolerance, c->tolerance);
-            const double allowed = fraction_tolerance(c, p.pair.twist);
+            const double allowed = fraction_tolerance(c, p.pair.face_advance);
             GM_ASSERT_ABS(got.drive_contact, c->side[GM_DRIVE].fraction, allowed);
             GM_ASSERT_ABS(got.coast_contact, c->side[GM_COAST].fraction, allowed);
         }
@@ -560,9 +560,9 @@ static void the_second_model_agrees(void) {
             const side_record *expected = &c->side[side];
             GM_ASSERT_NEAR((double)result.sum[side], expected->sum, 1e-14, 1e-2 * c->tolerance);
             GM_ASSERT_ABS((double)result.contact[side], expected->fraction,
-                          1e-10 + 1e-2 * (fraction_tolerance(c, (double)pair.twist) - 1e-9));
+                          1e-10 + 1e-2 * (fraction_tolerance(c, (double)pair.face_advance) - 1e-9));
             GM_ASSERT_ABS((double)result.overlap[side], expected->overlap,
-                          1e-10 + 1e-2 * (fraction_tolerance(c, (double)pair.twist) - 1e-9));
+                          1e-10 + 1e-2 * (fraction_tolerance(c, (double)pair.face_advance) - 1e-9));
         }
         free_model_flanks(&flanks[0]);
         free_model_flanks(&flanks[1]);

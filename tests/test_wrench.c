@@ -86,12 +86,12 @@ static void each_line_of_contact_pushes_where_it_is(void) {
 
         /* Near an engagement of a (nearly) spur gear a rounding moves a whole pair: not here. */
         const double e = 4.0 * 0x1p-53 * c.params.center_distance;
-        const int certain = fabs((double)c.model.twist) > 1e-3 * c.params.normal_module;
+        const int certain = fabs((double)c.model.face_advance) > 1e-3 * c.params.normal_module;
         /* Forces are K times lengths that are certain to e, and 1e-10 relative. */
         const double scale = stiffness * (double)(m.sum[0] + m.sum[1]) +
                              damping * fabs(speed) * (double)(m.contact[0] + m.contact[1]);
         const double force = 1e-10 * scale + 4.0 * stiffness * e +
-                             2.0 * damping * fabs(speed) * e / fabs((double)c.model.twist);
+                             2.0 * damping * fabs(speed) * e / fabs((double)c.model.face_advance);
         const double arm = 2.0 * c.params.center_distance + c.params.face_width;
         int good = 1;
         for (int k = 0; k < 3 && certain; k++) {

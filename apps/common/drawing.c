@@ -94,7 +94,7 @@ static void warn_of_tip(const config *conf, const gm_pair *pair, const gm_gear *
     }
 }
 
-/* What is said of one gear: keys and doubts of the pinion or of the wheel. */
+/* What is said of one gear: keys and warnings of the pinion or of the wheel. */
 typedef struct gear_words {
     const char *name, *teeth_key, *tip_key, *start_key;
     int undercut, tip_land, root_form, start_radius;
@@ -104,39 +104,39 @@ static const gear_words pinion_words = {"pinion",
                                         "gears.pinion_teeth",
                                         "gears.pinion_tip_diameter_mm",
                                         "gears.pinion_start_diameter_mm",
-                                        GM_DOUBT_PINION_UNDERCUT,
-                                        GM_DOUBT_PINION_TIP_LAND,
-                                        GM_DOUBT_PINION_ROOT_FORM,
-                                        GM_DOUBT_PINION_START_RADIUS};
+                                        GM_WARN_PINION_UNDERCUT,
+                                        GM_WARN_PINION_TIP_LAND,
+                                        GM_WARN_PINION_ROOT_FORM,
+                                        GM_WARN_PINION_START_RADIUS};
 static const gear_words wheel_words = {"wheel",
                                        "gears.wheel_teeth",
                                        "gears.wheel_tip_diameter_mm",
                                        "gears.wheel_start_diameter_mm",
-                                       GM_DOUBT_WHEEL_UNDERCUT,
-                                       GM_DOUBT_WHEEL_TIP_LAND,
-                                       GM_DOUBT_WHEEL_ROOT_FORM,
-                                       GM_DOUBT_WHEEL_START_RADIUS};
+                                       GM_WARN_WHEEL_UNDERCUT,
+                                       GM_WARN_WHEEL_TIP_LAND,
+                                       GM_WARN_WHEEL_ROOT_FORM,
+                                       GM_WARN_WHEEL_START_RADIUS};
 
 static void warn_of_gear(const config *conf, const gm_pair *pair, const gm_gear *gear,
-                         const gear_words *words, int doubts) {
-    if (doubts & words->undercut) {
+                         const gear_words *words, int warnings) {
+    if (warnings & words->undercut) {
         config_warn(
             conf, words->teeth_key,
             "undercut: a generating rack cuts into the involute of the %s (%d teeth, profile "
             "shift %.6g)",
             words->name, gear->teeth, gear->profile_shift);
     }
-    if (doubts & words->tip_land) {
+    if (warnings & words->tip_land) {
         warn_of_tip(conf, pair, gear, words->tip_key, words->name);
     }
-    if (doubts & words->root_form) {
+    if (warnings & words->root_form) {
         config_warn(
             conf, words->start_key,
             "the active profile of the %s starts at a diameter of %.6g mm, below the root form "
             "circle that a generating rack leaves",
             words->name, 2e3 * gear->start_radius);
     }
-    if (doubts & words->start_radius) {
+    if (warnings & words->start_radius) {
         config_warn(conf, words->start_key,
                     "below the base circle of the %s, its diameter %.6g mm is taken instead",
                     words->name, 2e3 * gear->base_radius);
@@ -144,17 +144,17 @@ static void warn_of_gear(const config *conf, const gm_pair *pair, const gm_gear 
 }
 
 void drawing_warn(const config *conf, const gm_pair *pair) {
-    const int doubts = gm_pair_doubts(pair, &conf->gears);
+    const int warnings = gm_pair_warnings(pair, &conf->gears);
 
-    warn_of_gear(conf, pair, &pair->pinion, &pinion_words, doubts);
-    warn_of_gear(conf, pair, &pair->wheel, &wheel_words, doubts);
-    if (doubts & GM_DOUBT_CONTACT_RATIO) {
+    warn_of_gear(conf, pair, &pair->pinion, &pinion_words, warnings);
+    warn_of_gear(conf, pair, &pair->wheel, &wheel_words, warnings);
+    if (warnings & GM_WARN_CONTACT_RATIO) {
         config_warn(
             conf, "gears.center_distance_mm",
             "the transverse contact ratio is %.4f, below 1: no smooth handover between teeth",
             pair->transverse_contact_ratio);
     }
-    if (doubts & GM_DOUBT_BACKLASH) {
+    if (warnings & GM_WARN_BACKLASH) {
         config_warn(conf, "gears.backlash_um",
                     "the backlash is %.6g um, negative: both flanks touch and press",
                     1e6 * pair->backlash);

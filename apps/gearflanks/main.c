@@ -27,7 +27,7 @@ static int do_with_gears(const flanks_options *options, const gm_pair *pair, con
 
 static int load_and_do(const flanks_options *options) {
     const config_request request = {.path = options->parameters,
-                                    .quiet = 1, /* doubts about the gears are gearsim's to tell */
+                                    .quiet = 1, /* warnings about the gears are gearsim's to tell */
                                     .purpose = CONFIG_FOR_GEOMETRY};
     config conf;
     gear_mesh mesh;

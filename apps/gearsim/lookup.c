@@ -25,7 +25,7 @@ int lookup_check(const config *conf, const gear_mesh *gears) {
     if (!is_wanted(conf)) {
         return 0;
     }
-    if (gears->pair.twist == 0.0) {
+    if (gears->pair.face_advance == 0.0) {
         config_complain(
             conf, "solver.lookup",
             "not for spur gears, whose sum of penetrations jumps (got on), must be off");

@@ -49,7 +49,7 @@ static double contact_turns(const gmi_generator *make, int tooth, int side, doub
         gear->start_roll_length + t2 * (gear->tip_roll_length - gear->start_roll_length);
     const double roll = (side == GM_DRIVE) == !make->wheel ? -rho : rho;
     return (double)tooth / gear->teeth +
-           (roll + t1 * make->pair->twist) / (2.0 * pi * gear->base_radius);
+           (roll + t1 * make->pair->face_advance) / (2.0 * pi * gear->base_radius);
 }
 
 /* From a stream of their own, so that a wave leaves all else as it is. */
@@ -107,7 +107,8 @@ static int check_waves(const gmi_generator *make) {
             return gmi_error_set(make->error, GM_IO_ERR_OPTION, 0,
                                  "the amplitude of a wave must be finite and not below 0");
         }
-        status = check_resolution(make, "t1", make->pair->twist, options->face_nodes, wave->order);
+        status = check_resolution(make, "t1", make->pair->face_advance, options->face_nodes,
+                                  wave->order);
         if (status == GM_IO_OK) {
             status = check_resolution(make, "t2",
                                       make->gear->tip_roll_length - make->gear->start_roll_length,

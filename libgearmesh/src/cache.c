@@ -117,7 +117,7 @@ static void insert_knot(double knots[KNOTS], int *count, double phase) {
     knots[place] = phase;
 }
 
-/* Line k is in a corner where origin + k p_bt + t1 twist = end, with t1 = 0 or 1; see contact.c. */
+/* Line k is in a corner where origin + k p_bt + t1 advance = end, with t1 = 0 or 1; see contact.c. */
 static void find_knots(const gm_cache *cache, double knots[KNOTS]) {
     const gm_pair *pair = cache->pair;
     const double p_bt = pair->transverse_base_pitch;
@@ -129,7 +129,8 @@ static void find_knots(const gm_cache *cache, double knots[KNOTS]) {
     insert_knot(knots, &count, 0.0);
     insert_knot(knots, &count, p_bt);
     for (int corner = 0; corner < CORNERS; ++corner) {
-        const double origin = pair->phase_origin + (corner % 2 == 0 ? 0.0 : sign * pair->twist);
+        const double origin =
+            pair->phase_origin + (corner % 2 == 0 ? 0.0 : sign * pair->face_advance);
         const double ends[2] = {(corner < 2 ? low.lower : low.upper) - margin,
                                 (corner < 2 ? high.lower : high.upper) + margin};
         for (int end = 0; end < 2; ++end) {
@@ -204,7 +205,7 @@ static int describe(gm_cache *cache, const gm_cache_params *params, const gm_pai
     if (!check_params(params, pair)) {
         return GM_ERR_PARAMETER;
     }
-    if (pair->twist == 0.0) {
+    if (pair->face_advance == 0.0) {
         return GM_ERR_GEOMETRY;
     }
 

@@ -4,10 +4,10 @@
 /*
  * Which lines of contact exist on a plane of action, and where [Paper, sections 4.2-4.4, Eqs. 18-20].
  *
- * Drive side: rho_p of pair i at face position t1 is r_bp (alpha_wt + psi_bp + phi_p) + i p_bt + twist t1
+ * Drive side: rho_p of pair i at face position t1 is r_bp (alpha_wt + psi_bp + phi_p) + i p_bt + advance t1
  * (Eq. 18 with the working angle and the base half thickness), and on the wheel rho_w = T0 + delta - rho_p
  * with the same delta = x - backlash / 2 for every pair and t1 (Eqs. 20-23). Coast side: the mirror image,
- * phi_p and twist change their signs, so pair i becomes line -i, and delta = -x - backlash / 2.
+ * phi_p and advance change their signs, so pair i becomes line -i, and delta = -x - backlash / 2.
  *
  * A line exists where both flanks do: rho_p and rho_w between start and tip of their gears.
  */
@@ -58,23 +58,23 @@ static void find_ends(const gm_pair *pair, const limits *range, gmi_lines *lines
     const double below = range->lower - lines->origin;
     const double above = range->upper - lines->origin;
     const double per_pitch = 1.0 / pair->transverse_base_pitch;
-    if (lines->twist == 0.0) { /* spur: a line is inside as a whole, or not at all */
-        lines->per_twist = lines->enter = lines->spacing = 0.0;
+    if (lines->advance == 0.0) { /* spur: a line is inside as a whole, or not at all */
+        lines->per_advance = lines->enter = lines->spacing = 0.0;
         lines->leave = 1.0;
         lines->enter_by_delta = lines->leave_by_delta = 0.0;
         lines->first = -floor_to_int(-below * per_pitch);
         lines->last = floor_to_int(above * per_pitch);
         return;
     }
-    lines->per_twist = 1.0 / lines->twist;
-    lines->spacing = pair->transverse_base_pitch * lines->per_twist;
-    const int climbs = lines->twist > 0.0;
-    lines->enter = (climbs ? below : above) * lines->per_twist;
-    lines->leave = (climbs ? above : below) * lines->per_twist;
+    lines->per_advance = 1.0 / lines->advance;
+    lines->spacing = pair->transverse_base_pitch * lines->per_advance;
+    const int climbs = lines->advance > 0.0;
+    lines->enter = (climbs ? below : above) * lines->per_advance;
+    lines->leave = (climbs ? above : below) * lines->per_advance;
     lines->enter_by_delta = climbs ? range->lower_by_delta : range->upper_by_delta;
     lines->leave_by_delta = climbs ? range->upper_by_delta : range->lower_by_delta;
-    const double rise = climbs ? lines->twist : 0.0;
-    const double fall = climbs ? 0.0 : lines->twist;
+    const double rise = climbs ? lines->advance : 0.0;
+    const double fall = climbs ? 0.0 : lines->advance;
     lines->first = -floor_to_int((rise - below) * per_pitch);
     lines->last = floor_to_int((above - fall) * per_pitch);
 }
@@ -82,7 +82,7 @@ static void find_ends(const gm_pair *pair, const limits *range, gmi_lines *lines
 void gmi_lines_find(const gm_pair *pair, int side, const gm_position *position, gmi_lines *lines) {
     const double direction = side == GM_DRIVE ? 1.0 : -1.0;
     lines->origin = pair->phase_origin + direction * position->phase;
-    lines->twist = direction * pair->twist;
+    lines->advance = direction * pair->face_advance;
     lines->delta = gmi_ideal_penetration(pair, side, position->offset);
     const limits range = find_limits(pair, lines->delta);
     find_ends(pair, &range, lines);
@@ -114,7 +114,7 @@ static void add_ideal_moments(const gm_pair *pair, int side, const gm_position *
         const double middle = 0.5 * (part.from + part.to);
         const double origin = lines.origin + (double)k * pair->transverse_base_pitch;
         total->contact_t1 += length * middle;
-        total->contact_rho += length * (origin + lines.twist * middle);
+        total->contact_rho += length * (origin + lines.advance * middle);
     }
     total->sum_t1 = lines.delta * total->contact_t1;
     total->sum_rho = lines.delta * total->contact_rho;
@@ -122,7 +122,7 @@ static void add_ideal_moments(const gm_pair *pair, int side, const gm_position *
 
 /*
  * Between ideal flanks the integrand is delta on all lines, so only their length counts. Line k covers the line of action
- * from start + k p_bt on over the twist, and what of that lies beyond the limits is cut off: sums of arithmetic series.
+ * from start + k p_bt on over the advance, and what of that lies beyond the limits is cut off: sums of arithmetic series.
  * An end within the face moves with the line's origin, and with delta if it is the wheel's.
  */
 void gmi_side_sum_ideal(const gm_pair *pair, int side, const gm_position *position, int wanted,
@@ -130,10 +130,10 @@ void gmi_side_sum_ideal(const gm_pair *pair, int side, const gm_position *positi
     const double direction = side == GM_DRIVE ? 1.0 : -1.0;
     const double delta = gmi_ideal_penetration(pair, side, position->offset);
     const limits range = find_limits(pair, delta);
-    const double twist = direction * pair->twist;
+    const double advance = direction * pair->face_advance;
     const double start =
-        pair->phase_origin + direction * position->phase + (twist < 0.0 ? twist : 0.0);
-    const double cover = fabs(twist);
+        pair->phase_origin + direction * position->phase + (advance < 0.0 ? advance : 0.0);
+    const double cover = fabs(advance);
     const double below = range.lower - start;
     const double above = range.upper - start;
     const double pitch = pair->transverse_base_pitch;

@@ -120,8 +120,8 @@ static double departure(const problem *p, double lower) {
     gmi_lines lines;
     gmi_lines_find(pair, loaded_side(p), &p->position, &lines);
     /* Line 0 begins to leave where T0 + delta - rho_w(tip) passes its lowest rho_p. */
-    const double delta =
-        lines.origin + fmin(lines.twist, 0.0) + pair->wheel.tip_roll_length - pair->line_of_action;
+    const double delta = lines.origin + fmin(lines.advance, 0.0) + pair->wheel.tip_roll_length -
+                         pair->line_of_action;
     const double travel = delta + 0.5 * pair->backlash;
     const double pitch = pair->transverse_base_pitch;
     return travel + pitch * ceil((lower - travel) / pitch);
@@ -131,7 +131,7 @@ static double departure(const problem *p, double lower) {
 static int solve_before_departure(const problem *p, double lower, double reached, double *found,
                                   gm_penetration *result) {
     const double before = departure(p, lower) - 8.0 * p->resolution;
-    const int can_fall = fabs(p->pair->twist) < reached - lower;
+    const int can_fall = fabs(p->pair->face_advance) < reached - lower;
     gm_penetration there;
     if (!can_fall || !(before > lower && before < reached) || residual(p, before, &there) < 0.0) {
         return 0;

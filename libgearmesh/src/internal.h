@@ -78,15 +78,15 @@ typedef struct gmi_side_sum {
 
 /*
  * The lines of contact of one side (drive or coast) on its plane of action. Line k follows
- *     rho_p(t1) = origin + k p_bt + twist t1,
+ *     rho_p(t1) = origin + k p_bt + advance t1,
  * the distance from the pinion's base tangent point, and exists where lower <= rho_p <= upper.
  */
 typedef struct gmi_lines {
-    double delta;  /* ideal penetration, the same on every line (m) */
-    double origin; /* (m) */
-    double twist;  /* (m) */
+    double delta;   /* ideal penetration, the same on every line (m) */
+    double origin;  /* (m) */
+    double advance; /* (m) */
     double
-        per_twist; /* its inverse; 0 for spur gears, whose lines have no ends within the face (1/m) */
+        per_advance; /* its inverse; 0 for spur gears, whose lines have no ends within the face (1/m) */
 
     /* Line k enters the flanks at t1 = enter - k spacing and leaves them at leave - k spacing. */
     double enter, leave, spacing;

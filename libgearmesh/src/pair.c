@@ -144,9 +144,9 @@ static void derive_sections(gm_pair *pair, const gm_pair_params *p) {
                                       ? tan(p->helix_angle) / cos_transverse
                                       : tan(p->helix_angle) * cos_transverse;
     pair->base_helix_angle = atan(tan_base_helix);
-    pair->twist = p->face_width * tan_base_helix;
-    if (fabs(pair->twist) < DBL_EPSILON * pair->transverse_base_pitch) {
-        pair->twist = 0.0; /* a line climbs less than a phase is rounded: a spur pair */
+    pair->face_advance = p->face_width * tan_base_helix;
+    if (fabs(pair->face_advance) < DBL_EPSILON * pair->transverse_base_pitch) {
+        pair->face_advance = 0.0; /* a line climbs less than a phase is rounded: a spur pair */
     }
     pair->normal_to_transverse = sqrt(1.0 + tan_base_helix * tan_base_helix);
 }
@@ -302,7 +302,7 @@ static problem derive_path(gm_pair *pair) {
         fmin(pair->pinion.tip_roll_length, pair->line_of_action - pair->wheel.start_roll_length);
     pair->transverse_contact_ratio =
         (pair->path_end - pair->path_start) / pair->transverse_base_pitch;
-    pair->overlap_ratio = fabs(pair->twist) / pair->transverse_base_pitch;
+    pair->overlap_ratio = fabs(pair->face_advance) / pair->transverse_base_pitch;
     pair->total_contact_ratio = pair->transverse_contact_ratio + pair->overlap_ratio;
 
     if (!(pair->path_end > pair->path_start)) {
@@ -340,7 +340,7 @@ static problem check_finite(const gm_pair *pair) {
         pair->pinion.profile_shift,
         pair->wheel.profile_shift,
         pair->line_of_action,
-        pair->twist,
+        pair->face_advance,
         pair->backlash,
         pair->phase_origin,
     };
@@ -445,7 +445,7 @@ static double normal_tip_land(const gm_pair *pair, const gm_gear *gear) {
     return transverse_land * cos(tip_helix);
 }
 
-int gm_pair_doubts(const gm_pair *pair, const gm_pair_params *params) {
+int gm_pair_warnings(const gm_pair *pair, const gm_pair_params *params) {
     if (pair == NULL || params == NULL) {
         return 0;
     }
@@ -455,36 +455,36 @@ int gm_pair_doubts(const gm_pair *pair, const gm_pair_params *params) {
     const double wheel_form = root_form_roll_length(pair, wheel, pinion);
     const double least_land = SMALLEST_TIP_LAND * pair->normal_module;
 
-    int doubts = 0;
+    int warnings = 0;
     if (pinion_form < 0.0) {
-        doubts |= GM_DOUBT_PINION_UNDERCUT;
+        warnings |= GM_WARN_PINION_UNDERCUT;
     }
     if (wheel_form < 0.0) {
-        doubts |= GM_DOUBT_WHEEL_UNDERCUT;
+        warnings |= GM_WARN_WHEEL_UNDERCUT;
     }
     if (normal_tip_land(pair, pinion) < least_land) {
-        doubts |= GM_DOUBT_PINION_TIP_LAND;
+        warnings |= GM_WARN_PINION_TIP_LAND;
     }
     if (normal_tip_land(pair, wheel) < least_land) {
-        doubts |= GM_DOUBT_WHEEL_TIP_LAND;
+        warnings |= GM_WARN_WHEEL_TIP_LAND;
     }
     if (pinion->start_roll_length < pinion_form) {
-        doubts |= GM_DOUBT_PINION_ROOT_FORM;
+        warnings |= GM_WARN_PINION_ROOT_FORM;
     }
     if (wheel->start_roll_length < wheel_form) {
-        doubts |= GM_DOUBT_WHEEL_ROOT_FORM;
+        warnings |= GM_WARN_WHEEL_ROOT_FORM;
     }
     if (pair->transverse_contact_ratio < 1.0) {
-        doubts |= GM_DOUBT_CONTACT_RATIO;
+        warnings |= GM_WARN_CONTACT_RATIO;
     }
     if (pair->backlash < -BACKLASH_ROUNDING * pair->transverse_base_pitch) {
-        doubts |= GM_DOUBT_BACKLASH;
+        warnings |= GM_WARN_BACKLASH;
     }
     if (params->pinion_start_radius < pinion->base_radius) {
-        doubts |= GM_DOUBT_PINION_START_RADIUS;
+        warnings |= GM_WARN_PINION_START_RADIUS;
     }
     if (params->wheel_start_radius < wheel->base_radius) {
-        doubts |= GM_DOUBT_WHEEL_START_RADIUS;
+        warnings |= GM_WARN_WHEEL_START_RADIUS;
     }
-    return doubts;
+    return warnings;
 }

@@ -37,26 +37,26 @@ static double flank_length(const gm_gear *gear) {
 }
 
 static void find_grids(const gm_pair *pair, side_view *view) {
-    const double twist = view->lines.twist;
-    gmi_grid_init(&view->pinion_grid, view->pinion_tables, twist, flank_length(&pair->pinion));
-    gmi_grid_init(&view->wheel_grid, view->wheel_tables, -twist, flank_length(&pair->wheel));
+    const double advance = view->lines.advance;
+    gmi_grid_init(&view->pinion_grid, view->pinion_tables, advance, flank_length(&pair->pinion));
+    gmi_grid_init(&view->wheel_grid, view->wheel_tables, -advance, flank_length(&pair->wheel));
     view->wheel_reach = pair->line_of_action + view->lines.delta - pair->wheel.start_roll_length;
 }
 
 /*
  * The ends of a line that a limit of the flanks sets move with the line's origin and with delta:
- *     t1_end = (limit - rho_origin) / twist,
+ *     t1_end = (limit - rho_origin) / advance,
  * and each takes f there into the sum or out of it (Leibniz).
  */
 static inline void add_end_derivatives(const gmi_lines *lines, gmi_interval part, double f_from,
                                        double f_to, gmi_side_sum *side) {
     if (part.from > 0.0 && f_from > 0.0) {
-        const double flow = f_from * lines->per_twist;
+        const double flow = f_from * lines->per_advance;
         side->by_origin += flow;
         side->by_delta -= flow * lines->enter_by_delta;
     }
     if (part.to < 1.0 && f_to > 0.0) {
-        const double flow = f_to * lines->per_twist;
+        const double flow = f_to * lines->per_advance;
         side->by_origin -= flow;
         side->by_delta += flow * lines->leave_by_delta;
     }
@@ -65,9 +65,9 @@ static inline void add_end_derivatives(const gmi_lines *lines, gmi_interval part
 static void add_moments(const gmi_lines *lines, double rho_origin, const gmi_line_sum *line,
                         gmi_side_sum *side) {
     side->sum_t1 += line->sum_t1;
-    side->sum_rho += rho_origin * line->sum + lines->twist * line->sum_t1;
+    side->sum_rho += rho_origin * line->sum + lines->advance * line->sum_t1;
     side->contact_t1 += line->contact_t1;
-    side->contact_rho += rho_origin * line->contact + lines->twist * line->contact_t1;
+    side->contact_rho += rho_origin * line->contact + lines->advance * line->contact_t1;
 }
 
 static double line_origin(const gm_pair *pair, const gmi_lines *lines, int k) {

@@ -44,7 +44,7 @@ static void add_side(const gm_pair *pair, const side_force *side, double mirror,
     const double force = side->force;
     const double f_x = force * sin_alpha;
     const double f_y = force * mirror * cos_alpha;
-    const double axial_share = -mirror * pair->twist / pair->face_width;
+    const double axial_share = -mirror * pair->face_advance / pair->face_width;
     const double f_z = force * axial_share;
 
     /* Moments of position times force, about the pinion axis at z = 0. */

@@ -266,8 +266,8 @@ static void count_pieces(bench_gears *gears, const gm_position *position,
     for (int k = -20; k <= 20; ++k) {
         const double origin =
             pair->phase_origin + position->phase + k * pair->transverse_base_pitch;
-        const double at_lower = (lower - origin) / pair->twist;
-        const double at_upper = (upper - origin) / pair->twist;
+        const double at_lower = (lower - origin) / pair->face_advance;
+        const double at_upper = (upper - origin) / pair->face_advance;
         const double from = fmax(0.0, fmin(at_lower, at_upper));
         const double to = fmin(1.0, fmax(at_lower, at_upper));
         if (!(from < to)) {
@@ -281,9 +281,9 @@ static void count_pieces(bench_gears *gears, const gm_position *position,
         gears->mean_pieces +=
             crossings(0.0, face_lines, from, to) +
             crossings((origin - pair->pinion.start_roll_length) * pinion_scale,
-                      pair->twist * pinion_scale, from, to) +
+                      pair->face_advance * pinion_scale, from, to) +
             crossings((reach - origin - pair->wheel.start_roll_length) * wheel_scale,
-                      -pair->twist * wheel_scale, from, to);
+                      -pair->face_advance * wheel_scale, from, to);
     }
 }
 

@@ -170,7 +170,7 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size) {
     FUZZ_CLAIM(checked == status);
     FUZZ_CLAIM((status == GM_OK) == (field == NULL));
     FUZZ_CLAIM((status == GM_OK) == (isfinite(pair.line_of_action) != 0));
-    (void)gm_pair_doubts(&pair, &params);
+    (void)gm_pair_warnings(&pair, &params);
 
     gm_flanks pinion_flanks, wheel_flanks;
     void *pinion_memory = NULL, *wheel_memory = NULL;

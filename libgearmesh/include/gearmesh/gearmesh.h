@@ -188,7 +188,7 @@ typedef struct gm_pair {
     double base_helix_angle;          /**< beta_b, sign of beta (rad) */
     double transverse_base_pitch;     /**< p_bt (m) */
     double face_width;                /**< b (m) */
-    double twist;                /**< b tan(beta_b): how far a contact line climbs along the line
+    double face_advance;         /**< b tan(beta_b): how far a contact line advances along the line
                                            of action over the face width, signed (m) */
     double normal_to_transverse; /**< 1 / cos(beta_b): factor from a deviation along the surface
                                            normal to one in the transverse section (1) */
@@ -236,28 +236,27 @@ GM_API int gm_pair_params_check(const gm_pair_params *params, const char **field
 GM_API int gm_pair_init(gm_pair *pair, const gm_pair_params *params);
 
 /** Properties that do not forbid a run but that an engineer wants to hear of. */
-enum gm_pair_doubt {
-    GM_DOUBT_PINION_UNDERCUT = 1 << 0, /**< generating rack cuts below the pinion's base circle */
-    GM_DOUBT_WHEEL_UNDERCUT = 1 << 1,  /**< as for the pinion */
-    GM_DOUBT_PINION_TIP_LAND =
-        1 << 2,                       /**< normal tip thickness below 0.2 m_n, or a pointed tooth */
-    GM_DOUBT_WHEEL_TIP_LAND = 1 << 3, /**< as for the pinion */
-    GM_DOUBT_PINION_ROOT_FORM = 1 << 4, /**< start radius below the root form circle */
-    GM_DOUBT_WHEEL_ROOT_FORM = 1 << 5,  /**< as for the pinion */
-    GM_DOUBT_CONTACT_RATIO = 1 << 6,    /**< transverse contact ratio below 1 */
-    GM_DOUBT_BACKLASH = 1 << 7,         /**< negative backlash: both flanks touch */
-    GM_DOUBT_PINION_START_RADIUS =
+enum gm_pair_warning {
+    GM_WARN_PINION_UNDERCUT = 1 << 0, /**< generating rack cuts below the pinion's base circle */
+    GM_WARN_WHEEL_UNDERCUT = 1 << 1,  /**< as for the pinion */
+    GM_WARN_PINION_TIP_LAND = 1 << 2, /**< normal tip thickness below 0.2 m_n, or a pointed tooth */
+    GM_WARN_WHEEL_TIP_LAND = 1 << 3,  /**< as for the pinion */
+    GM_WARN_PINION_ROOT_FORM = 1 << 4, /**< start radius below the root form circle */
+    GM_WARN_WHEEL_ROOT_FORM = 1 << 5,  /**< as for the pinion */
+    GM_WARN_CONTACT_RATIO = 1 << 6,    /**< transverse contact ratio below 1 */
+    GM_WARN_BACKLASH = 1 << 7,         /**< negative backlash: both flanks touch */
+    GM_WARN_PINION_START_RADIUS =
         1 << 8, /**< a start radius below the base circle was raised to it */
-    GM_DOUBT_WHEEL_START_RADIUS = 1 << 9 /**< as for the pinion */
+    GM_WARN_WHEEL_START_RADIUS = 1 << 9 /**< as for the pinion */
 };
 
 /**
- * Doubtful properties of a pair, as a sum of enum gm_pair_doubt; 0 = none, or a pointer is NULL.
+ * Warnings about a pair, as a sum of enum gm_pair_warning; 0 = none, or a pointer is NULL.
  *
  * The root form and undercut are those of a rack whose straight part reaches 0.05 m_n deeper than
  * the mate's tip needs: rho_Ff = r sin(alpha_t) - (h_Ff - x m_n) / sin(alpha_t), undercut where < 0.
  */
-GM_API int gm_pair_doubts(const gm_pair *pair, const gm_pair_params *params);
+GM_API int gm_pair_warnings(const gm_pair *pair, const gm_pair_params *params);
 
 /* ---------------------------------------------------------------------------------------------
  * Flanks: deviations of every tooth from the ideal involute helicoid
