@@ -12,19 +12,17 @@
 #include <stdint.h>
 #include <string.h>
 
-#define LARGEST_NODES 10000
-#define LARGEST_TEETH 100000
-
 static int check_side(int tables, int face_nodes, int profile_nodes, int teeth) {
     if (tables < 0 || tables > teeth + 1) {
         return 0;
     }
-    return tables == 0 || (face_nodes >= 2 && face_nodes <= LARGEST_NODES && profile_nodes >= 2 &&
-                           profile_nodes <= LARGEST_NODES);
+    return tables == 0 ||
+           (face_nodes >= GMI_SMALLEST_NODES && face_nodes <= GMI_LARGEST_NODES &&
+            profile_nodes >= GMI_SMALLEST_NODES && profile_nodes <= GMI_LARGEST_NODES);
 }
 
 static int check_params(const gm_flanks_params *p) {
-    return p->teeth >= 3 && p->teeth <= LARGEST_TEETH &&
+    return p->teeth >= GMI_SMALLEST_TEETH && p->teeth <= GMI_LARGEST_TEETH &&
            check_side(p->drive_tables, p->drive_face_nodes, p->drive_profile_nodes, p->teeth) &&
            check_side(p->coast_tables, p->coast_face_nodes, p->coast_profile_nodes, p->teeth);
 }

@@ -14,11 +14,6 @@ double gmi_involute(double angle) {
     return tan(angle) - angle; /* [Paper, Eq. 16] with chi = tan(angle) */
 }
 
-/* [Paper, Eqs. 14-15] times r_b; factored so that nothing cancels near the base circle. */
-double gmi_roll_length(double radius, double base_radius) {
-    return radius > base_radius ? sqrt((radius - base_radius) * (radius + base_radius)) : 0.0;
-}
-
 void gmi_gear_init(gm_gear *gear, int teeth, double transverse_module,
                    double transverse_pressure_angle) {
     const double number = (double)teeth;

@@ -13,7 +13,8 @@
 
 #include <math.h>
 
-#define GMI_PI 3.14159265358979323846
+#include "shared.h"
+
 /* 2 pi = GMI_TWO_PI + GMI_TWO_PI_REMAINDER to 32 digits. */
 #define GMI_TWO_PI           6.28318530717958647693
 #define GMI_TWO_PI_REMAINDER 2.44929359829470635e-16
@@ -47,7 +48,6 @@ double gmi_product_remainder(double a, double b, double product);
 
 /* gear.c: geometry of one gear. */
 double gmi_involute(double angle);
-double gmi_roll_length(double radius, double base_radius);
 void gmi_gear_init(gm_gear *gear, int teeth, double transverse_module,
                    double transverse_pressure_angle);
 void gmi_gear_set_tip(gm_gear *gear, double tip_radius);

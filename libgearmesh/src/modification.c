@@ -12,7 +12,7 @@
 
 #define LARGEST_AMOUNT     0.01  /* m; what is more is a slip of the unit */
 #define SMALLEST_TOLERANCE 1e-12 /* m; below it rounding takes over */
-#define LARGEST_CELLS      9999  /* nodes less one, as in flank.c */
+#define LARGEST_CELLS      (GMI_LARGEST_NODES - 1)
 
 /* A table has 32 bytes per node, and every tooth with measured flanks has a table of its own. */
 #define TABLE_NODES 262144
@@ -302,7 +302,7 @@ double gm_modifications_value(const gm_modifications *modifications, double t1, 
 }
 
 static int are_nodes(int nodes) {
-    return nodes >= 2 && nodes <= LARGEST_CELLS + 1;
+    return nodes >= GMI_SMALLEST_NODES && nodes <= GMI_LARGEST_NODES;
 }
 
 int gm_modifications_add(const gm_modifications *modifications, int face_nodes, int profile_nodes,

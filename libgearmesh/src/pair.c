@@ -10,7 +10,6 @@
 #include <float.h>
 #include <math.h>
 
-#define LARGEST_TEETH         100000
 #define LARGEST_CONTACT_RATIO 1000.0 /* keeps the work of an evaluation bounded, */
 #define LARGEST_PLACE                                                                              \
     1000.0 /* and so do so many base pitches from tooth 0 to the path of contact */
@@ -59,7 +58,7 @@ void gm_pair_params_default(gm_pair_params *params) {
 }
 
 static int is_teeth(int teeth) {
-    return teeth >= 3 && teeth <= LARGEST_TEETH;
+    return teeth >= GMI_SMALLEST_TEETH && teeth <= GMI_LARGEST_TEETH;
 }
 
 static int is_length(double value) {

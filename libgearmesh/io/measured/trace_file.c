@@ -1,0 +1,281 @@
+/* SPDX-FileCopyrightText: The gearmesh authors */
+/* SPDX-License-Identifier: BSD-3-Clause */
+
+/*
+ * Traces as measuring machines give them: docs/measured-flanks.md. Here only the text is judged and put
+ * into plain data; what it means for a gear is the business of traces_build.c.
+ */
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "files/io_error.h"
+#include "files/number_text.h"
+#include "files/table_reader.h"
+#include "measured_table.h"
+#include "measurement.h"
+#include "shared.h"
+
+/* Units of the file. */
+#define MICRO (-6)
+#define MILLI (-3)
+
+static const char *const kind_words[] = {"profile", "helix"};
+enum { KIND_WORDS = 2 };
+
+/* ---------------------------------------------------------------------------------------------
+ * Traces: rows
+ * ------------------------------------------------------------------------------------------- */
+
+enum { TRACE = GMI_COLUMN_FLANK + 1, FACE, ROLL, DEVIATION, TRACE_COLUMNS };
+
+static const char *const roll_header[TRACE_COLUMNS] = {"tooth",   "flank",          "trace",
+                                                       "face_mm", "roll_length_mm", "deviation_um"};
+static const char *const diameter_header[TRACE_COLUMNS] = {
+    "tooth", "flank", "trace", "face_mm", "diameter_mm", "deviation_um"};
+static const char *const *const trace_headers[] = {roll_header, diameter_header};
+enum { TRACE_HEADERS = 2 };
+
+/* How far the place of a trace may wander within it: a machine corrects its path. */
+static const double place_tolerance = 1e-5;
+
+/* What a row says. */
+typedef struct trace_row {
+    gm_trace trace;  /* what it belongs to, without arrays */
+    double place;    /* of that trace, as in the file: diameters are not roll lengths (m) */
+    double position; /* along it (m) */
+    double deviation;
+    long line;
+} trace_row;
+
+typedef struct point {
+    double position;
+    double deviation;
+    long line;
+} point;
+
+/* A file on its way into memory. */
+typedef struct loader {
+    const gm_gear *gear;
+    int by_diameter;
+    gm_trace *traces; /* as they will be, still without arrays */
+    int trace_count;
+    int trace_capacity;
+    point *points; /* of all traces, one after the other */
+    int point_count;
+    int point_capacity;
+    double place;  /* of the trace last read, as in the file (m) */
+    int direction; /* along it: 1, -1, 0 = not known yet */
+    gm_io_error *error;
+} loader;
+
+/* The roll length of a diameter. */
+static int roll_of_diameter(const loader *load, const gmi_table *table, double diameter,
+                            double *roll) {
+    const double base = load->gear->base_radius;
+    const double square = 0.25 * diameter * diameter - base * base;
+    /* A file has few digits: the base circle may come out just below itself. */
+    if (!(diameter > 0.0 && square >= -1e-5 * base * base)) {
+        char quoted[GMI_QUOTE_SIZE];
+        char low[GMI_NUMBER_SIZE];
+        char high[GMI_NUMBER_SIZE];
+        return gmi_error_set(load->error, GM_IO_ERR_FORMAT, table->line,
+                             "diameter_mm is %s, below the base circle; %s to %s is right%s",
+                             gmi_quote(quoted, table->fields[ROLL]),
+                             gmi_number_text(low, 2.0 * base, 3, 7),
+                             gmi_number_text(high, 2.0 * load->gear->tip_radius, 3, 7),
+                             gmi_length_hint(diameter, 2.0 * load->gear->tip_radius));
+    }
+    *roll = sqrt(square > 0.0 ? square : 0.0);
+    return GM_IO_OK;
+}
+
+static int read_trace_row(const loader *load, const gmi_table *table, trace_row *row) {
+    gm_trace *trace = &row->trace;
+    double face = 0.0;
+    double length = 0.0; /* roll length or diameter */
+    double roll = 0.0;
+    memset(row, 0, sizeof *row);
+    int status = gmi_measured_place(table, &trace->tooth, &trace->flank);
+    if (status == GM_IO_OK) {
+        status = gmi_table_word(table, TRACE, kind_words, KIND_WORDS, &trace->kind);
+    }
+    if (status == GM_IO_OK) {
+        status = gmi_table_number(table, FACE, MILLI, &face);
+    }
+    if (status == GM_IO_OK) {
+        status = gmi_table_number(table, ROLL, MILLI, &length);
+        roll = length;
+    }
+    if (status == GM_IO_OK && load->by_diameter) {
+        status = roll_of_diameter(load, table, length, &roll);
+    }
+    if (status == GM_IO_OK) {
+        status = gmi_table_number(table, DEVIATION, MICRO, &row->deviation);
+    }
+    trace->at = trace->kind == GM_TRACE_PROFILE ? face : roll;
+    row->place = trace->kind == GM_TRACE_PROFILE ? face : length;
+    row->position = trace->kind == GM_TRACE_PROFILE ? roll : face;
+    row->line = table->line;
+    return status;
+}
+
+/* Whether a row belongs to the trace last read. */
+static int goes_on(const loader *load, const trace_row *row) {
+    if (load->trace_count == 0) {
+        return 0;
+    }
+    const gm_trace *last = &load->traces[load->trace_count - 1];
+    return row->trace.tooth == last->tooth && row->trace.flank == last->flank &&
+           row->trace.kind == last->kind && fabs(row->place - load->place) <= place_tolerance;
+}
+
+/* Checks that a row goes on in the direction of its trace. */
+static int check_direction(loader *load, const gmi_table *table, const trace_row *row) {
+    const double before = load->points[load->point_count - 1].position;
+    const int direction = (row->position > before) - (row->position < before);
+    if (direction == 0 || direction == -load->direction) {
+        const int column = row->trace.kind == GM_TRACE_PROFILE ? ROLL : FACE;
+        char quoted[GMI_QUOTE_SIZE];
+        return gmi_error_set(
+            load->error, GM_IO_ERR_FORMAT, table->line,
+            "%s is %s, which does not go on from the row before; positions of a trace that only "
+            "rise or only fall are right (are there two teeth with the number %d?)",
+            table->columns[column], gmi_quote(quoted, table->fields[column]), row->trace.tooth);
+    }
+    load->direction = direction;
+    return GM_IO_OK;
+}
+
+static int begin_trace(loader *load, const trace_row *row) {
+    gm_trace *grown =
+        gmi_array_grow(load->traces, sizeof *grown, load->trace_count, &load->trace_capacity);
+    if (grown == NULL) {
+        return gmi_error_memory(load->error);
+    }
+    load->traces = grown;
+    load->traces[load->trace_count++] = row->trace;
+    load->place = row->place;
+    load->direction = 0;
+    return GM_IO_OK;
+}
+
+static int append_point(loader *load, const trace_row *row) {
+    point *grown =
+        gmi_array_grow(load->points, sizeof *grown, load->point_count, &load->point_capacity);
+    if (grown == NULL) {
+        return gmi_error_memory(load->error);
+    }
+    const point added = {row->position, row->deviation, row->line};
+    load->points = grown;
+    load->points[load->point_count++] = added;
+    load->traces[load->trace_count - 1].count++;
+    return GM_IO_OK;
+}
+
+static int place_row(loader *load, const gmi_table *table, const trace_row *row) {
+    const int status =
+        goes_on(load, row) ? check_direction(load, table, row) : begin_trace(load, row);
+    return status == GM_IO_OK ? append_point(load, row) : status;
+}
+
+static int read_trace_rows(loader *load, gmi_table *table) {
+    int more = 0;
+    while ((more = gmi_table_next(table)) > 0) {
+        trace_row row;
+        int status = read_trace_row(load, table, &row);
+        if (status == GM_IO_OK) {
+            status = place_row(load, table, &row);
+        }
+        if (status != GM_IO_OK) {
+            return status;
+        }
+    }
+    return more == 0 && load->trace_count == 0 ? gmi_measured_fail_empty(table) : more;
+}
+
+/* ---------------------------------------------------------------------------------------------
+ * Traces: from rows to arrays
+ * ------------------------------------------------------------------------------------------- */
+
+/* Gives a trace its points, rising whatever the direction of the rows. */
+static int fill_trace(gm_trace *trace, const point *points) {
+    const size_t count = (size_t)trace->count;
+    const int falls = count > 1 && points[1].position < points[0].position;
+    trace->position = malloc(count * sizeof *trace->position);
+    trace->deviation = malloc(count * sizeof *trace->deviation);
+    trace->line = malloc(count * sizeof *trace->line);
+    if (!trace->position || !trace->deviation || !trace->line) {
+        return 0;
+    }
+    for (size_t i = 0; i < count; i++) {
+        const point *from = &points[falls ? count - 1 - i : i];
+        trace->position[i] = from->position;
+        trace->deviation[i] = from->deviation;
+        trace->line[i] = from->line;
+    }
+    return 1;
+}
+
+static int make_traces(loader *load, gm_traces *traces) {
+    const point *points = load->points;
+    traces->traces = load->traces;
+    traces->count = load->trace_count;
+    load->traces = NULL;
+    for (int i = 0; i < traces->count; i++) {
+        if (!fill_trace(&traces->traces[i], points)) {
+            gm_traces_free(traces);
+            return gmi_error_memory(load->error);
+        }
+        points += traces->traces[i].count;
+    }
+    return GM_IO_OK;
+}
+
+static int load_traces(loader *load, gm_traces *traces, const char *path) {
+    gmi_table table;
+    int status = gmi_table_open_any(&table, path, trace_headers, TRACE_HEADERS, TRACE_COLUMNS,
+                                    &load->by_diameter, load->error);
+    if (status == GM_IO_OK) {
+        status = read_trace_rows(load, &table);
+    }
+    gmi_table_close(&table);
+    return status == GM_IO_OK ? make_traces(load, traces) : status;
+}
+
+int gm_traces_read(gm_traces *traces, const char *path, const gm_pair *pair, int wheel,
+                   gm_io_error *error) {
+    gmi_error_begin(error, path);
+    if (traces != NULL) {
+        memset(traces, 0, sizeof *traces);
+    }
+    if (traces == NULL || path == NULL || pair == NULL) {
+        return gmi_error_null(error);
+    }
+    loader load;
+    memset(&load, 0, sizeof load);
+    load.gear = gmi_gear_of(pair, wheel);
+    load.error = error;
+    const int status = load_traces(&load, traces, path);
+    free(load.traces);
+    free(load.points);
+    if (status == GM_IO_OK) {
+        snprintf(traces->file, sizeof traces->file, "%s", path);
+    }
+    return status;
+}
+
+void gm_traces_free(gm_traces *traces) {
+    if (traces == NULL) {
+        return;
+    }
+    for (int i = 0; traces->traces != NULL && i < traces->count; i++) {
+        free(traces->traces[i].position);
+        free(traces->traces[i].deviation);
+        free(traces->traces[i].line);
+    }
+    free(traces->traces);
+    memset(traces, 0, sizeof *traces);
+}

@@ -1,0 +1,254 @@
+/* SPDX-FileCopyrightText: The gearmesh authors */
+/* SPDX-License-Identifier: BSD-3-Clause */
+
+/*
+ * From the machine's terms to the gear's: tooth numbers, left and right, millimetres from a datum face and roll lengths
+ * become tooth, side, t1 and t2. What leaves the gear, or misses too much of it, is an error. docs/measured-flanks.md
+ */
+
+#include "trace_map.h"
+
+#include <math.h>
+#include <stdlib.h>
+
+#include "files/io_error.h"
+#include "files/number_text.h"
+#include "measurement.h"
+#include "trace_check.h"
+
+/* How far a trace may stand out beyond tip or face: the digits of a file (1). */
+static const double overrun = 1e-3;
+
+double gmi_profile_place(const gm_gear *gear, double roll_length) {
+    return (roll_length - gear->start_roll_length) /
+           (gear->tip_roll_length - gear->start_roll_length);
+}
+
+static double face_place(const gmi_mapping *map, double face) {
+    const double t1 = face / map->pair->face_width;
+    return map->measurement->datum_face == GM_FACE_I ? t1 : 1.0 - t1;
+}
+
+static long line_of(const gm_trace *trace, int point) {
+    return trace->line != NULL ? trace->line[point] : 0;
+}
+
+static int fail_face(const gmi_mapping *map, const gm_trace *trace, int point, double face,
+                     double reach) {
+    char name[GMI_TRACE_NAME_SIZE];
+    char got[GMI_NUMBER_SIZE];
+    char right[GMI_NUMBER_SIZE];
+    return gmi_error_set(map->error, GM_IO_ERR_FORMAT, line_of(trace, point),
+                         "%s leaves the gear: it lies at %s mm from the datum face; 0 to %s mm is "
+                         "right, the face width%s",
+                         gmi_trace_name(name, trace), gmi_number_text(got, face, 3, 7),
+                         gmi_number_text(right, map->pair->face_width, 3, 7),
+                         gmi_length_hint(reach, map->pair->face_width));
+}
+
+static int fail_roll(const gmi_mapping *map, const gm_trace *trace, int point, double roll,
+                     double reach) {
+    const double base = map->gear->base_radius;
+    char name[GMI_TRACE_NAME_SIZE];
+    char got[GMI_NUMBER_SIZE];
+    char got_diameter[GMI_NUMBER_SIZE];
+    char right[GMI_NUMBER_SIZE];
+    char right_diameter[GMI_NUMBER_SIZE];
+    return gmi_error_set(
+        map->error, GM_IO_ERR_FORMAT, line_of(trace, point),
+        "%s leaves the gear: it lies at a roll length of %s mm (diameter %s mm); up to %s mm "
+        "(diameter %s mm) is right, the tip%s",
+        gmi_trace_name(name, trace), gmi_number_text(got, roll, 3, 7),
+        gmi_number_text(got_diameter, 2.0 * sqrt(roll * roll + base * base), 3, 7),
+        gmi_number_text(right, map->gear->tip_roll_length, 3, 7),
+        gmi_number_text(right_diameter, 2.0 * map->gear->tip_radius, 3, 7),
+        gmi_length_hint(reach, map->gear->tip_roll_length));
+}
+
+static int is_on_face(double t1) {
+    return t1 >= -overrun && t1 <= 1.0 + overrun;
+}
+
+/* A profile may begin anywhere below the active profile, but not below the base circle. */
+static int is_on_profile(const gmi_mapping *map, double roll) {
+    return roll >= 0.0 && gmi_profile_place(map->gear, roll) <= 1.0 + overrun;
+}
+
+/* Lengths that can be worked with: no overflow on the way to a message. */
+static int is_sane(double length) {
+    return fabs(length) < 1e3;
+}
+
+static int check_structure(const gmi_mapping *map, const gm_trace *trace) {
+    const int known = trace->kind == GM_TRACE_PROFILE || trace->kind == GM_TRACE_HELIX;
+    if (!known || trace->position == NULL || trace->deviation == NULL || trace->count < 1) {
+        return gmi_error_set(map->error, GM_IO_ERR_FORMAT, 0,
+                             "a trace of kind %d with %d points; profile or helix, with points, "
+                             "is right",
+                             trace->kind, trace->count);
+    }
+    if (trace->count < 2) {
+        char name[GMI_TRACE_NAME_SIZE];
+        return gmi_error_set(
+            map->error, GM_IO_ERR_FORMAT, line_of(trace, 0),
+            "%s has 1 point; rows that stand together, all at the same %s, are right",
+            gmi_trace_name(name, trace),
+            trace->kind == GM_TRACE_PROFILE ? "distance from the datum face"
+                                            : "roll length or diameter");
+    }
+    for (int i = 0; i < trace->count; i++) {
+        const int rises = i == 0 || trace->position[i] > trace->position[i - 1];
+        if (!is_sane(trace->deviation[i]) || !is_sane(trace->position[i]) || !is_sane(trace->at) ||
+            !rises) {
+            char name[GMI_TRACE_NAME_SIZE];
+            return gmi_error_set(map->error, GM_IO_ERR_FORMAT, line_of(trace, i),
+                                 "%s has a value that is not finite or beyond 1 km, or a position "
+                                 "that does not rise; those of a gear are right",
+                                 gmi_trace_name(name, trace));
+        }
+    }
+    return GM_IO_OK;
+}
+
+/* Where a trace lies: t1 of a profile, t2 of a helix. */
+static int map_place(const gmi_mapping *map, const gm_trace *trace, double *at) {
+    if (trace->kind == GM_TRACE_PROFILE) {
+        *at = face_place(map, trace->at);
+        return is_on_face(*at) ? GM_IO_OK : fail_face(map, trace, 0, trace->at, trace->at);
+    }
+    *at = gmi_profile_place(map->gear, trace->at);
+    if (*at >= -overrun && *at <= 1.0 + overrun) {
+        return GM_IO_OK;
+    }
+    if (*at > 0.0) {
+        return fail_roll(map, trace, 0, trace->at, trace->at);
+    }
+    char name[GMI_TRACE_NAME_SIZE];
+    char got[GMI_NUMBER_SIZE];
+    char low[GMI_NUMBER_SIZE];
+    char high[GMI_NUMBER_SIZE];
+    return gmi_error_set(map->error, GM_IO_ERR_FORMAT, line_of(trace, 0),
+                         "%s lies at a roll length of %s mm, below the active profile; %s to %s mm "
+                         "is right",
+                         gmi_trace_name(name, trace), gmi_number_text(got, trace->at, 3, 7),
+                         gmi_number_text(low, map->gear->start_roll_length, 3, 7),
+                         gmi_number_text(high, map->gear->tip_roll_length, 3, 7));
+}
+
+/* Points of a trace as t and deviation along the normal. */
+static int map_points(const gmi_mapping *map, const gm_trace *trace, gmi_measured *to) {
+    const double scale = map->measurement->transverse ? 1.0 / map->pair->normal_to_transverse : 1.0;
+    const double reach = trace->position[trace->count - 1];
+    for (int i = 0; i < trace->count; i++) {
+        const double position = trace->position[i];
+        const int place = to->turned ? trace->count - 1 - i : i;
+        if (trace->kind == GM_TRACE_PROFILE) {
+            if (!is_on_profile(map, position)) {
+                return fail_roll(map, trace, i, position, reach);
+            }
+            to->t[place] = gmi_profile_place(map->gear, position);
+        } else {
+            to->t[place] = face_place(map, position);
+            if (!is_on_face(to->t[place])) {
+                return fail_face(map, trace, i, position, reach);
+            }
+        }
+        to->value[place] = scale * trace->deviation[i];
+    }
+    return GM_IO_OK;
+}
+
+/* What a trace leaves out at its ends is held, up to a limit. */
+static int check_cover(const gmi_mapping *map, const gmi_measured *trace) {
+    const double from = trace->t[0];
+    const double to = trace->t[trace->count - 1];
+    const double limit = map->options->held_limit;
+    if (from <= limit && to >= 1.0 - limit) {
+        return GM_IO_OK;
+    }
+    const gm_trace *raw = trace->from;
+    const int profile = raw->kind == GM_TRACE_PROFILE;
+    const double full = profile ? map->gear->tip_roll_length : map->pair->face_width;
+    char name[GMI_TRACE_NAME_SIZE];
+    char got[2][GMI_NUMBER_SIZE];
+    char right[2][GMI_NUMBER_SIZE];
+    char share[GMI_NUMBER_SIZE];
+    if (from <= GMI_MOST_HELD && to >= 1.0 - GMI_MOST_HELD) { /* else no limit helps */
+        gmi_error_option(map->error, "held_limit");
+    }
+    return gmi_error_set(
+        map->error, GM_IO_ERR_FORMAT, gmi_measured_line(trace),
+        "%s reaches from %s to %s mm %s only; %s to %s mm is right, of which %s may be missing at "
+        "either end%s",
+        gmi_trace_name(name, raw), gmi_number_text(got[0], raw->position[0], 3, 5),
+        gmi_number_text(got[1], raw->position[raw->count - 1], 3, 5),
+        profile ? "roll length" : "from the datum face",
+        gmi_number_text(right[0], profile ? map->gear->start_roll_length : 0.0, 3, 5),
+        gmi_number_text(right[1], full, 3, 5), gmi_number_text(share, limit, 0, 3),
+        gmi_length_hint(raw->position[raw->count - 1], full));
+}
+
+static int map_trace(const gmi_mapping *map, const gm_trace *trace, gmi_measured *to) {
+    to->from = trace;
+    to->kind = trace->kind;
+    to->count = trace->count;
+    to->turned = trace->kind == GM_TRACE_HELIX && map->measurement->datum_face == GM_FACE_II;
+
+    /* Which tooth and flank, and where on it. */
+    int status =
+        gmi_measurement_place(map->measurement, map->pair, map->wheel, trace->tooth, trace->flank,
+                              line_of(trace, 0), &to->tooth, &to->side, map->error);
+    if (status == GM_IO_OK) {
+        status = map_place(map, trace, &to->at);
+    }
+
+    /* Its points; what is left when spikes are out has to cover the flank. */
+    if (status == GM_IO_OK) {
+        status = map_points(map, trace, to);
+    }
+    if (status == GM_IO_OK) {
+        status = gmi_remove_spikes(to, map->options, map->work, map->report, map->error);
+    }
+    return status == GM_IO_OK ? check_cover(map, to) : status;
+}
+
+static int allocate(gmi_mapping *map, const gm_traces *traces) {
+    size_t all = 0;
+    size_t longest = 0;
+    for (int i = 0; i < traces->count; i++) {
+        const size_t count = (size_t)traces->traces[i].count;
+        all += count;
+        longest = count > longest ? count : longest;
+    }
+    map->measured = calloc((size_t)traces->count, sizeof *map->measured);
+    map->points = malloc(2 * all * sizeof *map->points);
+    map->work = malloc(4 * longest * sizeof *map->work);
+    return map->measured && map->points && map->work ? GM_IO_OK : gmi_error_memory(map->error);
+}
+
+int gmi_traces_map(gmi_mapping *map, const gm_traces *traces) {
+    int status = GM_IO_OK;
+    for (int i = 0; i < traces->count && status == GM_IO_OK; i++) {
+        status = check_structure(map, &traces->traces[i]);
+    }
+    if (status == GM_IO_OK) {
+        status = allocate(map, traces);
+    }
+    double *points = map->points;
+    for (int i = 0; i < traces->count && status == GM_IO_OK; i++) {
+        const gm_trace *trace = &traces->traces[i];
+        map->measured[i].t = points;
+        map->measured[i].value = points + trace->count;
+        points += 2 * (size_t)trace->count;
+        status = map_trace(map, trace, &map->measured[i]);
+    }
+    return status;
+}
+
+void gmi_mapping_free(gmi_mapping *map) {
+    free(map->measured);
+    free(map->points);
+    free(map->work);
+    map->measured = NULL;
+    map->points = map->work = NULL;
+}

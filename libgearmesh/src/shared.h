@@ -1,0 +1,36 @@
+/* SPDX-FileCopyrightText: The gearmesh authors */
+/* SPDX-License-Identifier: BSD-3-Clause */
+
+/*
+ * What the core and gearmesh_io share and users never see: constants, limits, and short geometry. All of it is inline,
+ * so that gearmesh_io calls nothing of the core that its public header does not declare.
+ */
+#ifndef GEARMESH_SHARED_H
+#define GEARMESH_SHARED_H
+
+#include <math.h>
+
+#include "gearmesh/gearmesh.h"
+
+#define GMI_PI 3.14159265358979323846
+
+/* Teeth of a gear, and grid lines of a flank table along each direction. */
+#define GMI_SMALLEST_TEETH 3
+#define GMI_LARGEST_TEETH  100000
+#define GMI_SMALLEST_NODES 2
+#define GMI_LARGEST_NODES  10000
+
+/* The pinion of a pair, or its wheel. */
+static inline const gm_gear *gmi_gear_of(const gm_pair *pair, int wheel) {
+    return wheel ? &pair->wheel : &pair->pinion;
+}
+
+/*
+ * Roll length rho at a radius, 0 within the base circle [Paper, Eqs. 14-15, times r_b]. Factored, so that nothing
+ * cancels next to the base circle: r^2 - r_b^2 would lose all digits there.
+ */
+static inline double gmi_roll_length(double radius, double base_radius) {
+    return radius > base_radius ? sqrt((radius - base_radius) * (radius + base_radius)) : 0.0;
+}
+
+#endif
