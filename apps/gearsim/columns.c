@@ -1,29 +1,11 @@
 /* SPDX-FileCopyrightText: The gearmesh authors */
 /* SPDX-License-Identifier: BSD-3-Clause */
 #include "columns.h"
-#include "output.h"
 
+#include <stdio.h>
 #include <string.h>
 
 static const char key[] = "output.columns";
-
-const char *const dynamic_columns[] = {
-    "time_s",          "pinion_speed_rpm", "wheel_speed_rpm",  "pinion_angle_rad",
-    "wheel_angle_rad", "dte_um",           "penetration_um",   "penetration_rate_um_per_s",
-    "contact_force_N", "load_torque_Nm",   "pairs_in_contact",
-};
-const int dynamic_column_count = sizeof dynamic_columns / sizeof dynamic_columns[0];
-
-const char *const static_columns[] = {
-    "pinion_angle_rad", "te_um",          "mesh_stiffness_N_per_um", "contact_length_mm",
-    "pairs_in_contact", "load_torque_Nm",
-};
-
-/* The load tells rows apart only where there are several. */
-int static_column_count(const config *conf) {
-    const int all = sizeof static_columns / sizeof static_columns[0];
-    return conf->loads > 1 ? all : all - 1;
-}
 
 static const char blanks[] = " \t";
 

@@ -9,7 +9,13 @@
 
 #include "config.h"
 
-enum { COLUMNS_MAX = 16 };
+enum { COLUMNS_MAX = 32 };
+
+/* All columns that an analysis has. */
+typedef struct column_names {
+    int count;
+    const char *name[COLUMNS_MAX];
+} column_names;
 
 typedef struct column_list {
     int count;

@@ -7,6 +7,7 @@
  */
 #include "dynamics.h"
 #include "decimate.h"
+#include "dynamic_columns.h"
 #include "integrate.h"
 #include "interrupt.h"
 #include "model.h"
@@ -17,33 +18,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Places of dynamic_columns. */
-enum column {
-    TIME,
-    PINION_SPEED,
-    WHEEL_SPEED,
-    PINION_ANGLE,
-    WHEEL_ANGLE,
-    DTE,
-    PENETRATION,
-    PENETRATION_RATE,
-    CONTACT_FORCE,
-    LOAD_TORQUE,
-    PAIRS,
-    COLUMNS
-};
-
-/* Angles, time and the pinion's speed grow steadily, pairs are counts: a filter has nothing to do there. */
-static const int is_filtered[COLUMNS] = {
-    [WHEEL_SPEED] = 1,      [DTE] = 1,           [PENETRATION] = 1,
-    [PENETRATION_RATE] = 1, [CONTACT_FORCE] = 1, [LOAD_TORQUE] = 1,
-};
-static const int needs_mesh[COLUMNS] = {
-    [PENETRATION] = 1, [PENETRATION_RATE] = 1, [CONTACT_FORCE] = 1, [PAIRS] = 1};
-
-static const double rpm = 60.0 / 6.283185307179586; /* of 1 rad/s */
-static const double micro = 1e6;
-
 typedef struct dynamic_run {
     const config *conf;
     gear_model model;
@@ -51,59 +25,41 @@ typedef struct dynamic_run {
     decimator *filter;
     output_file *output;
     progress progress;
-    int factor;            /* samples per row */
-    int row_needs_mesh;    /* some column asked for needs the mesh: in the samples of the rows, */
-    int sample_needs_mesh; /* or in all samples, as it is filtered */
-    int needs_load;        /* the load torque is asked for */
-    double rows;           /* number of rows, a whole number */
-    double values[COLUMNS];
-    char why[640]; /* the run ended early */
+    int factor; /* samples per row */
+    int is_wanted[DYNAMIC_COLUMNS];
+    enum column_need row_need;    /* the most that a column asked for needs of the mesh, */
+    enum column_need sample_need; /* and of the mesh between the rows, as it is filtered */
+    double rows;                  /* number of rows, a whole number */
+    dynamic_sample sample;
+    double values[DYNAMIC_COLUMNS]; /* of the sample */
+    char why[640];                  /* the run ended early */
 } dynamic_run;
 
 /* ---------------------------------------------------------------------------------------------
  * What a sample shows
  * ------------------------------------------------------------------------------------------- */
 
-static void show_motion(dynamic_run *run, double time, const gear_motion *motion) {
-    const double r_bp = run->model.gears->pair.pinion.base_radius;
-    const double r_bw = run->model.gears->pair.wheel.base_radius;
-    double *values = run->values;
+/* The mesh at the time and motion of the sample. */
+static int see_mesh(dynamic_run *run, enum column_need need) {
+    dynamic_sample *sample = &run->sample;
 
-    values[TIME] = time;
-    values[PINION_SPEED] = motion->pinion_speed * rpm;
-    values[WHEEL_SPEED] = (r_bp * motion->pinion_speed - motion->offset_rate) / r_bw * rpm;
-    values[PINION_ANGLE] = motion->pinion_angle;
-    values[WHEEL_ANGLE] = (r_bp * motion->pinion_angle - motion->offset) / r_bw;
-    values[DTE] = -motion->offset * micro;
-    if (run->needs_load) {
-        values[LOAD_TORQUE] = load_torque(&run->model.load, time);
-    }
-}
-
-static int show_mesh(dynamic_run *run, double time, const gear_motion *motion, int with_pairs) {
-    gm_penetration mesh;
-    int status = model_penetration(&run->model, motion, &mesh);
-    double *values = run->values;
-
-    if (status == GM_OK && with_pairs) {
-        status = model_pairs(&run->model, motion, &mesh);
+    int status = model_penetration(&run->model, &sample->motion, &sample->mesh);
+    if (status == GM_OK && need == NEEDS_PAIRS) {
+        status = model_pairs(&run->model, &sample->motion, &sample->mesh);
     }
     if (status != GM_OK) {
-        snprintf(run->why, sizeof run->why, "no contact force at t = %.9g s; the gears: %s", time,
-                 gm_status_text(status));
+        snprintf(run->why, sizeof run->why, "no contact force at t = %.9g s; the gears: %s",
+                 sample->time, gm_status_text(status));
         return EXIT_RUN_FAILED;
     }
-    values[PENETRATION] = mesh.penetration * micro;
-    values[PENETRATION_RATE] = mesh.rate * micro;
-    values[CONTACT_FORCE] = model_force(&run->model, &mesh);
-    values[PAIRS] = mesh.drive_pairs + mesh.coast_pairs;
     return 0;
 }
 
 /* Values at a time; those that nobody needs are left as they were. */
 static int take_sample(dynamic_run *run, double time, int of_row) {
+    const enum column_need need = of_row ? run->row_need : run->sample_need;
     double state[STATES_MAX];
-    const int failed = integrator_advance(run->solver, time, state);
+    int failed = integrator_advance(run->solver, time, state);
 
     if (failed) {
         if (failed == EXIT_INTERRUPTED) {
@@ -114,10 +70,20 @@ static int take_sample(dynamic_run *run, double time, int of_row) {
         return failed;
     }
 
-    const gear_motion motion = model_motion(&run->model, time, state);
-    show_motion(run, time, &motion);
-    if (of_row ? run->row_needs_mesh : run->sample_needs_mesh) {
-        return show_mesh(run, time, &motion, of_row && output_wants(run->output, PAIRS));
+    /* Where the gears are, and how they touch if a column needs to know. */
+    run->sample.time = time;
+    run->sample.motion = model_motion(&run->model, time, state);
+    if (need != NEEDS_NOTHING) {
+        failed = see_mesh(run, need);
+        if (failed) {
+            return failed;
+        }
+    }
+
+    for (int i = 0; i < DYNAMIC_COLUMNS; ++i) {
+        if (run->is_wanted[i] && (of_row || dynamic_columns[i].is_filtered)) {
+            run->values[i] = dynamic_columns[i].value(&run->sample);
+        }
     }
     return 0;
 }
@@ -125,8 +91,8 @@ static int take_sample(dynamic_run *run, double time, int of_row) {
 static void tell_progress(dynamic_run *run) {
     if (progress_due(&run->progress)) {
         const progress_state state = {
-            .time = run->values[TIME],
-            .speed = run->values[PINION_SPEED] / rpm,
+            .time = run->sample.time,
+            .speed = run->sample.motion.pinion_speed,
             .steps = integrator_counts(run->solver).steps,
         };
         progress_update(&run->progress, &state);
@@ -153,7 +119,7 @@ static int take_row_period(dynamic_run *run, double row) {
         /* The rows that lag behind by the filter's delay are complete with their period's first sample. */
         const double complete = row - (double)(decimator_delay(run->filter) / run->factor);
         if (i == 0 && complete >= 0.0) {
-            double values[COLUMNS];
+            double values[DYNAMIC_COLUMNS];
             decimator_values(run->filter, values);
             if (output_row(run->output, values) != 0) {
                 snprintf(run->why, sizeof run->why, "the disk took no more at t = %.9g s", time);
@@ -208,21 +174,30 @@ static int start_solver(dynamic_run *run) {
     return run->solver != NULL ? 0 : out_of_memory();
 }
 
+static enum column_need larger(enum column_need a, enum column_need b) {
+    return a > b ? a : b;
+}
+
 /* What is asked for decides what has to be computed, and whether there is anything to filter. */
 static int start_filter(dynamic_run *run) {
-    int filtered[COLUMNS];
+    int filtered[DYNAMIC_COLUMNS];
     int any = 0;
 
-    for (int i = 0; i < COLUMNS; ++i) {
-        const int wanted = output_wants(run->output, i);
-        filtered[i] = wanted && is_filtered[i];
+    for (int i = 0; i < DYNAMIC_COLUMNS; ++i) {
+        const dynamic_column *column = &dynamic_columns[i];
+        run->is_wanted[i] = output_wants(run->output, i);
+        filtered[i] = run->is_wanted[i] && column->is_filtered;
         any |= filtered[i];
-        run->row_needs_mesh |= wanted && needs_mesh[i];
-        run->sample_needs_mesh |= filtered[i] && needs_mesh[i];
+
+        if (run->is_wanted[i]) {
+            run->row_need = larger(run->row_need, column->need);
+        }
+        if (filtered[i]) {
+            run->sample_need = larger(run->sample_need, column->need);
+        }
     }
-    run->needs_load = output_wants(run->output, LOAD_TORQUE);
     run->factor = any ? run->conf->oversampling : 1;
-    run->filter = decimator_create(run->factor, COLUMNS, filtered);
+    run->filter = decimator_create(run->factor, DYNAMIC_COLUMNS, filtered);
     return run->filter != NULL ? 0 : out_of_memory();
 }
 
@@ -230,12 +205,15 @@ static int start_run(dynamic_run *run, const gear_mesh *gears) {
     if (model_init(&run->model, run->conf, gears) != 0) {
         return out_of_memory();
     }
+    run->sample.model = &run->model;
 
     int exit_code = start_solver(run);
-
-    if (exit_code == 0) {
-        run->output = output_open(run->conf, dynamic_columns, dynamic_column_count, &exit_code);
+    if (exit_code != 0) {
+        return exit_code;
     }
+
+    const column_names names = dynamic_column_names();
+    run->output = output_open(run->conf, names.name, names.count, &exit_code);
     return exit_code != 0 ? exit_code : start_filter(run);
 }
 

@@ -10,20 +10,23 @@
  * `gearsim --help` says all of its use; the equations are in libgearmesh/docs/equations.md.
  */
 #include "arguments.h"
+#include "dynamic_columns.h"
 #include "dynamics.h"
 #include "gear_mesh.h"
 #include "geometry_listing.h"
 #include "lookup.h"
 #include "output.h"
+#include "static_columns.h"
 #include "statics.h"
 
 #include <errno.h>
 #include <string.h>
 
 static int check_output(const config *conf) {
-    return conf->analysis == ANALYSIS_STATIC
-               ? output_check(conf, static_columns, static_column_count(conf))
-               : output_check(conf, dynamic_columns, dynamic_column_count);
+    const column_names names =
+        conf->analysis == ANALYSIS_STATIC ? static_column_names(conf) : dynamic_column_names();
+
+    return output_check(conf, names.name, names.count);
 }
 
 static int run(const config *conf, const gear_mesh *mesh) {

@@ -32,10 +32,4 @@ int output_row(output_file *output, const double values[]);
  * Returns 0, or EXIT_RUN_FAILED after a message. */
 int output_close(output_file *output, const char *incomplete);
 
-/* Names of the columns of the two analyses. */
-extern const char *const dynamic_columns[];
-extern const int dynamic_column_count;
-extern const char *const static_columns[];
-int static_column_count(const config *conf); /* the last one is there under several loads only */
-
 #endif

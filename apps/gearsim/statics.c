@@ -7,11 +7,9 @@
 #include "statics.h"
 #include "interrupt.h"
 #include "output.h"
+#include "static_columns.h"
 
 #include <math.h>
-
-/* Places of static_columns. */
-enum column { PINION_ANGLE, TE, MESH_STIFFNESS, CONTACT_LENGTH, PAIRS, LOAD, COLUMNS };
 
 static const double two_pi = 6.283185307179586;
 
@@ -65,29 +63,27 @@ static int write_position(const config *conf, const gear_mesh *gears, double ang
                           output_file *output, int *status) {
     const gm_pair *pair = &gears->pair;
     const double guess = before->offset + before->slope * (angle - before->angle);
-    gm_penetration mesh;
-    double offset;
+    static_position position = {
+        .conf = conf, .gears = gears, .pinion_angle = angle, .load = before->load};
+    const gm_penetration *mesh = &position.mesh;
 
     *status = gm_static_equilibrium_near(pair, gears->pinion_flanks, gears->wheel_flanks, angle,
-                                         conf->stiffness, before->load, guess, &offset, &mesh);
+                                         conf->stiffness, before->load, guess, &position.offset,
+                                         &position.mesh);
     if (*status != GM_OK) {
         return EXIT_RUN_FAILED;
     }
-    before->angle = angle;
-    before->offset = offset;
-    before->slope = pair->pinion.base_radius +
-                    pair->wheel.base_radius * mesh.d_pinion_angle / mesh.d_wheel_angle;
 
-    /* Of the face width, summed over the pairs and both flanks. */
-    const double touching = mesh.drive_contact + mesh.coast_contact;
-    const double values[COLUMNS] = {
-        [PINION_ANGLE] = angle,
-        [TE] = -offset * 1e6,
-        [MESH_STIFFNESS] = conf->stiffness * touching * 1e-6,
-        [CONTACT_LENGTH] = touching * pair->face_width / cos(pair->base_helix_angle) * 1e3,
-        [PAIRS] = mesh.drive_pairs + mesh.coast_pairs,
-        [LOAD] = before->load,
-    };
+    /* Along the curve of constant force, for the guess at the next position. */
+    before->angle = angle;
+    before->offset = position.offset;
+    before->slope = pair->pinion.base_radius +
+                    pair->wheel.base_radius * mesh->d_pinion_angle / mesh->d_wheel_angle;
+
+    double values[STATIC_COLUMNS];
+    for (int i = 0; i < STATIC_COLUMNS; ++i) {
+        values[i] = static_columns[i].value(&position);
+    }
     return output_row(output, values);
 }
 
@@ -154,11 +150,11 @@ static int write_all(const config *conf, const gear_mesh *gears, output_file *ou
 }
 
 int statics_run(const config *conf, const gear_mesh *gears) {
+    const column_names names = static_column_names(conf);
     int exit_code = 0;
 
     interrupt_watch();
-    output_file *const output =
-        output_open(conf, static_columns, static_column_count(conf), &exit_code);
+    output_file *output = output_open(conf, names.name, names.count, &exit_code);
     if (output != NULL) {
         exit_code = write_all(conf, gears, output);
     }

@@ -1,0 +1,41 @@
+/* SPDX-FileCopyrightText: The gearmesh authors */
+/* SPDX-License-Identifier: BSD-3-Clause */
+
+/*
+ * The columns of a dynamic run, one row each: name, what it takes, and how it is computed. A new column is a new row.
+ */
+#ifndef GEARSIM_DYNAMIC_COLUMNS_H
+#define GEARSIM_DYNAMIC_COLUMNS_H
+
+#include "columns.h"
+#include "model.h"
+
+/* What is known at a time of the run. */
+typedef struct dynamic_sample {
+    const gear_model *model;
+    double time; /* s */
+    gear_motion motion;
+    gm_penetration mesh; /* only where some column asked for needs it */
+} dynamic_sample;
+
+/* What a column takes from the mesh; the more, the dearer. */
+enum column_need {
+    NEEDS_NOTHING,
+    NEEDS_MESH, /* the penetration */
+    NEEDS_PAIRS /* and the pairs that touch, which a look-up has to count */
+};
+
+typedef struct dynamic_column {
+    const char *name; /* with its unit */
+    int is_filtered;  /* by the low-pass of output.oversampling */
+    enum column_need need;
+    double (*value)(const dynamic_sample *sample);
+} dynamic_column;
+
+enum { DYNAMIC_COLUMNS = 11 };
+
+extern const dynamic_column dynamic_columns[DYNAMIC_COLUMNS];
+
+column_names dynamic_column_names(void);
+
+#endif

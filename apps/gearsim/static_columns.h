@@ -1,0 +1,36 @@
+/* SPDX-FileCopyrightText: The gearmesh authors */
+/* SPDX-License-Identifier: BSD-3-Clause */
+
+/*
+ * The columns of a static analysis, one row each: name and how it is computed. A new column is a new row.
+ */
+#ifndef GEARSIM_STATIC_COLUMNS_H
+#define GEARSIM_STATIC_COLUMNS_H
+
+#include "columns.h"
+#include "gear_mesh.h"
+
+/* What is known of a position in equilibrium. */
+typedef struct static_position {
+    const config *conf;
+    const gear_mesh *gears;
+    double pinion_angle; /* rad */
+    double load;         /* N m */
+    double offset;       /* x (m) */
+    gm_penetration mesh; /* there */
+} static_position;
+
+typedef struct static_column {
+    const char *name;     /* with its unit */
+    int of_several_loads; /* there only if the analysis has several loads */
+    double (*value)(const static_position *position);
+} static_column;
+
+enum { STATIC_COLUMNS = 6 };
+
+extern const static_column static_columns[STATIC_COLUMNS];
+
+/* Those of the analysis: the first of static_columns. */
+column_names static_column_names(const config *conf);
+
+#endif
