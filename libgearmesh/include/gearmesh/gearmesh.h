@@ -63,10 +63,11 @@ extern "C" {
 
 /** Version of this header; gm_version() gives that of the library. */
 #define GM_VERSION_MAJOR  0
-#define GM_VERSION_MINOR  1
-#define GM_VERSION_PATCH  0
-#define GM_VERSION_STRING "0.1.0"
+#define GM_VERSION_MINOR  1       /**< as above */
+#define GM_VERSION_PATCH  0       /**< as above */
+#define GM_VERSION_STRING "0.1.0" /**< the three of them */
 
+/** What makes a function of the library visible to its users. */
 #if defined(_WIN32) && defined(GEARMESH_SHARED)
 #ifdef GEARMESH_BUILDING
 #define GM_API __declspec(dllexport)
@@ -177,8 +178,8 @@ typedef struct gm_gear {
  * be copied. The second half depends on the pose (center distance), the first does not.
  */
 typedef struct gm_pair {
-    gm_gear pinion;
-    gm_gear wheel;
+    gm_gear pinion; /**< the driving gear in the signs of this file, at the origin */
+    gm_gear wheel;  /**< its mate, at x = center_distance */
 
     double normal_module;             /**< m_n (m) */
     double transverse_module;         /**< m_t (m) */
@@ -262,6 +263,7 @@ GM_API int gm_pair_warnings(const gm_pair *pair, const gm_pair_params *params);
  * Flanks: deviations of every tooth from the ideal involute helicoid
  * ------------------------------------------------------------------------------------------- */
 
+/** The two flanks of a tooth. */
 enum gm_flank_side {
     GM_DRIVE = 0, /**< flanks that touch when the pinion drives the wheel forward */
     GM_COAST = 1  /**< the other flanks */
@@ -277,8 +279,8 @@ typedef struct gm_flanks_params {
     int drive_face_nodes; /**< grid lines along the face (t1), 2 .. 10000 */
     int drive_profile_nodes; /**< grid lines along the profile (t2), 2 .. 10000 */
     int coast_tables;        /**< as for the drive side */
-    int coast_face_nodes;
-    int coast_profile_nodes;
+    int coast_face_nodes;    /**< as for the drive side */
+    int coast_profile_nodes; /**< as for the drive side */
 } gm_flanks_params;
 
 /**
@@ -312,9 +314,9 @@ typedef struct gm_flank_tables {
 
 /** The flanks of one gear. Prepared once by the functions below, read-only in evaluation. */
 typedef struct gm_flanks {
-    int teeth;
-    gm_flank_tables drive;
-    gm_flank_tables coast;
+    int teeth;             /**< number of teeth of the gear */
+    gm_flank_tables drive; /**< of the flanks GM_DRIVE */
+    gm_flank_tables coast; /**< of the flanks GM_COAST */
 } gm_flanks;
 
 /** Bytes of memory that gm_flanks_init() needs, 0 if the parameters are out of range or too large. */
@@ -683,8 +685,17 @@ GM_API int gm_static_equilibrium(const gm_pair *pair, const gm_flanks *pinion_fl
  *
  *     x changes by (r_bp + r_bw d_pinion_angle / d_wheel_angle) times the change of the angle.
  *
- * @param[in] guess  x to begin with (m). It costs or saves evaluations and changes x by no more than its accuracy;
- *                   NaN, or one where no flank can touch on the loaded side, is as none
+ * @param[in]  pair           the pair
+ * @param[in]  pinion_flanks  NULL = ideal
+ * @param[in]  wheel_flanks   NULL = ideal
+ * @param[in]  pinion_angle   phi_p (rad)
+ * @param[in]  stiffness      K of one tooth pair (N/m), 1e-30 .. 1e30
+ * @param[in]  wheel_torque   load on the wheel (N m)
+ * @param[in]  guess          x to begin with (m). It costs or saves evaluations and changes x by no more than its
+ *                            accuracy; NaN, or one where no flank can touch on the loaded side, is ignored
+ * @param[out] offset         x (m)
+ * @param[out] result         penetration there; may be NULL
+ * @return as gm_static_equilibrium()
  */
 GM_API int gm_static_equilibrium_near(const gm_pair *pair, const gm_flanks *pinion_flanks,
                                       const gm_flanks *wheel_flanks, double pinion_angle,
@@ -712,10 +723,10 @@ typedef struct gm_cache_params {
  * as long as it is used. Fill it with gm_cache_init(); the fields are read-only.
  */
 typedef struct gm_cache {
-    const gm_pair *pair;
+    const gm_pair *pair;            /**< the pair */
     const gm_flanks *pinion_flanks; /**< NULL = ideal */
-    const gm_flanks *wheel_flanks;
-    int side;            /**< GM_DRIVE or GM_COAST */
+    const gm_flanks *wheel_flanks;  /**< NULL = ideal */
+    int side;                       /**< GM_DRIVE or GM_COAST */
     int pinion_period;   /**< 1 if all teeth of the pinion have the same flank, else z_p */
     int wheel_period;    /**< likewise */
     int common;          /**< greatest common divisor of both */
@@ -740,6 +751,7 @@ typedef struct gm_cache_errors {
     double contact_rms;     /**< root mean square (1) */
 } gm_cache_errors;
 
+/** Fills in the defaults. */
 GM_API void gm_cache_params_default(gm_cache_params *params);
 
 /**

@@ -23,6 +23,7 @@
 extern "C" {
 #endif
 
+/** Status of a call of gearmesh_io: 0 done, < 0 failed. Apart from the statuses of gearmesh.h. */
 enum gm_io_status {
     GM_IO_OK = 0,
     GM_IO_ERR_NULL = -101,   /**< a required pointer is NULL */
@@ -54,16 +55,16 @@ typedef struct gm_deviation_set {
  * most one set per tooth and side.
  */
 typedef struct gm_deviations {
-    int teeth;         /**< of the gear, 3 .. 100000 */
-    int face_nodes;    /**< along t1, 2 .. 10000 */
-    int profile_nodes; /**< along t2, 2 .. 10000 */
-    int set_count;
+    int teeth;              /**< of the gear, 3 .. 100000 */
+    int face_nodes;         /**< along t1, 2 .. 10000 */
+    int profile_nodes;      /**< along t2, 2 .. 10000 */
+    int set_count;          /**< how many sets */
     gm_deviation_set *sets; /**< [set_count]; `*` first, then by tooth, whatever the file's order */
 } gm_deviations;
 
 /** Contents of a pitch file, resolved to every tooth and side. All arrays come from malloc(). */
 typedef struct gm_pitch {
-    int teeth;
+    int teeth;     /**< of the gear */
     double *drive; /**< [teeth] transverse (m) */
     double *coast; /**< [teeth] transverse (m) */
     int *
@@ -100,6 +101,7 @@ GM_API int gm_pitch_read(gm_pitch *pitch, const char *path, int teeth, gm_io_err
 /** Writes one row per tooth and side that is set, as gm_deviations_write(); at least one. */
 GM_API int gm_pitch_write(const gm_pitch *pitch, const char *path, gm_io_error *error);
 
+/** As gm_deviations_free(). */
 GM_API void gm_pitch_free(gm_pitch *pitch);
 
 /** How file contents become flanks. */
@@ -119,21 +121,22 @@ typedef struct gm_flanks_options {
     double modification_tolerance; /**< see gm_modifications_grid_find(), >= 1e-12 m [1e-8] */
 } gm_flanks_options;
 
+/** Fills in the defaults. */
 GM_API void gm_flanks_options_default(gm_flanks_options *options);
 
 /** What holds the designed modifications of one side; all zero = there are none. */
 typedef struct gm_flanks_side_report {
-    int ramps;      /**< linear reliefs and corners, held exactly */
-    int face_nodes; /**< grid of the table that holds the others; 0 = no table is needed */
-    int profile_nodes;
-    double error; /**< bound of the error of that table (m); above the tolerance: a finer grid
+    int ramps;         /**< linear reliefs and corners, held exactly */
+    int face_nodes;    /**< grid of the table that holds the others; 0 = no table is needed */
+    int profile_nodes; /**< likewise */
+    double error;      /**< bound of the error of that table (m); above the tolerance: a finer grid
                             would have too many nodes */
 } gm_flanks_side_report;
 
 /** What gm_flanks_build() has made. */
 typedef struct gm_flanks_report {
-    gm_flanks_side_report drive;
-    gm_flanks_side_report coast;
+    gm_flanks_side_report drive; /**< of the flanks GM_DRIVE */
+    gm_flanks_side_report coast; /**< of the flanks GM_COAST */
 } gm_flanks_report;
 
 /**
@@ -186,10 +189,10 @@ enum gm_quality_kind {
     GM_QUALITY_HELIX_FORM = 7,    /**< f_f_beta */
     GM_QUALITY_HELIX_TOTAL = 8    /**< F_beta */
 };
-#define GM_QUALITY_KINDS 9
+#define GM_QUALITY_KINDS 9 /**< how many kinds there are */
 
-#define GM_QUALITY_BEST_CLASS  1
-#define GM_QUALITY_WORST_CLASS 11
+#define GM_QUALITY_BEST_CLASS  1  /**< the class with the smallest tolerances */
+#define GM_QUALITY_WORST_CLASS 11 /**< the class with the largest ones */
 
 /** Symbol of a kind in ASCII, `f_H_alpha`; never NULL, "unknown" for any other integer. */
 GM_API const char *gm_quality_symbol(int kind);
@@ -222,6 +225,7 @@ typedef struct gm_quality_options {
                               material that sticks out counts for form and total, 0 = nothing does [1] */
 } gm_quality_options;
 
+/** Fills in the defaults. */
 GM_API void gm_quality_options_default(gm_quality_options *options);
 
 /** Values of one flank, signed where the standard has signs; NaN where no file says anything. */
@@ -232,11 +236,11 @@ typedef struct gm_flank_quality {
         cumulative_pitch; /**< against tooth 0 of the same side, > 0: ahead in the gear's positive
                                   direction of rotation (m) */
     double profile_slope; /**< > 0: material rises towards the tip (m) */
-    double profile_form;
-    double profile_total;
-    double helix_slope; /**< > 0: material rises with t1 (m) */
-    double helix_form;
-    double helix_total;
+    double profile_form;  /**< around the mean line (m) */
+    double profile_total; /**< around the design profile (m) */
+    double helix_slope;   /**< > 0: material rises with t1 (m) */
+    double helix_form;    /**< around the mean line (m) */
+    double helix_total;   /**< around the design helix (m) */
 } gm_flank_quality;
 
 /** The worst value of one kind. */
@@ -290,8 +294,8 @@ typedef struct gm_scatter_normal {
 
 /** An amount that is distributed uniformly from flank to flank. */
 typedef struct gm_scatter_uniform {
-    double low;
-    double high;
+    double low;  /**< smallest amount (m) */
+    double high; /**< largest amount, >= low (m) */
 } gm_scatter_uniform;
 
 /** What profile or helix has all along, t = 0 .. 1, along the surface normal. */
@@ -341,6 +345,7 @@ typedef struct gm_generate_options {
     int wave_count;             /**< 0 .. 100 [0] */
 } gm_generate_options;
 
+/** Fills in the defaults. */
 GM_API void gm_generate_options_default(gm_generate_options *options);
 
 /**
@@ -395,8 +400,8 @@ typedef struct gm_trace {
 
 /** The traces of one gear, in any order. All arrays come from malloc(). */
 typedef struct gm_traces {
-    char file[1024]; /**< where they come from, for messages (cut if longer) */
-    int count;
+    char file[1024];  /**< where they come from, for messages (cut if longer) */
+    int count;        /**< how many traces */
     gm_trace *traces; /**< [count] */
 } gm_traces;
 
@@ -419,11 +424,13 @@ typedef struct gm_measured_pitch {
     gm_pitch_point *points; /**< [count] from malloc() */
 } gm_measured_pitch;
 
+/** The face of a gear that lay towards the datum of the measuring machine. */
 enum gm_face {
     GM_FACE_I = 1, /**< t1 = 0; seen from it a driving pinion turns clockwise */
     GM_FACE_II = 2 /**< t1 = 1; seen from it a driving pinion turns counter-clockwise */
 };
 
+/** How tooth numbers grow, seen from the datum face. */
 enum gm_counting { GM_CLOCKWISE = 1, GM_COUNTERCLOCKWISE = 2 };
 
 /** How a gear stood on the machine and how the machine counts. */
@@ -464,11 +471,13 @@ GM_API int gm_measurement_tooth(const gm_measurement *measurement, const gm_pair
 GM_API int gm_traces_read(gm_traces *traces, const char *path, const gm_pair *pair, int wheel,
                           gm_io_error *error);
 
+/** As gm_deviations_free(). */
 GM_API void gm_traces_free(gm_traces *traces);
 
 /** Reads measured pitch: header `tooth,flank,cumulative_pitch_um` or `tooth,flank,single_pitch_um`. */
 GM_API int gm_measured_pitch_read(gm_measured_pitch *pitch, const char *path, gm_io_error *error);
 
+/** As gm_deviations_free(). */
 GM_API void gm_measured_pitch_free(gm_measured_pitch *pitch);
 
 /** What becomes of traces. */
@@ -482,14 +491,15 @@ typedef struct gm_traces_options {
     int remove_spikes; /**< 1 = points far off their neighbours are left out, 0 = an error [0] */
 } gm_traces_options;
 
+/** Fills in the defaults. */
 GM_API void gm_traces_options_default(gm_traces_options *options);
 
 /** What gm_traces_build() found. */
 typedef struct gm_traces_report {
     int profile_traces[2]; /**< [side] GM_DRIVE, GM_COAST */
-    int helix_traces[2];
-    int profile_teeth[2]; /**< teeth with a profile trace; the others are interpolated */
-    int helix_teeth[2];   /**< likewise with a helix trace; 0: constant along t1 */
+    int helix_traces[2];   /**< [side] */
+    int profile_teeth[2];  /**< teeth with a profile trace; the others are interpolated */
+    int helix_teeth[2];    /**< likewise with a helix trace; 0: constant along t1 */
     double profile_range
         [2]; /**< t2 from and to where all profile traces reach; held beyond; NaN = none */
     double face_range[2]; /**< t1 of all helix traces, likewise */
@@ -549,8 +559,14 @@ typedef struct gm_measured_pitch_report {
  * Refused are missing and double teeth, those of another gear, values in other units, and single pitches
  * that do not add up to zero.
  *
- * @param[out] pitch  free it with gm_pitch_free(). All zero on an error
- * @return as gm_traces_build(), as all other arguments
+ * @param[out] pitch        free it with gm_pitch_free(). All zero on an error
+ * @param[out] report       may be NULL
+ * @param[in]  measured     what was measured
+ * @param[in]  measurement  how
+ * @param[in]  pair         the gear pair
+ * @param[in]  wheel        0 = the pinion was measured, else the wheel
+ * @param[out] error        file and line of the value, and reason; may be NULL
+ * @return as gm_traces_build()
  */
 GM_API int gm_measured_pitch_build(gm_pitch *pitch, gm_measured_pitch_report *report,
                                    const gm_measured_pitch *measured,
