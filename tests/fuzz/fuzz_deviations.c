@@ -8,11 +8,12 @@
 #include <gearmesh/gearmesh_io.h>
 
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size) {
-    static const char path[] = "fuzz_deviations.csv", copy[] = "fuzz_deviations_copy.csv";
+    static fuzz_file input, output;
     gm_deviations read, again;
     gm_io_error error;
     const int teeth = 7;
-    fuzz_write_file(path, data, size);
+    const char *path = fuzz_file_with(&input, data, size);
+    const char *copy = fuzz_file_path(&output);
 
     const int status = gm_deviations_read(&read, path, teeth, &error);
     if (status != GM_IO_OK) {

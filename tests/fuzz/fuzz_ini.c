@@ -13,6 +13,8 @@
 #include <geometry_listing.h>
 #include <math.h>
 
+static fuzz_file input;
+
 static void claim_config(const config *conf) {
     FUZZ_CLAIM(conf->gears.pinion_teeth >= 3 && conf->gears.wheel_teeth >= 3);
     FUZZ_CLAIM(isfinite(conf->gears.normal_module) && isfinite(conf->gears.center_distance));
@@ -23,7 +25,7 @@ static void claim_config(const config *conf) {
 }
 
 static int load(enum config_purpose purpose) {
-    const config_request request = {.path = "fuzz.ini", .purpose = purpose};
+    const config_request request = {.path = fuzz_file_path(&input), .purpose = purpose};
     config conf;
     const int status = config_load(&conf, &request);
     FUZZ_CLAIM(status == 0 || status == EXIT_BAD_INPUT);
@@ -51,7 +53,7 @@ static int load(enum config_purpose purpose) {
 }
 
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size) {
-    fuzz_write_file("fuzz.ini", data, size);
+    fuzz_file_with(&input, data, size);
     const int status = load(CONFIG_FOR_RUN);
     FUZZ_CLAIM(load(CONFIG_FOR_RUN) == status);
     load(CONFIG_FOR_GEOMETRY);

@@ -12,6 +12,8 @@
 #include <math.h>
 #include <scatter.h>
 
+static fuzz_file input;
+
 static gm_pair gears(void) {
     gm_pair_params params;
     gm_pair pair;
@@ -49,7 +51,7 @@ static double make(const gm_pair *pair) {
     gm_pitch pitch;
     double sum = -1.0;
 
-    if (scatter_read(&file, "fuzz_scatter.ini") != 0)
+    if (scatter_read(&file, fuzz_file_path(&input)) != 0)
         return -2.0;
     gm_generate_options_default(&options);
     options.scatter = &file.amounts;
@@ -66,7 +68,7 @@ static double make(const gm_pair *pair) {
 
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size) {
     const gm_pair pair = gears();
-    fuzz_write_file("fuzz_scatter.ini", data, size);
+    fuzz_file_with(&input, data, size);
     const double first = make(&pair);
     FUZZ_CLAIM(first == make(&pair));
     return 0;

@@ -9,7 +9,7 @@
 #include <gearmesh/gearmesh_io.h>
 #include <math.h>
 
-static const char path[] = "fuzz_traces.csv", copy[] = "fuzz_traces_copy.csv";
+static fuzz_file input, output;
 
 /* z = 7, so that numbers of teeth are soon right. */
 static gm_pair small_pair(void) {
@@ -37,7 +37,7 @@ static void try_traces(const gm_pair *pair, const gm_measurement *how, int wheel
     gm_deviations deviations;
     gm_traces_report report;
     gm_io_error error;
-    int status = gm_traces_read(&traces, path, pair, wheel, &error);
+    int status = gm_traces_read(&traces, fuzz_file_path(&input), pair, wheel, &error);
     if (status != GM_IO_OK) {
         claim_error(status, &error);
         return;
@@ -45,7 +45,7 @@ static void try_traces(const gm_pair *pair, const gm_measurement *how, int wheel
     status = gm_traces_build(&deviations, &report, &traces, how, pair, wheel, options, &error);
     if (status == GM_IO_OK) {
         FUZZ_CLAIM(isfinite(report.resampling_error) && isfinite(report.crossing_error));
-        FUZZ_CLAIM(gm_deviations_write(&deviations, copy, &error) == GM_IO_OK);
+        FUZZ_CLAIM(gm_deviations_write(&deviations, fuzz_file_path(&output), &error) == GM_IO_OK);
         gm_deviations_free(&deviations);
     } else {
         claim_error(status, &error);
@@ -58,14 +58,14 @@ static void try_pitch(const gm_pair *pair, const gm_measurement *how, int wheel)
     gm_measured_pitch measured;
     gm_pitch pitch;
     gm_io_error error;
-    int status = gm_measured_pitch_read(&measured, path, &error);
+    int status = gm_measured_pitch_read(&measured, fuzz_file_path(&input), &error);
     if (status != GM_IO_OK) {
         claim_error(status, &error);
         return;
     }
     status = gm_measured_pitch_build(&pitch, NULL, &measured, how, pair, wheel, &error);
     if (status == GM_IO_OK) {
-        FUZZ_CLAIM(gm_pitch_write(&pitch, copy, &error) == GM_IO_OK);
+        FUZZ_CLAIM(gm_pitch_write(&pitch, fuzz_file_path(&output), &error) == GM_IO_OK);
         gm_pitch_free(&pitch);
     } else {
         claim_error(status, &error);
@@ -88,7 +88,7 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size) {
     options.remove_spikes = way >> 2 & 1;
     options.face_nodes = 3;
     options.profile_nodes = 4;
-    fuzz_write_file(path, data, size);
+    fuzz_file_with(&input, data, size);
     try_traces(&pair, &how, way >> 4 & 1, &options);
     try_pitch(&pair, &how, way >> 4 & 1);
     return 0;
