@@ -348,6 +348,37 @@ class Together(Case):
 
 
 class Allowances(Case):
+    def test_ends_that_were_filled_in_are_told_by_tooth_and_place(self):
+        with open(TRACES, encoding="utf-8") as file:
+            lines = file.readlines()
+        helix = [i for i, line in enumerate(lines) if line.startswith("12,left,helix")]
+        self.assertGreater(len(helix), 40)
+        for level, filled in (("-60", "0"), ("0", "-99.9")):
+            text = list(lines)
+            for i in helix:
+                fields = lines[i].strip().split(",")
+                fields[-1] = f"{float(fields[-1]) + float(level):.3f}"
+                text[i] = ",".join(fields) + "\n"
+            for i in helix[:5]:
+                text[i] = lines[i].rpartition(",")[0] + f",{filled}\n"
+            path = self.write("traces.csv", "".join(text))
+            self.refused(
+                [f"traces.csv:{helix[0] + 1}: the helix trace of tooth 12, flank left", f"exactly {filled} um at all 5"],
+                *EXAMPLE, "--traces", path,
+            )
+            self.assertIn("# 5 points left out: filled in", self.accepted(*EXAMPLE, "--traces", path, "--remove-spikes"))
+
+    def test_a_trace_that_never_varies_is_asked_about(self):
+        with open(TRACES, encoding="utf-8") as file:
+            lines = file.readlines()
+        text = [
+            line.rpartition(",")[0] + ",0\n" if line.startswith("23,right,profile") else line for line in lines
+        ]
+        path = self.write("traces.csv", "".join(text))
+        asked = "the profile trace of tooth 23, flank right, has one value all along and others vary: was it measured?"
+        self.assertNotIn("was it measured?", self.accepted(*EXAMPLE))
+        self.assertIn(asked, self.accepted(*EXAMPLE, "--traces", path))
+
     def test_spikes_can_be_left_out_and_hollow_flanks_be_meant(self):
         with open(TRACES, encoding="ascii") as file:
             rows = file.read().splitlines(keepends=True)

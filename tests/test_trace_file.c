@@ -71,6 +71,26 @@ static void a_diameter_is_a_roll_length(void) {
     gm_traces_free(&traces);
 }
 
+/* r^2 - r_b^2 would lose all digits here; (r - r_b) (r + r_b) has none to lose. */
+static void the_roll_length_next_to_the_base_circle_is_exact(void) {
+    pair = reference_pair(REFERENCE_FACE_WIDTH);
+    const double base = pair.pinion.base_radius;
+    for (int exponent = 0; exponent <= 52; ++exponent) {
+        gm_test_context("base radius plus 2^-%d of it", exponent);
+        const double radius = base + ldexp(base, -exponent);
+        char number[64];
+        char text[400];
+        snprintf(number, sizeof number, "%.17e", 2.0 * radius);
+        sprintf(strchr(number, 'e'), "e%d", atoi(strchr(number, 'e') + 1) + 3); /* mm */
+        sprintf(text, DIAMETER "1,left,profile,8,%s,0\n1,left,profile,8,900,1\n", number);
+        GM_ASSERT_INT(read_traces(text), GM_IO_OK);
+        const long double right =
+            sqrtl(((long double)radius - base) * ((long double)radius + base));
+        GM_ASSERT_REL(traces.traces[0].position[0], (double)right, 1e-15);
+        gm_traces_free(&traces);
+    }
+}
+
 /* Near the base circle the roll length grows faster than the diameter. */
 static void a_diameter_may_wander_as_a_face_may(void) {
     pair = reference_pair(REFERENCE_FACE_WIDTH);
@@ -151,6 +171,7 @@ int main(int argc, char **argv) {
     static const gm_test tests[] = {
         GM_TEST(rows_become_traces_in_metres),
         GM_TEST(a_diameter_is_a_roll_length),
+        GM_TEST(the_roll_length_next_to_the_base_circle_is_exact),
         GM_TEST(a_diameter_may_wander_as_a_face_may),
         GM_TEST(headers_say_what_is_wrong),
         GM_TEST(rows_say_what_is_wrong),

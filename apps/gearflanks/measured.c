@@ -14,7 +14,8 @@ typedef struct measured_gear {
     const gm_gear *gear;
     gm_deviations deviations; /* no sets = no traces were given */
     gm_traces_report traces;
-    gm_pitch pitch; /* no teeth = no pitch was given */
+    gm_trace constant; /* the first trace with one value all along; without arrays */
+    gm_pitch pitch;    /* no teeth = no pitch was given */
     gm_measured_pitch_report pitch_report;
 } measured_gear;
 
@@ -108,6 +109,18 @@ static void print_traces(const measured_gear *of, FILE *file) {
     if (found->spikes > 0) {
         fprintf(file, "# %d point%s left out: spikes\n", found->spikes,
                 found->spikes == 1 ? "" : "s");
+    }
+    if (found->filled_points > 0) {
+        fprintf(file, "# %d points left out: filled in, not measured\n", found->filled_points);
+    }
+    if (found->constant_traces > 0) {
+        static const char *const flanks[] = {"drive", "coast", "left", "right"};
+        fprintf(file,
+                "# the %s trace of tooth %d, flank %s%s, has one value all along and others vary: "
+                "was it "
+                "measured?\n",
+                of->constant.kind == GM_TRACE_PROFILE ? "profile" : "helix", of->constant.tooth,
+                flanks[of->constant.flank], found->constant_traces > 1 ? ", as some others" : "");
     }
     if (2 * found->hollow_traces > found->judged_traces) {
         fprintf(file, "# %d of %d traces stand out at their ends: is material added counted > 0?\n",
@@ -205,6 +218,9 @@ static int read_traces(measured_gear *of) {
     if (status == GM_IO_OK) {
         status = gm_traces_build(&of->deviations, &of->traces, &traces, &options->measurement,
                                  of->pair, options->wheel, &options->from_traces, &error);
+        if (status == GM_IO_OK && of->traces.constant_trace >= 0) {
+            of->constant = traces.traces[of->traces.constant_trace];
+        }
         gm_traces_free(&traces);
         round_deviations(&of->deviations);
     }

@@ -488,7 +488,8 @@ typedef struct gm_traces_options {
         held_limit; /**< how much of t1 or t2 may lie behind either end of a trace, where its last
                             value is held, 0 .. 0.45 [0.2] */
     int hollow;     /**< 1 = flanks that stand out at their edges are meant so [0] */
-    int remove_spikes; /**< 1 = points far off their neighbours are left out, 0 = an error [0] */
+    int remove_spikes; /**< 1 = points far off their neighbours, and those that were filled in, are
+                            left out; 0 = an error [0] */
 } gm_traces_options;
 
 /** Fills in the defaults. */
@@ -509,9 +510,12 @@ typedef struct gm_traces_report {
     double
         crossing_error; /**< largest contradiction of profile and helix traces where they cross, after
                                 constants are taken out; 0 where each flank has one of each (m) */
-    int spikes;         /**< points left out */
-    int hollow_traces; /**< traces whose ends stand out beyond their middle ... */
-    int judged_traces; /**< ... of so many */
+    int spikes;         /**< points left out: far off their neighbours */
+    int filled_points; /**< points left out: one value in place of a measurement */
+    int constant_traces; /**< traces with one value all along while others of their kind vary: were they measured? */
+    int constant_trace; /**< index of the first one in gm_traces; -1 = none */
+    int hollow_traces;  /**< traces whose ends stand out beyond their middle ... */
+    int judged_traces;  /**< ... of so many */
 } gm_traces_report;
 
 /**
@@ -520,8 +524,8 @@ typedef struct gm_traces_report {
  * flank is 0 where the pitch is measured (mid-face, measuring circle), so that the pitch alone says where it stands.
  * Teeth in between are interpolated linearly around the gear, node by node, each side by itself.
  *
- * Refused are traces that leave the gear, miss too much of it, double ones, those of another gear, spikes,
- * deviations or lengths in other units, and the opposite sign where it shows; see the docs.
+ * Refused are traces that leave the gear, miss too much of it, double ones, those of another gear, spikes, ends
+ * that were filled in, * deviations or lengths in other units, and the opposite sign where it shows; see the docs.
  *
  * @param[out] deviations   along the surface normal; free them with gm_deviations_free(). All zero on an error
  * @param[out] report       may be NULL

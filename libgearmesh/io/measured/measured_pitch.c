@@ -260,10 +260,14 @@ static void fit_displacement(builder *build, const gm_pitch *pitch) {
     if (build->present[GM_DRIVE] == 0 || build->present[GM_COAST] == 0) {
         return;
     }
-    const double radius =
-        gmi_measuring_radius(build->measurement, build->gear) / build->gear->base_radius;
-    const double lean =
-        0.5 * GMI_PI + build->gear->base_half_thickness - sqrt(radius * radius - 1.0);
+
+    /* The normal touches the base circle at the roll angle of the measuring circle; psi_b is half of the tooth. */
+    const double base = build->gear->base_radius;
+    const double radius = gmi_measuring_radius(build->measurement, build->gear);
+    const double roll_angle = gmi_roll_length(radius, base) / base;
+    const double lean = 0.5 * GMI_PI + build->gear->base_half_thickness - roll_angle;
+
+    /* Turned back by it, the first orders of both sides are the displacement, if there is one. */
     const vector drive = first_order(build, pitch->drive);
     const vector coast = first_order(build, pitch->coast);
     vector displacement;

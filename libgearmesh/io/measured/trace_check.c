@@ -6,11 +6,11 @@
 #include "trace_check.h"
 
 #include <math.h>
-#include <stdlib.h>
 
 #include "files/io_error.h"
 #include "files/number_text.h"
 #include "measurement.h"
+#include "robust.h"
 
 /* ---------------------------------------------------------------------------------------------
  * Spikes
@@ -24,35 +24,12 @@ static const double spike_deviations = 8.0;
 /* ... and by more than this (m). */
 static const double spike_floor = 2e-6;
 
-static int compare_doubles(const void *a, const void *b) {
-    const double x = *(const double *)a;
-    const double y = *(const double *)b;
-    return (x > y) - (x < y);
-}
-
-static double median(double *values, int count) {
-    qsort(values, (size_t)count, sizeof *values, compare_doubles);
-    return 0.5 * (values[(count - 1) / 2] + values[count / 2]);
-}
-
 /* How far a point stands off the line between its neighbours `stride` points away. */
 static double stand_off(const gmi_measured *trace, int k, int stride) {
     const double *t = trace->t;
     const double *value = trace->value;
     const double share = (t[k] - t[k - stride]) / (t[k + stride] - t[k - stride]);
     return value[k] - (value[k - stride] + share * (value[k + stride] - value[k - stride]));
-}
-
-/* Robust standard deviation of the stand-offs: 1.4826 times the median distance from their median. */
-static double roughness(const double *off, int count, double *work) {
-    for (int k = 0; k < count; k++) {
-        work[k] = off[k];
-    }
-    const double middle = median(work, count);
-    for (int k = 0; k < count; k++) {
-        work[k] = fabs(off[k] - middle);
-    }
-    return 1.4826 * median(work, count);
 }
 
 static double smaller(double a, double b) {
@@ -81,7 +58,7 @@ static void mark_spikes(const gmi_measured *trace, int stride, double *marks, do
         off[k] = stand_off(trace, k + stride, stride);
     }
     /* A few points do not say well how rough the trace is. */
-    double limit = spike_deviations * (1.0 + 10.0 / count) * roughness(off, count, work + count);
+    double limit = spike_deviations * (1.0 + 10.0 / count) * gmi_spread(off, count, work + count);
     limit = limit > spike_floor ? limit : spike_floor;
     for (int k = stride; k < count - stride; k++) {
         const double height = spike_height(off[k - stride], off[k], off[k + stride]);

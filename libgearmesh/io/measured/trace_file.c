@@ -71,13 +71,14 @@ typedef struct loader {
     gm_io_error *error;
 } loader;
 
+/* A file has few digits: the base circle may come out just below itself, by this share of it. */
+static const double base_tolerance = 5e-6;
+
 /* The roll length of a diameter. */
 static int roll_of_diameter(const loader *load, const gmi_table *table, double diameter,
                             double *roll) {
     const double base = load->gear->base_radius;
-    const double square = 0.25 * diameter * diameter - base * base;
-    /* A file has few digits: the base circle may come out just below itself. */
-    if (!(diameter > 0.0 && square >= -1e-5 * base * base)) {
+    if (!(0.5 * diameter >= (1.0 - base_tolerance) * base)) {
         char quoted[GMI_QUOTE_SIZE];
         char low[GMI_NUMBER_SIZE];
         char high[GMI_NUMBER_SIZE];
@@ -88,7 +89,7 @@ static int roll_of_diameter(const loader *load, const gmi_table *table, double d
                              gmi_number_text(high, 2.0 * load->gear->tip_radius, 3, 7),
                              gmi_length_hint(diameter, 2.0 * load->gear->tip_radius));
     }
-    *roll = sqrt(square > 0.0 ? square : 0.0);
+    *roll = gmi_roll_length(0.5 * diameter, base);
     return GM_IO_OK;
 }
 

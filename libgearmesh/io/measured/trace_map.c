@@ -15,6 +15,7 @@
 #include "files/number_text.h"
 #include "measurement.h"
 #include "trace_check.h"
+#include "trace_fill.h"
 
 /* How far a trace may stand out beyond tip or face: the digits of a file (1). */
 static const double overrun = 1e-3;
@@ -59,7 +60,7 @@ static int fail_roll(const gmi_mapping *map, const gm_trace *trace, int point, d
         "%s leaves the gear: it lies at a roll length of %s mm (diameter %s mm); up to %s mm "
         "(diameter %s mm) is right, the tip%s",
         gmi_trace_name(name, trace), gmi_number_text(got, roll, 3, 7),
-        gmi_number_text(got_diameter, 2.0 * sqrt(roll * roll + base * base), 3, 7),
+        gmi_number_text(got_diameter, 2.0 * hypot(roll, base), 3, 7),
         gmi_number_text(right, map->gear->tip_roll_length, 3, 7),
         gmi_number_text(right_diameter, 2.0 * map->gear->tip_radius, 3, 7),
         gmi_length_hint(reach, map->gear->tip_roll_length));
@@ -202,9 +203,12 @@ static int map_trace(const gmi_mapping *map, const gm_trace *trace, gmi_measured
         status = map_place(map, trace, &to->at);
     }
 
-    /* Its points; what is left when spikes are out has to cover the flank. */
+    /* Its points; what is left without those that were filled in, and without spikes, has to cover the flank. */
     if (status == GM_IO_OK) {
         status = map_points(map, trace, to);
+    }
+    if (status == GM_IO_OK) {
+        status = gmi_remove_filled(to, map->options, map->work, map->report, map->error);
     }
     if (status == GM_IO_OK) {
         status = gmi_remove_spikes(to, map->options, map->work, map->report, map->error);

@@ -18,6 +18,7 @@
 #include "shared.h"
 #include "trace.h"
 #include "trace_check.h"
+#include "trace_fill.h"
 #include "trace_map.h"
 #include "trace_surface.h"
 
@@ -152,6 +153,34 @@ static void narrow(double range[2], double from, double to) {
     range[1] = isnan(range[1]) || to < range[1] ? to : range[1];
 }
 
+/* A flank that was never touched looks ideal. Where all flanks are, nothing is odd. */
+static void report_constant(builder *build, int kind) {
+    gm_traces_report *report = &build->report;
+    int constant = 0;
+    int varying = 0;
+    int first = build->traces->count;
+    for (int i = 0; i < build->traces->count; ++i) {
+        const gmi_measured *trace = &build->measured[i];
+        const int index = (int)(trace->from - build->traces->traces);
+        if (trace->kind != kind) {
+            continue;
+        }
+        if (!gmi_is_constant(trace)) {
+            ++varying;
+            continue;
+        }
+        ++constant;
+        first = index < first ? index : first;
+    }
+    if (constant == 0 || varying == 0) {
+        return;
+    }
+    report->constant_traces += constant;
+    if (report->constant_trace < 0 || first < report->constant_trace) {
+        report->constant_trace = first;
+    }
+}
+
 static void report_traces(builder *build) {
     gm_traces_report *report = &build->report;
     for (int i = 0; i < build->traces->count; i++) {
@@ -170,6 +199,8 @@ static void report_traces(builder *build) {
         }
         report->resampling_error = fmax(report->resampling_error, resampling_error(build, trace));
     }
+    report_constant(build, GM_TRACE_PROFILE);
+    report_constant(build, GM_TRACE_HELIX);
 }
 
 /* ---------------------------------------------------------------------------------------------
@@ -387,6 +418,7 @@ static void prepare(builder *build) {
     const double radius = gmi_measuring_radius(build->measurement, build->gear);
     const double roll_length = gmi_roll_length(radius, build->gear->base_radius);
     build->t2_zero = within(gmi_profile_place(build->gear, roll_length), 0.0, 1.0);
+    build->report.constant_trace = -1;
     build->report.profile_range[0] = build->report.profile_range[1] = (double)NAN;
     build->report.face_range[0] = build->report.face_range[1] = (double)NAN;
 }
