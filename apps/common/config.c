@@ -264,11 +264,16 @@ static int check_not_input(const config *conf, const char *output, const char *i
 
 /* Neither the result nor the file that it grows in may be one that is read. */
 static int check_output_is_no_input(const config *conf) {
-    const size_t size = strlen(conf->output_file) + sizeof ".part";
+    char *target = path_behind_links(conf->output_file);
+    if (target == NULL) {
+        return 0; /* refused when it is opened */
+    }
+    const size_t size = strlen(target) + sizeof ".part";
     char *part = allocate(size);
     int faults = 0;
 
-    snprintf(part, size, "%s.part", conf->output_file);
+    snprintf(part, size, "%s.part", target);
+    free(target);
     for (int i = 0; i < 2 && faults == 0; ++i) {
         const char *output = i == 0 ? conf->output_file : part;
         faults += check_not_input(conf, output, conf->path, "the INI file");

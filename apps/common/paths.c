@@ -3,6 +3,8 @@
 
 #include "paths.h"
 
+#include <errno.h>
+#include <stdlib.h>
 #include <string.h>
 #include <sys/stat.h>
 #include <unistd.h>
@@ -15,6 +17,92 @@ int is_same_file(const char *a, const char *b) {
     }
     return stat(a, &status_a) == 0 && stat(b, &status_b) == 0 &&
            status_a.st_dev == status_b.st_dev && status_a.st_ino == status_b.st_ino;
+}
+
+/* ---------------------------------------------------------------------------------------------
+ * Folders and links
+ * ------------------------------------------------------------------------------------------- */
+
+enum {
+    LINKS_MAX = 40,       /* in a row, as the kernel follows them */
+    LINK_TEXT_SIZE = 4096 /* of a link's target */
+};
+
+static const char *name_in_folder(const char *path) {
+    const char *slash = strrchr(path, '/');
+
+    return slash == NULL ? path : slash + 1;
+}
+
+/* The first characters of a path. */
+static char *beginning_of(const char *path, size_t length) {
+    char *copy = malloc(length + 1);
+
+    if (copy != NULL) {
+        memcpy(copy, path, length);
+        copy[length] = '\0';
+    }
+    return copy;
+}
+
+char *path_folder(const char *path) {
+    const size_t length = (size_t)(name_in_folder(path) - path);
+
+    if (length == 0) {
+        return beginning_of(".", 1);
+    }
+    /* Without the slash, but that of "/file" is its folder. */
+    return beginning_of(path, length > 1 ? length - 1 : 1);
+}
+
+/* What the text of a link at `path` means from here. */
+static char *target_of(const char *path, const char *text) {
+    const size_t folder = text[0] == '/' ? 0 : (size_t)(name_in_folder(path) - path);
+    char *target = malloc(folder + strlen(text) + 1);
+
+    if (target != NULL) {
+        memcpy(target, path, folder);
+        strcpy(target + folder, text);
+    }
+    return target;
+}
+
+char *path_behind_links(const char *path) {
+    char *reached = beginning_of(path, strlen(path));
+
+    for (int i = 0; i < LINKS_MAX && reached != NULL; ++i) {
+        char text[LINK_TEXT_SIZE];
+        const ssize_t length = readlink(reached, text, sizeof text - 1);
+        if (length < 0) {
+            return reached;
+        }
+
+        text[length] = '\0';
+        char *next = target_of(reached, text);
+        free(reached);
+        reached = next;
+    }
+
+    /* Out of memory, or links in a circle. */
+    errno = reached == NULL ? ENOMEM : ELOOP;
+    free(reached);
+    return NULL;
+}
+
+int is_same_place(const char *a, const char *b) {
+    char *target_a = path_behind_links(a), *target_b = path_behind_links(b);
+    int same = is_same_file(a, b);
+
+    if (target_a != NULL && target_b != NULL && !same) {
+        char *folder_a = path_folder(target_a), *folder_b = path_folder(target_b);
+        same = folder_a != NULL && folder_b != NULL && is_same_file(folder_a, folder_b) &&
+               strcmp(name_in_folder(target_a), name_in_folder(target_b)) == 0;
+        free(folder_a);
+        free(folder_b);
+    }
+    free(target_a);
+    free(target_b);
+    return same;
 }
 
 const char *path_obstacle(const char *path) {

@@ -8,6 +8,15 @@
 /* Whether two paths lead to one file, also by links. 0 or 1. */
 int is_same_file(const char *a, const char *b);
 
+/* Whether two paths name one file, also one that is not there yet. 0 or 1. */
+int is_same_place(const char *a, const char *b);
+
+/* The path, or where it leads if it is a symbolic link, be there a file or not. To be freed; NULL: errno says why. */
+char *path_behind_links(const char *path);
+
+/* The folder of a path, "." if it names none. To be freed; NULL: out of memory. */
+char *path_folder(const char *path);
+
 /* Why what is at `path` cannot become a result, NULL if it can or nothing is there. A device or pipe would be
  * replaced by a file. */
 const char *path_obstacle(const char *path);

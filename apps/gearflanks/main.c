@@ -8,6 +8,7 @@
 #include "gear_mesh.h"
 #include "make.h"
 #include "measured.h"
+#include "process.h"
 #include "report.h"
 
 #include <errno.h>
@@ -68,6 +69,10 @@ static int finish_stdout(int status) {
 }
 
 int main(int argc, char *argv[]) {
+    if (process_prepare() != EXIT_DONE) {
+        return EXIT_RUN_FAILED; /* there is nowhere to say it */
+    }
+
     flanks_options options;
     int status = options_parse(&options, argc, argv);
 

@@ -246,7 +246,7 @@ int dynamics_run(const config *conf, const gear_mesh *gears) {
     dynamic_run run = {.conf = conf,
                        .rows = floor(conf->duration * conf->output_rate + 1e-9) + 1.0};
 
-    interrupt_watch();
+    interrupt_watch(SECOND_KILLS);
     progress_start(&run.progress, conf->duration, conf->quiet);
 
     int exit_code = start_run(&run, gears);

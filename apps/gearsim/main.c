@@ -16,6 +16,7 @@
 #include "geometry_listing.h"
 #include "lookup.h"
 #include "output.h"
+#include "process.h"
 #include "static_columns.h"
 #include "statics.h"
 
@@ -87,6 +88,10 @@ static int finish_stdout(int status) {
 }
 
 int main(int argc, char *argv[]) {
+    if (process_prepare() != EXIT_DONE) {
+        return EXIT_RUN_FAILED; /* there is nowhere to say it */
+    }
+
     arguments args;
     int status = arguments_parse(&args, argc, argv);
 

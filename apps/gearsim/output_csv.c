@@ -48,8 +48,8 @@ static size_t whole_lines(const char *text, size_t size) {
 static void cut_to_whole_lines(const output_file *output) {
     const csv_memory *memory = output->memory;
 
-    if (ftruncate(output->file, memory->written) == 0) {
-        (void)lseek(output->file, memory->written, SEEK_SET);
+    if (ftruncate(output->result.data, memory->written) == 0) {
+        (void)lseek(output->result.data, memory->written, SEEK_SET);
     }
 }
 
@@ -61,7 +61,7 @@ static int flush(output_file *output) {
     if (output->error != 0) {
         return EXIT_RUN_FAILED;
     }
-    const int error = write_all(output->file, memory->buffer, memory->used, &done);
+    const int error = write_all(output->result.data, memory->buffer, memory->used, &done);
     memory->written += (off_t)whole_lines(memory->buffer, done);
     memory->used = 0;
     if (error == 0) {
@@ -137,7 +137,7 @@ static void mark_incomplete(output_file *output, const char *why) {
     const int length = snprintf(line, sizeof line, "# incomplete: %s\n", why);
 
     if (length > 0 && (size_t)length < sizeof line &&
-        write_all(output->file, line, (size_t)length, &done) != 0) {
+        write_all(output->result.data, line, (size_t)length, &done) != 0) {
         cut_to_whole_lines(output);
     }
 }

@@ -10,6 +10,7 @@
 
 #include "columns.h"
 #include "output.h"
+#include "result_file.h"
 
 typedef struct output_format {
     /* Writes all that precedes the rows, to the disk: a full one is found before the run, not after it. */
@@ -28,9 +29,7 @@ extern const output_format csv_format, hdf5_format;
 struct output_file {
     const output_format *format;
     void *memory; /* of the format, freed by its end() */
-    int file;     /* `part` */
-    char *path;   /* where the result goes in the end */
-    char *part;   /* where it grows */
+    result_file result;
     column_list columns;
     int digits;
     int error; /* errno of the write that failed, 0 = none: nothing more is written */

@@ -57,7 +57,7 @@ static int reserve(output_file *output, size_t size) {
     if (memory->file >= 0 && H5Fget_filesize(memory->file, &end) < 0) {
         return fail(output);
     }
-    const int error = posix_fallocate(output->file, (off_t)end, (off_t)size);
+    const int error = posix_fallocate(output->result.data, (off_t)end, (off_t)size);
 
     /* Some file systems cannot reserve. */
     return error == 0 || error == EINVAL || error == EOPNOTSUPP ? 0 : output_fail(output, error);
@@ -169,12 +169,16 @@ static int begin(output_file *output, const config *conf, const char *const name
 
     /* Messages are ours; and after a failure there is nothing that HDF5 could still do at the exit. */
     H5dont_atexit();
+    /* FILE.part is locked already. A second lock of the same kind would be refused to HDF5. */
+    if (setenv("HDF5_USE_FILE_LOCKING", "FALSE", 1) != 0) {
+        return output_fail(output, errno);
+    }
     H5Eset_auto2(H5E_DEFAULT, NULL, NULL);
     if (reserve(output, head_size(conf)) != 0) {
         return EXIT_RUN_FAILED;
     }
     errno = 0;
-    memory->file = H5Fcreate(output->part, H5F_ACC_TRUNC, H5P_DEFAULT, H5P_DEFAULT);
+    memory->file = H5Fcreate(output->result.part, H5F_ACC_TRUNC, H5P_DEFAULT, H5P_DEFAULT);
     if (memory->file < 0 || reserve(output, head_size(conf)) != 0 ||
         write_head(output, conf, names) < 0) {
         return output->error != 0 ? EXIT_RUN_FAILED : fail(output);
@@ -252,7 +256,7 @@ static int close_file(output_file *output) {
     }
     errno = 0;
     if (H5Fflush(memory->file, H5F_SCOPE_LOCAL) < 0 || H5Fget_filesize(memory->file, &size) < 0 ||
-        H5Fclose(memory->file) < 0 || ftruncate(output->file, (off_t)size) != 0) {
+        H5Fclose(memory->file) < 0 || ftruncate(output->result.data, (off_t)size) != 0) {
         return output->error != 0 ? EXIT_RUN_FAILED : fail(output);
     }
     return output->error != 0 ? EXIT_RUN_FAILED : 0;

@@ -153,7 +153,7 @@ int statics_run(const config *conf, const gear_mesh *gears) {
     const column_names names = static_column_names(conf);
     int exit_code = 0;
 
-    interrupt_watch();
+    interrupt_watch(SECOND_KILLS);
     output_file *output = output_open(conf, names.name, names.count, &exit_code);
     if (output != NULL) {
         exit_code = write_all(conf, gears, output);

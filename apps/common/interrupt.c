@@ -1,13 +1,14 @@
 /* SPDX-FileCopyrightText: The gearmesh authors */
 /* SPDX-License-Identifier: BSD-3-Clause */
-#define _POSIX_C_SOURCE 200809L
+#define _XOPEN_SOURCE 700 /* SIGXCPU */
 
 #include "interrupt.h"
 
 #include <signal.h>
 #include <stddef.h>
 
-static const int watched[] = {SIGINT, SIGTERM};
+/* What asks a process to end, or would end it. SIGQUIT stays the way to a core file. */
+static const int watched[] = {SIGINT, SIGTERM, SIGHUP, SIGXCPU, SIGALRM, SIGUSR1, SIGUSR2};
 enum { WATCHED_COUNT = sizeof watched / sizeof watched[0] };
 
 static volatile sig_atomic_t requested;
@@ -18,10 +19,12 @@ static void request(int signal_number) {
     requested = 1;
 }
 
-void interrupt_watch(void) {
-    /* SA_RESETHAND: the second signal finds the default again. SA_RESTART: a write is not cut short. */
+void interrupt_watch(enum interrupt_second second) {
+    /* SA_RESTART: a write is not cut short. SA_RESETHAND: the second signal finds the default again. */
     struct sigaction action = {.sa_handler = request, .sa_flags = SA_RESTART};
-    action.sa_flags |= (int)SA_RESETHAND;
+    if (second == SECOND_KILLS) {
+        action.sa_flags |= (int)SA_RESETHAND;
+    }
     sigemptyset(&action.sa_mask);
 
     requested = 0;
