@@ -313,13 +313,13 @@ class Refusals(Case):
     def test_no_file(self):
         self.refused("no.csv: cannot be opened", *EXAMPLE, "--traces", "no.csv")
         self.refused("no.csv: cannot be opened", *EXAMPLE, "--measured-pitch", "no.csv")
-        self.refused("no/f.csv: cannot be", *EXAMPLE, "--flanks", "no/f.csv", code=1)
+        self.refused("no/f.csv.part cannot be written: No such file", *EXAMPLE, "--flanks", "no/f.csv")
 
     def test_no_regular_file_is_replaced(self):
         os.mkfifo(self.path("pipe"))
         os.mkdir(self.path("folder"))
-        self.refused("pipe: cannot be written: it is not a regular file", *EXAMPLE, "--flanks", "pipe")
-        self.refused("folder: cannot be written: it is a folder", *EXAMPLE, "--pitch", "folder")
+        self.refused("pipe is not a regular file; name a file", *EXAMPLE, "--flanks", "pipe")
+        self.refused("folder is a folder; name a file", *EXAMPLE, "--pitch", "folder")
         self.assertTrue(stat.S_ISFIFO(os.stat(self.path("pipe")).st_mode))
 
 
@@ -328,17 +328,16 @@ class Together(Case):
         for name in ("f.csv", "p.csv"):
             self.write(name, "old\n")
         os.mkdir(self.path("p.csv.part"))
-        self.refused("p.csv.part: cannot be written", *EXAMPLE, code=1)
+        self.refused("p.csv.part is a folder", *EXAMPLE)
         for name in ("f.csv", "p.csv"):
             with open(self.path(name), encoding="ascii") as file:
                 self.assertEqual(file.read(), "old\n")
         self.assertEqual(sorted(os.listdir(self.folder)), ["f.csv", "p.csv", "p.csv.part"])
 
     def test_an_input_is_not_taken_for_a_file_on_the_way(self):
-        for ending in (".part", ".rows"):
-            shutil.copy(TRACES, self.path("f.csv" + ending))
-            self.refused("an input would be overwritten", *EXAMPLE, "--traces", "f.csv" + ending)
-            self.assertTrue(os.path.exists(self.path("f.csv" + ending)))
+        shutil.copy(TRACES, self.path("f.csv.part"))
+        self.refused("an input would be overwritten", *EXAMPLE, "--traces", "f.csv.part")
+        self.assertTrue(os.path.exists(self.path("f.csv.part")))
 
     def test_one_tooth_stands_for_all(self):
         with open(TRACES, encoding="ascii") as file:

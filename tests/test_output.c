@@ -7,6 +7,7 @@
 
 #include "keys.h"
 #include "output.h"
+#include "process.h"
 
 #include "gm_test.h"
 
@@ -492,6 +493,9 @@ int main(int argc, char **argv) {
         GM_TEST(hdf5_is_refused_where_it_was_not_built_in),
 #endif
     };
+    if (process_prepare() != EXIT_DONE) {
+        return 1;
+    }
     if (mkdtemp(folder) == NULL) {
         perror(folder);
         return 1;

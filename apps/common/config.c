@@ -11,6 +11,7 @@
 #include "keys.h"
 #include "modification_keys.h"
 #include "paths.h"
+#include "result_file.h"
 
 #include <math.h>
 #include <stdarg.h>
@@ -251,39 +252,24 @@ static int check_dynamic(const config *conf) {
     return faults;
 }
 
-static int check_not_input(const config *conf, const char *output, const char *input,
-                           const char *name) {
-    if (input == NULL || !is_same_file(output, input)) {
+static int check_not_input(const config *conf, const char *input, const char *name) {
+    if (input == NULL || !result_file_would_replace(conf->output_file, input)) {
         return 0;
     }
     config_complain(conf, "output.file",
-                    "would overwrite an input (got %s, which is %s), give another name", output,
+                    "would overwrite an input (got %s%s, which is %s), give another name",
+                    conf->output_file, is_same_place(conf->output_file, input) ? "" : ".part",
                     name);
     return 1;
 }
 
 /* Neither the result nor the file that it grows in may be one that is read. */
 static int check_output_is_no_input(const config *conf) {
-    char *target = path_behind_links(conf->output_file);
-    if (target == NULL) {
-        return 0; /* refused when it is opened */
-    }
-    const size_t size = strlen(target) + sizeof ".part";
-    char *part = allocate(size);
-    int faults = 0;
-
-    snprintf(part, size, "%s.part", target);
-    free(target);
-    for (int i = 0; i < 2 && faults == 0; ++i) {
-        const char *output = i == 0 ? conf->output_file : part;
-        faults += check_not_input(conf, output, conf->path, "the INI file");
-        faults += check_not_input(conf, output, conf->pinion_flanks.deviations, "flanks.pinion");
-        faults += check_not_input(conf, output, conf->wheel_flanks.deviations, "flanks.wheel");
-        faults += check_not_input(conf, output, conf->pinion_flanks.pitch, "flanks.pinion_pitch");
-        faults += check_not_input(conf, output, conf->wheel_flanks.pitch, "flanks.wheel_pitch");
-    }
-    free(part);
-    return faults;
+    return check_not_input(conf, conf->path, "the INI file") +
+           check_not_input(conf, conf->pinion_flanks.deviations, "flanks.pinion") +
+           check_not_input(conf, conf->wheel_flanks.deviations, "flanks.wheel") +
+           check_not_input(conf, conf->pinion_flanks.pitch, "flanks.pinion_pitch") +
+           check_not_input(conf, conf->wheel_flanks.pitch, "flanks.wheel_pitch");
 }
 
 static int check_together(const config *conf) {

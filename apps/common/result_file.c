@@ -74,6 +74,16 @@ static int check_folder(result_file *file) {
     return denied ? refuse_for(file, file->part, error, EXIT_BAD_INPUT) : EXIT_DONE;
 }
 
+int result_file_would_replace(const char *path, const char *input) {
+    char *target = path_behind_links(path);
+    char *part = target != NULL ? with_ending(target, part_ending) : NULL;
+    const int would = is_same_place(path, input) || (part != NULL && is_same_place(part, input));
+
+    free(target);
+    free(part);
+    return would;
+}
+
 int result_file_check(result_file *file, const char *path) {
     *file = (result_file){.data = -1, .lock = -1, .wrong_path = path};
 

@@ -28,6 +28,9 @@ typedef struct result_file {
     char reason[RESULT_FILE_REASON_SIZE];
 } result_file;
 
+/* Whether a result FILE would replace this input, by itself or by FILE.part. 0 or 1. */
+int result_file_would_replace(const char *path, const char *input);
+
 /*
  * Finds the names and checks that they can be written, without touching a file. The struct needs no preparation, and
  * result_file_free() afterwards, whatever came back: EXIT_DONE, EXIT_BAD_INPUT, or EXIT_RUN_FAILED (memory).

@@ -3,6 +3,7 @@
 
 #include "options.h"
 #include "paths.h"
+#include "result_file.h"
 #include "scatter.h"
 
 #include <errno.h>
@@ -399,44 +400,40 @@ static int check_way(const parsing *state) {
     return 0;
 }
 
-/* Two files are written, and none of those that are read. */
-/* By the file itself, or on the way to it. */
-static int would_overwrite(const char *output, const char *input) {
-    static const char *const endings[] = {"", ".part", ".rows"};
-    char name[4096];
+static int check_place(const char *output) {
+    result_file file;
+    const int status = result_file_check(&file, output);
 
-    for (int i = 0; i < 3; ++i) {
-        const int length = snprintf(name, sizeof name, "%s%s", output, endings[i]);
-        if (length > 0 && (size_t)length < sizeof name && is_same_file(name, input)) {
-            return 1;
-        }
+    if (status != EXIT_DONE) {
+        fprintf(stderr, "gearflanks: %s %s\n", file.wrong_path, file.reason);
     }
-    return 0;
+    result_file_free(&file);
+    return status;
 }
 
+/* Two files are written, and none of those that are read. */
 static int check_outputs(const flanks_options *options) {
     const char *const inputs[] = {options->parameters, options->scatter, options->traces,
                                   options->measured_pitch};
     const char *const outputs[] = {options->deviations, options->pitch};
 
-    if (outputs[0] != NULL && outputs[1] != NULL && is_same_file(outputs[0], outputs[1])) {
+    if (outputs[0] != NULL && outputs[1] != NULL && is_same_place(outputs[0], outputs[1])) {
         return refuse("--flanks and --pitch are the same file: ", outputs[0]);
     }
     for (int i = 0; i < 2; ++i) {
         for (int k = 0; k < 4; ++k) {
-            if (outputs[i] != NULL && inputs[k] != NULL && would_overwrite(outputs[i], inputs[k])) {
+            if (outputs[i] != NULL && inputs[k] != NULL &&
+                result_file_would_replace(outputs[i], inputs[k])) {
                 return refuse("an input would be overwritten: ", inputs[k]);
             }
         }
     }
-    for (int i = 0; i < 2; ++i) {
-        const char *reason = outputs[i] != NULL ? path_obstacle(outputs[i]) : NULL;
-        if (reason != NULL) {
-            fprintf(stderr, "%s: cannot be written: it %s\n", outputs[i], reason);
-            return EXIT_BAD_INPUT;
-        }
+
+    int status = EXIT_DONE;
+    for (int i = 0; i < 2 && status == EXIT_DONE; ++i) {
+        status = outputs[i] != NULL ? check_place(outputs[i]) : EXIT_DONE;
     }
-    return 0;
+    return status;
 }
 
 static int check_making(const parsing *state) {

@@ -2,101 +2,90 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 
 #include "write.h"
-#include "config.h"
+#include "exit_code.h"
+#include "interrupt.h"
+#include "result_file.h"
 
 #include <errno.h>
-#include <stdlib.h>
 #include <string.h>
 #include <unistd.h>
 
-static int complain(const char *path, const char *action) {
-    fprintf(stderr, "%s: cannot be %s: %s\n", path, action, strerror(errno));
-    return EXIT_RUN_FAILED;
-}
-
-/* `path` with an ending; NULL = out of memory. */
-static char *with_ending(const char *path, const char *ending) {
-    char *name = malloc(strlen(path) + strlen(ending) + 1);
-
-    if (name == NULL) {
-        fputs("gearflanks: out of memory\n", stderr);
-        return NULL;
+static int complain(const result_file *wrong, int status) {
+    if (status != EXIT_DONE) {
+        fprintf(stderr, "gearflanks: %s %s\n", wrong->wrong_path, wrong->reason);
     }
-    strcpy(name, path);
-    return strcat(name, ending);
-}
-
-static int copy_rows(FILE *out, FILE *in) {
-    char block[16384];
-    size_t size;
-
-    while ((size = fread(block, 1, sizeof block, in)) > 0) {
-        if (fwrite(block, 1, size, out) != size) {
-            return 0;
-        }
-    }
-    return !ferror(in);
-}
-
-/* The head and what the library has written to `rows`, in `part`. */
-static int join(const char *part, const char *rows, const written *what) {
-    FILE *in = fopen(rows, "rb");
-    FILE *out = in != NULL ? fopen(part, "wb") : NULL;
-    int whole = out != NULL;
-
-    if (whole) {
-        what->print_head(out, what->context);
-        whole = copy_rows(out, in);
-    }
-    if (out != NULL && fclose(out) != 0) {
-        whole = 0;
-    }
-    if (in != NULL) {
-        fclose(in);
-    }
-    return whole ? EXIT_DONE : complain(part, "written");
-}
-
-/* What the library writes -> FILE.rows -> `part`, with its head. */
-static int write_part(const written *what, const char *part) {
-    char *rows = with_ending(what->path, ".rows");
-    gm_io_error error;
-    int status = EXIT_RUN_FAILED;
-
-    if (rows == NULL) {
-        return status;
-    }
-    if ((what->deviations != NULL ? gm_deviations_write(what->deviations, rows, &error)
-                                  : gm_pitch_write(what->pitch, rows, &error)) == GM_IO_OK) {
-        status = join(part, rows, what);
-    } else {
-        fprintf(stderr, "%s: %s\n", what->path, error.text);
-    }
-    unlink(rows);
-    free(rows);
     return status;
+}
+
+/* Head and rows. The stream has a descriptor of its own: that of the result stays open to bring it to the disk. */
+static int print_part(const written *what, const result_file *result) {
+    gm_io_error error;
+    const int descriptor = dup(result->data);
+    FILE *stream = descriptor >= 0 ? fdopen(descriptor, "wb") : NULL;
+    if (stream == NULL) {
+        fprintf(stderr, "gearflanks: %s: %s\n", result->part, strerror(errno));
+        if (descriptor >= 0) {
+            close(descriptor);
+        }
+        return EXIT_RUN_FAILED;
+    }
+
+    what->print_head(stream, what->context);
+    const int failed = what->deviations != NULL
+                           ? gm_deviations_print(what->deviations, stream, &error)
+                           : gm_pitch_print(what->pitch, stream, &error);
+    errno = 0;
+    const int not_closed = fclose(stream) != 0;
+    if (failed || not_closed) {
+        fprintf(stderr, "gearflanks: %s: %s\n", result->part,
+                failed ? error.text : strerror(errno));
+        return EXIT_RUN_FAILED;
+    }
+    return EXIT_DONE;
+}
+
+static int write_part(const written *what, result_file *result) {
+    int status = result_file_check(result, what->path);
+
+    if (status == EXIT_DONE) {
+        status = result_file_open(result);
+    }
+    complain(result, status);
+    return status == EXIT_DONE ? print_part(what, result) : status;
+}
+
+static int interrupted(void) {
+    fputs("gearflanks: interrupted, no file was written\n", stderr);
+    return EXIT_INTERRUPTED;
 }
 
 /* Flanks and pitch of a gear belong together: no file is touched before all are whole. */
 int write_files(const written files[], int count) {
-    char *parts[WRITTEN_MAX] = {NULL};
+    result_file results[WRITTEN_MAX];
+    const result_file *wrong = NULL;
     int status = EXIT_DONE;
+    int begun = 0;
 
-    for (int i = 0; i < count && status == EXIT_DONE; ++i) {
-        parts[i] = with_ending(files[i].path, ".part");
-        status = parts[i] != NULL ? write_part(&files[i], parts[i]) : EXIT_RUN_FAILED;
-    }
-    for (int i = 0; i < count && status == EXIT_DONE; ++i) {
-        if (rename(parts[i], files[i].path) != 0) {
-            status = complain(files[i].path, "written");
+    /* A signal waits until the files are in order. */
+    interrupt_watch(SECOND_WAITS);
+    for (; begun < count && status == EXIT_DONE; ++begun) {
+        status = write_part(&files[begun], &results[begun]);
+        if (status == EXIT_DONE && interrupt_requested()) {
+            status = interrupted();
         }
     }
-    for (int i = 0; i < count; ++i) {
-        if (status != EXIT_DONE && parts[i] != NULL) {
-            unlink(parts[i]); /* a folder stays */
-        }
-        free(parts[i]);
+    if (status == EXIT_DONE) {
+        status = result_files_replace(results, count, &wrong);
+        complain(wrong, status);
     }
+
+    for (int i = 0; i < begun; ++i) {
+        if (status != EXIT_DONE) {
+            result_file_remove(&results[i]);
+        }
+        result_file_free(&results[i]);
+    }
+    interrupt_unwatch();
     return status;
 }
 

@@ -16,6 +16,7 @@
 #define GEARMESH_IO_H
 
 #include <stdint.h>
+#include <stdio.h>
 
 #include "gearmesh.h"
 
@@ -92,6 +93,14 @@ GM_API int gm_deviations_read(gm_deviations *deviations, const char *path, int t
 GM_API int gm_deviations_write(const gm_deviations *deviations, const char *path,
                                gm_io_error *error);
 
+/**
+ * Writes the same text to an open stream, where it stands: behind comment lines, into a file that is locked, or one
+ * that takes its name only when it is whole. The stream is flushed, so that a full disk is told, and stays open.
+ *
+ * @return GM_IO_OK or a gm_io_status; after GM_IO_ERR_FILE a part of the text may be written
+ */
+GM_API int gm_deviations_print(const gm_deviations *deviations, FILE *stream, gm_io_error *error);
+
 /** Frees the arrays and zeroes the struct; NULL and an empty one are fine. */
 GM_API void gm_deviations_free(gm_deviations *deviations);
 
@@ -100,6 +109,9 @@ GM_API int gm_pitch_read(gm_pitch *pitch, const char *path, int teeth, gm_io_err
 
 /** Writes one row per tooth and side that is set, as gm_deviations_write(); at least one. */
 GM_API int gm_pitch_write(const gm_pitch *pitch, const char *path, gm_io_error *error);
+
+/** Writes the same text to an open stream, as gm_deviations_print(). */
+GM_API int gm_pitch_print(const gm_pitch *pitch, FILE *stream, gm_io_error *error);
 
 /** As gm_deviations_free(). */
 GM_API void gm_pitch_free(gm_pitch *pitch);

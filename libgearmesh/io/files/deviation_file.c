@@ -352,20 +352,39 @@ static int check_writable(const gm_deviations *deviations, gm_io_error *error) {
     return status;
 }
 
+/* Header and rows of what check_writable() has passed. */
+static int print_table(const gm_deviations *deviations, FILE *stream, gm_io_error *error) {
+    gmi_writer_head(stream, columns, COLUMN_COUNT);
+    write_rows(stream, deviations);
+    return gmi_writer_flush(stream, error);
+}
+
+int gm_deviations_print(const gm_deviations *deviations, FILE *stream, gm_io_error *error) {
+    gmi_error_begin(error, NULL);
+    if (deviations == NULL || stream == NULL) {
+        return gmi_error_null(error);
+    }
+
+    const int status = check_writable(deviations, error);
+    return status == GM_IO_OK ? print_table(deviations, stream, error) : status;
+}
+
 int gm_deviations_write(const gm_deviations *deviations, const char *path, gm_io_error *error) {
     gmi_error_begin(error, path);
     if (deviations == NULL || path == NULL) {
         return gmi_error_null(error);
     }
+
+    /* No file is touched for data that cannot be read back. */
     int status = check_writable(deviations, error);
     if (status != GM_IO_OK) {
         return status;
     }
+
     FILE *file = NULL;
-    status = gmi_writer_open(&file, path, columns, COLUMN_COUNT, error);
+    status = gmi_writer_open(&file, path, error);
     if (status != GM_IO_OK) {
         return status;
     }
-    write_rows(file, deviations);
-    return gmi_writer_close(file, error);
+    return gmi_writer_close(file, print_table(deviations, file, error), error);
 }

@@ -218,23 +218,42 @@ static void write_flank(FILE *file, int tooth, int side, double deviation, int s
     }
 }
 
+/* Header and rows of what check_writable() has passed. */
+static int print_table(const gm_pitch *pitch, FILE *stream, gm_io_error *error) {
+    gmi_writer_head(stream, columns, COLUMN_COUNT);
+    for (int tooth = 0; tooth < pitch->teeth; ++tooth) {
+        write_flank(stream, tooth, GM_DRIVE, pitch->drive[tooth], pitch->drive_set[tooth]);
+        write_flank(stream, tooth, GM_COAST, pitch->coast[tooth], pitch->coast_set[tooth]);
+    }
+    return gmi_writer_flush(stream, error);
+}
+
+int gm_pitch_print(const gm_pitch *pitch, FILE *stream, gm_io_error *error) {
+    gmi_error_begin(error, NULL);
+    if (pitch == NULL || stream == NULL) {
+        return gmi_error_null(error);
+    }
+
+    const int status = check_writable(pitch, error);
+    return status == GM_IO_OK ? print_table(pitch, stream, error) : status;
+}
+
 int gm_pitch_write(const gm_pitch *pitch, const char *path, gm_io_error *error) {
     gmi_error_begin(error, path);
     if (pitch == NULL || path == NULL) {
         return gmi_error_null(error);
     }
+
+    /* No file is touched for data that cannot be read back. */
     int status = check_writable(pitch, error);
     if (status != GM_IO_OK) {
         return status;
     }
+
     FILE *file = NULL;
-    status = gmi_writer_open(&file, path, columns, COLUMN_COUNT, error);
+    status = gmi_writer_open(&file, path, error);
     if (status != GM_IO_OK) {
         return status;
     }
-    for (int tooth = 0; tooth < pitch->teeth; tooth++) {
-        write_flank(file, tooth, GM_DRIVE, pitch->drive[tooth], pitch->drive_set[tooth]);
-        write_flank(file, tooth, GM_COAST, pitch->coast[tooth], pitch->coast_set[tooth]);
-    }
-    return gmi_writer_close(file, error);
+    return gmi_writer_close(file, print_table(pitch, file, error), error);
 }

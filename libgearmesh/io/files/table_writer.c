@@ -9,28 +9,32 @@
 
 #include "io_error.h"
 
-int gmi_writer_open(FILE **file, const char *path, const char *const *columns, int column_count,
-                    gm_io_error *error) {
+int gmi_writer_open(FILE **file, const char *path, gm_io_error *error) {
     errno = 0;
     *file = fopen(path, "wb");
-    if (*file == NULL) {
-        return gmi_error_file(error, 0, "opened for writing", errno);
+    return *file != NULL ? GM_IO_OK : gmi_error_file(error, 0, "opened for writing", errno);
+}
+
+void gmi_writer_head(FILE *file, const char *const *columns, int column_count) {
+    for (int i = 0; i < column_count; ++i) {
+        fprintf(file, "%s%s", i > 0 ? "," : "", columns[i]);
     }
-    for (int i = 0; i < column_count; i++) {
-        fprintf(*file, "%s%s", i > 0 ? "," : "", columns[i]);
+    fprintf(file, "\n");
+}
+
+int gmi_writer_flush(FILE *file, gm_io_error *error) {
+    errno = 0;
+    const int flush_failed = fflush(file) != 0;
+    if (flush_failed || ferror(file) != 0) {
+        return gmi_error_file(error, 0, "written", errno);
     }
-    fprintf(*file, "\n");
     return GM_IO_OK;
 }
 
-int gmi_writer_close(FILE *file, gm_io_error *error) {
+int gmi_writer_close(FILE *file, int status, gm_io_error *error) {
     errno = 0;
-    const int flush_failed = fflush(file) != 0;
-    const int failed = ferror(file) != 0 || flush_failed;
-    const int flush_errno = errno;
-    const int close_failed = fclose(file) != 0;
-    if (failed || close_failed) {
-        return gmi_error_file(error, 0, "written", failed ? flush_errno : errno);
+    if (fclose(file) != 0 && status == GM_IO_OK) {
+        return gmi_error_file(error, 0, "written", errno);
     }
-    return GM_IO_OK;
+    return status;
 }

@@ -12,11 +12,17 @@
 
 #include "gearmesh/gearmesh_io.h"
 
-/** Opens a file and writes its header. On an error there is nothing to close. */
-int gmi_writer_open(FILE **file, const char *path, const char *const *columns, int column_count,
-                    gm_io_error *error);
+/** Opens a file. On an error there is nothing to close. */
+int gmi_writer_open(FILE **file, const char *path, gm_io_error *error);
 
-/** Closes the file and tells whether all of it was written; a full disk often shows only here. */
-int gmi_writer_close(FILE *file, gm_io_error *error);
+/** Writes the names of the columns. */
+void gmi_writer_head(FILE *file, const char *const *columns, int column_count);
+
+/** Flushes the file and tells whether all of it was written so far. */
+int gmi_writer_flush(FILE *file, gm_io_error *error);
+
+/** Closes the file and tells whether all of it was written; a full disk often shows only here. The status of what was
+ *  written before comes first if it is an error. */
+int gmi_writer_close(FILE *file, int status, gm_io_error *error);
 
 #endif /* GEARMESH_TABLE_WRITER_H */
