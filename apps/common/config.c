@@ -256,10 +256,9 @@ static int check_not_input(const config *conf, const char *input, const char *na
     if (input == NULL || !result_file_would_replace(conf->output_file, input)) {
         return 0;
     }
-    config_complain(conf, "output.file",
-                    "would overwrite an input (got %s%s, which is %s), give another name",
-                    conf->output_file, is_same_place(conf->output_file, input) ? "" : ".part",
-                    name);
+    config_complain(
+        conf, "output.file", "would overwrite an input (got %s%s, which is %s), give another name",
+        conf->output_file, is_same_place(conf->output_file, input) ? "" : ".part", name);
     return 1;
 }
 
