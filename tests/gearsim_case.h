@@ -30,7 +30,6 @@ static inline config case_config(enum mesh_model model, enum drive_kind drive) {
         .seed = 1,
         .duration = 1.0,
         .method = METHOD_ADAMS,
-        .quiet = 1,
     };
     return conf;
 }

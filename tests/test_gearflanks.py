@@ -160,16 +160,16 @@ class Scatter(Case):
 
     def test_a_bad_file_is_refused_with_its_line(self):
         for text, line, said in (
-            ("[profile]\nslope_um = x\n", 2, "profile.slope_um: not a number (got x)"),
-            ("[profile]\nslope_scatter_um = -1\n", 2, "out of range (got -1), must be from 0 to 10000"),
+            ("[profile]\nslope_um = x\n", 2, "profile.slope_um: must be a number such as 12, -0.5 or 1e-4 with nothing behind it (got x)"),
+            ("[profile]\nslope_scatter_um = -1\n", 2, "must be from 0 to 10000 (got -1)"),
             ("[profile]\nslop_um = 1\n", 2, "unknown key, did you mean slope_um?"),
             ("[profil]\nslope_um = 1\n", 1, "[profil]: unknown section, did you mean [profile]?"),
             ("[xyz]\n", 1, "unknown section, `gearflanks --help` lists all"),
             ("[foot]\nend_t2 = 0\n", 2, "must be above 0, up to 1"),
             ("[tip]\n\nstart_t2 = 1\n", 3, "must be from 0 to below 1"),
-            ("[tip]\nrelief_um = 1\nrelief_um = 1\n", 3, "repeated key, first in line 2"),
-            ("[helix]\nwave_least_um = 3\nwave_most_um = 2\n", 3, "helix.wave_most_um: is below wave_least_um (got 2)"),
-            ("[profile]\nwaves_most = 0.5\n", 2, "profile.waves_most: is below waves_least (got 0.5)"),
+            ("[tip]\nrelief_um = 1\nrelief_um = 1\n", 3, "repeated key, must be given once (first in line 2)"),
+            ("[helix]\nwave_least_um = 3\nwave_most_um = 2\n", 3, "helix.wave_most_um: must be at least wave_least_um (got 2)"),
+            ("[profile]\nwaves_most = 0.5\n", 2, "profile.waves_most: must be at least waves_least (got 0.5)"),
             ("[pitch\n", 1, "not understood"),
         ):
             path = self.write("scatter.ini", text)
@@ -180,7 +180,7 @@ class Scatter(Case):
         self.refused("helix: too many waves for 21 nodes", PARAMS, "--gear", "wheel", "--scatter", path, "--flanks",
                      "f.csv", "--pitch", "p.csv")
         path = self.write("scatter.ini", "[helix]\nwave_least_um = 1\n")
-        self.refused("helix.wave_most_um: is below wave_least_um (got 0)", PARAMS, "--gear", "wheel", "--scatter", path,
+        self.refused("helix.wave_most_um: must be at least wave_least_um (got 0)", PARAMS, "--gear", "wheel", "--scatter", path,
                      "--flanks", "f.csv", "--pitch", "p.csv")
         self.refused("no.ini: ", PARAMS, "--gear", "wheel", "--scatter", "no.ini", "--flanks", "f.csv", "--pitch",
                      "p.csv")

@@ -29,7 +29,7 @@ static void load(const char *keys_text) {
     GM_ASSERT(file != NULL);
     fprintf(file, "%s%s", gears_text, keys_text);
     fclose(file);
-    const config_request request = {.path = path, .quiet = 1, .purpose = CONFIG_FOR_RUN};
+    const config_request request = {.path = path, .purpose = CONFIG_FOR_RUN};
     GM_ASSERT_INT(config_load(&conf, &request), 0);
     GM_ASSERT_INT(gm_pair_init(&pair, &conf.gears), GM_OK);
     for (int gear = 0; gear < 2; gear++) {

@@ -271,11 +271,11 @@ class Harris(Case):
             ([SPUR, "--torques", "1e6"], ["no equilibrium", "under 1000000 N m"]),
             ([SPUR, "--vary", "pinion_tip_relief_um"], ["KEY=FROM:TO"]),
             ([SPUR, "--vary", "pinion_tip_releif_um=0:3"], ["modifications.pinion_tip_releif_um: unknown key"]),
-            ([SPUR, "--vary", "pinion_root_relief_um=1:3"], ["has no range"]),
+            ([SPUR, "--vary", "pinion_root_relief_um=1:3"], ["must have a range"]),
             ([SPUR, "--set", "modifications.wheel_drive_tip_relief_um=9", "--vary", "wheel_tip_relief_um=1:3"],
              ["--vary wheel_tip_relief_um: wheel_drive_tip_relief_um replaces it"]),
             ([SPUR, "--set", "load.mean_Nm"], ["section.key=value"]),
-            ([SPUR, "--set", "load.mean_Nm=0"], ["mean_Nm: no load"]),
+            ([SPUR, "--set", "load.mean_Nm=0"], ["mean_Nm: must not be 0"]),
             ([SPUR, "--set", "mesh.model=simple"], ["model"]),
         ]:
             with self.subTest(" ".join(arguments[1:])):

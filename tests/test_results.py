@@ -294,7 +294,7 @@ class Links(Case):
             self.write(name, flanks)
             result = self.call(self.sim("out.csv", "--set", f"flanks.pinion={name}"))
             self.assertEqual(result.returncode, 2, result.stderr)
-            self.assertIn("would overwrite an input", result.stderr)
+            self.assertIn("must not overwrite an input", result.stderr)
             self.assertEqual(self.read(name).decode(), flanks)
 
 

@@ -7,30 +7,21 @@
  * that a user need not find them one by one.
  */
 #include "config.h"
+#include "config_check.h"
 #include "key_reader.h"
 #include "keys.h"
+#include "memory.h"
 #include "modification_keys.h"
-#include "paths.h"
-#include "result_file.h"
 
-#include <math.h>
 #include <stdarg.h>
 #include <stdlib.h>
 #include <string.h>
 
 enum { NAME_SIZE = 128 }; /* "section.key" of any key */
 
-/* More rows than anybody can read, and noise values beyond which a double cannot count them. */
-static const double row_limit = 1e9;
-static const double noise_limit = 1e15;
-
 /* ---------------------------------------------------------------------------------------------
  * Messages
  * ------------------------------------------------------------------------------------------- */
-
-static void print_place(const config *conf, enum key_origin origin, int line) {
-    key_print_place(conf->path, origin, line);
-}
 
 static const key_spec *key_at(int index) {
     return &gearsim_keys.keys[index];
@@ -50,37 +41,35 @@ static int find_full_name(const char *section_and_key) {
     return key_find(&gearsim_keys, section, dot + 1);
 }
 
-static void tell(const config *conf, const char *section_and_key, const char *kind,
-                 const char *format, va_list arguments) {
+/* Where a key was set. */
+static void place_of(const config *conf, const char *section_and_key, char place[KEY_PLACE_SIZE]) {
+    const key_entry none = {.origin = ORIGIN_DEFAULT};
     const int index = find_full_name(section_and_key);
+    const key_entry *entry = index >= 0 ? &conf->entries[index] : &none;
 
-    if (index >= 0) {
-        print_place(conf, conf->entries[index].origin, conf->entries[index].line);
-    } else {
-        print_place(conf, ORIGIN_DEFAULT, 0);
-    }
-    fprintf(stderr, "%s: %s", section_and_key, kind);
-    vfprintf(stderr, format, arguments);
-    fputc('\n', stderr);
+    key_place(place, conf->path, entry->origin, entry->line, section_and_key);
 }
 
 void config_complain(const config *conf, const char *section_and_key, const char *format, ...) {
-    va_list arguments;
+    char place[KEY_PLACE_SIZE];
+    va_list values;
 
-    va_start(arguments, format);
-    tell(conf, section_and_key, "", format, arguments);
-    va_end(arguments);
+    place_of(conf, section_and_key, place);
+    va_start(values, format);
+    message_error_list(conf->messages, place, format, values);
+    va_end(values);
 }
 
 void config_warn(const config *conf, const char *section_and_key, const char *format, ...) {
-    va_list arguments;
+    static const char kind[] = "warning: ";
+    char place[KEY_PLACE_SIZE + sizeof kind];
+    va_list values;
 
-    if (conf->quiet) {
-        return;
-    }
-    va_start(arguments, format);
-    tell(conf, section_and_key, "warning: ", format, arguments);
-    va_end(arguments);
+    place_of(conf, section_and_key, place);
+    strcat(place, kind);
+    va_start(values, format);
+    message_note_list(conf->messages, place, format, values);
+    va_end(values);
 }
 
 const char *config_key_of_field(const char *field) {
@@ -126,13 +115,18 @@ static int has_control_character(const char *text) {
 
 static void read_override(key_reader *reader, const char *override) {
     char *text = copy_text(override);
+    if (text == NULL) {
+        reader->no_memory = 1;
+        return;
+    }
+
     char *equals = strchr(text, '=');
     char *dot = strchr(text, '.');
-
     if (has_control_character(text)) {
-        key_reader_fault(reader, "", "a control character, expected plain text");
+        key_reader_fault(reader, "section.key=value",
+                         "must be plain text (got a control character)");
     } else if (equals == NULL || dot == NULL || dot > equals) {
-        key_reader_fault(reader, "", "%.80s: not understood, expected section.key=value", override);
+        key_reader_fault(reader, override, "must read section.key=value");
     } else {
         *equals = '\0';
         *dot = '\0';
@@ -152,151 +146,12 @@ static void read_command_line(key_reader *reader, const config_request *request)
     if (request->output_file == NULL) {
         return;
     }
-    if (has_control_character(request->output_file)) {
-        key_reader_fault(reader, "",
-                         "a control character in the name of the output file, expected plain text");
+    if (*request->output_file == '\0') {
+        key_reader_fault(reader, "output.file", "must be the name of a file (got nothing)");
+    } else if (has_control_character(request->output_file)) {
+        key_reader_fault(reader, "output.file", "must be plain text (got a control character)");
     } else {
         key_reader_set(reader, "output", "file", request->output_file);
-    }
-}
-
-/* ---------------------------------------------------------------------------------------------
- * What is missing, what must fit together
- * ------------------------------------------------------------------------------------------- */
-
-static const char *condition_of(const key_spec *key, const config *conf) {
-    if (key->required & (FOR_SPEED | FOR_TORQUE)) {
-        return conf->drive == DRIVE_SPEED ? " for drive.kind = speed" : " for drive.kind = torque";
-    }
-    if (key->required & FOR_DYNAMIC) {
-        return " for a dynamic run";
-    }
-    return key->required & FOR_RUN ? " for a run" : "";
-}
-
-static int check_missing(const config *conf) {
-    int faults = 0;
-
-    for (int i = 0; i < gearsim_keys.count; ++i) {
-        if (conf->entries[i].text != NULL || !key_is_required(key_at(i), conf)) {
-            continue;
-        }
-        config_complain(conf, key_at(i)->full_name, "missing, but required%s: add %s to [%s]",
-                        condition_of(key_at(i), conf), key_at(i)->name, key_at(i)->section);
-        ++faults;
-    }
-    return faults;
-}
-
-static int check_profile_window(const config *conf) {
-    if (conf->profile_from < conf->profile_to) {
-        return 0;
-    }
-    config_complain(conf, "flanks.profile_from",
-                    "must be smaller than flanks.profile_to (got %.9g and %.9g)",
-                    conf->profile_from, conf->profile_to);
-    return 1;
-}
-
-/* The loads of a static analysis must not pass zero. */
-static int check_loads(const config *conf) {
-    const double rows = (double)conf->loads * conf->positions;
-
-    if (!(rows <= row_limit)) {
-        config_complain(conf, "analysis.loads",
-                        "gives too many rows (got %d with %d positions), at most %.9g are written",
-                        conf->loads, conf->positions, row_limit);
-        return 1;
-    }
-    if (conf->loads > 1 && !(conf->mean_load * conf->end_load > 0)) {
-        config_complain(conf, isnan(conf->end_load) ? "analysis.loads" : "load.end_Nm",
-                        "several loads need load.end_Nm, with the sign of load.mean_Nm");
-        return 1;
-    }
-    return 0;
-}
-
-static int check_static(const config *conf) {
-    int faults = 0;
-
-    if (conf->model != MODEL_3D) {
-        config_complain(conf, "mesh.model",
-                        "no model for a static analysis (got simple), must be 3d");
-        ++faults;
-    }
-    if (conf->mean_load == 0) {
-        config_complain(conf, "load.mean_Nm",
-                        "no load (got 0) leaves a static analysis undetermined within the "
-                        "backlash, must not be 0");
-        ++faults;
-    }
-    return faults + check_loads(conf);
-}
-
-static int check_dynamic(const config *conf) {
-    int faults = 0;
-
-    if (!(conf->duration * conf->output_rate <= row_limit)) {
-        config_complain(conf, "output.rate_Hz",
-                        "gives too many rows (got %.9g in %.9g s), at most %.9g are written: lower "
-                        "it or analysis.duration_s",
-                        conf->output_rate, conf->duration, row_limit);
-        ++faults;
-    }
-    if (!(conf->duration / conf->noise_interval <= noise_limit)) {
-        config_complain(conf, "load.noise_interval_s",
-                        "too short (got %.9g), must be at least %.9g of analysis.duration_s",
-                        conf->noise_interval, 1 / noise_limit);
-        ++faults;
-    }
-    return faults;
-}
-
-static int check_not_input(const config *conf, const char *input, const char *name) {
-    if (input == NULL || !result_file_would_replace(conf->output_file, input)) {
-        return 0;
-    }
-    config_complain(
-        conf, "output.file", "would overwrite an input (got %s%s, which is %s), give another name",
-        conf->output_file, is_same_place(conf->output_file, input) ? "" : ".part", name);
-    return 1;
-}
-
-/* Neither the result nor the file that it grows in may be one that is read. */
-static int check_output_is_no_input(const config *conf) {
-    return check_not_input(conf, conf->path, "the INI file") +
-           check_not_input(conf, conf->pinion_flanks.deviations, "flanks.pinion") +
-           check_not_input(conf, conf->wheel_flanks.deviations, "flanks.wheel") +
-           check_not_input(conf, conf->pinion_flanks.pitch, "flanks.pinion_pitch") +
-           check_not_input(conf, conf->wheel_flanks.pitch, "flanks.wheel_pitch");
-}
-
-static int check_together(const config *conf) {
-    int faults = check_profile_window(conf);
-
-    if (conf->purpose == CONFIG_FOR_GEOMETRY) {
-        return faults;
-    }
-    if (conf->model == MODEL_3D) {
-        faults += modification_keys_check(conf);
-    }
-    faults += conf->analysis == ANALYSIS_STATIC ? check_static(conf) : check_dynamic(conf);
-    return faults + check_output_is_no_input(conf);
-}
-
-static void warn_of_unused(const config *conf) {
-    const char *reason;
-
-    for (int i = 0; i < gearsim_keys.count; ++i) {
-        if (conf->entries[i].text != NULL && !key_is_used(key_at(i), conf, &reason)) {
-            config_warn(conf, key_at(i)->full_name, "not used with %s", reason);
-        }
-    }
-    if (conf->analysis == ANALYSIS_STATIC && conf->loads == 1 && !isnan(conf->end_load)) {
-        config_warn(conf, "load.end_Nm", "not used with analysis.loads = 1");
-    }
-    if (conf->model == MODEL_3D) {
-        modification_keys_warn(conf);
     }
 }
 
@@ -304,16 +159,17 @@ static void warn_of_unused(const config *conf) {
  * The whole
  * ------------------------------------------------------------------------------------------- */
 
-/* "folder/run.ini" gives "run.csv". */
+/* "folder/run.ini" gives "run.csv". NULL: no memory. */
 static char *default_output_file(const char *path) {
     const char *slash = strrchr(path, '/');
     const char *name = slash == NULL ? path : slash + 1;
     const char *dot = strrchr(name, '.');
     const size_t length = dot == NULL || dot == name ? strlen(name) : (size_t)(dot - name);
-    char *file = allocate(length + sizeof ".csv");
+    char *file = join_texts(name, ".csv");
 
-    memcpy(file, name, length);
-    memcpy(file + length, ".csv", sizeof ".csv");
+    if (file != NULL) {
+        strcpy(file + length, ".csv");
+    }
     return file;
 }
 
@@ -328,71 +184,111 @@ static const char *effective_text(const config *conf, int index) {
     return key_at(index)->standard;
 }
 
-static void add_provenance(config *conf, const char *name, const char *text) {
+static int add_provenance(config *conf, const char *name, const char *text) {
     const size_t size = strlen(name) + sizeof " = " + strlen(text);
+    char *line = allocate(size, 1);
 
-    conf->provenance[conf->provenance_count] = allocate(size);
-    snprintf(conf->provenance[conf->provenance_count++], size, "%s = %s", name, text);
+    if (line == NULL) {
+        return EXIT_RUN_FAILED;
+    }
+    snprintf(line, size, "%s = %s", name, text);
+    conf->provenance[conf->provenance_count++] = line;
+    return 0;
 }
 
-static void record_provenance(config *conf) {
+static int record_provenance(config *conf) {
     const char *reason;
+    int status = 0;
 
-    conf->provenance =
-        allocate((size_t)(gearsim_keys.count + PROVENANCE_NOTES) * sizeof *conf->provenance);
-    for (int i = 0; i < gearsim_keys.count; ++i) {
+    for (int i = 0; i < gearsim_keys.count && status == 0; ++i) {
         const char *text = effective_text(conf, i);
 
         if (text != NULL && key_is_used(key_at(i), conf, &reason)) {
-            add_provenance(conf, key_at(i)->full_name, text);
+            status = add_provenance(conf, key_at(i)->full_name, text);
         }
     }
+    return status;
 }
 
-void config_note(config *conf, const char *name, double value) {
+int config_note(config *conf, const char *name, double value) {
     char text[32];
 
     snprintf(text, sizeof text, "%.9g", value);
-    add_provenance(conf, name, text);
+    return add_provenance(conf, name, text);
 }
 
-static void start(config *conf, const config_request *request) {
+/* Everything at its default. */
+static int start(config *conf, const config_request *request) {
+    const size_t keys = (size_t)gearsim_keys.count;
+
     memset(conf, 0, sizeof *conf);
-    conf->path = copy_text(request->path);
-    conf->quiet = request->quiet;
+    conf->messages = request->messages;
     conf->purpose = request->purpose;
-    conf->entries = allocate((size_t)gearsim_keys.count * sizeof *conf->entries);
+    conf->path = copy_text(request->path);
+    conf->entries = allocate(keys, sizeof *conf->entries);
+    conf->provenance = allocate(keys + PROVENANCE_NOTES, sizeof *conf->provenance);
+    if (conf->path == NULL || conf->entries == NULL || conf->provenance == NULL) {
+        return EXIT_RUN_FAILED;
+    }
+
     modification_keys_clear(conf);
     gm_pair_params_default(&conf->gears);
-    key_assign_defaults(&gearsim_keys, conf);
+    return key_assign_defaults(&gearsim_keys, conf) == KEY_TAKEN ? 0 : EXIT_RUN_FAILED;
 }
 
-int config_load(config *conf, const config_request *request) {
-    key_reader reader = {.table = &gearsim_keys, .filled = conf, .path = request->path};
-    int faults;
+/* Each value by itself, from the file and then from the command line. */
+static int read_values(config *conf, const config_request *request) {
+    key_reader reader = {.table = &gearsim_keys,
+                         .filled = conf,
+                         .entries = conf->entries,
+                         .path = request->path,
+                         .messages = conf->messages};
 
-    start(conf, request);
-    reader.entries = conf->entries;
     key_reader_read(&reader);
     read_command_line(&reader, request);
-    faults = reader.faults;
+    if (reader.no_memory) {
+        return EXIT_RUN_FAILED;
+    }
+    if (reader.faults > 0) {
+        return EXIT_BAD_INPUT;
+    }
 
     if (conf->output_file == NULL) {
         conf->output_file = default_output_file(conf->path);
     }
-    if (faults == 0) {
-        faults = check_missing(conf);
+    return conf->output_file != NULL ? 0 : EXIT_RUN_FAILED;
+}
+
+static int load(config *conf, const config_request *request) {
+    int status = start(conf, request);
+
+    if (status == 0) {
+        status = read_values(conf, request);
     }
-    if (faults == 0) {
-        faults = check_together(conf);
+    if (status == 0 && (config_check_missing(conf) > 0 || config_check_together(conf) > 0)) {
+        status = EXIT_BAD_INPUT;
     }
-    if (faults > 0) {
-        config_free(conf);
-        return EXIT_BAD_INPUT;
+    return status == 0 ? record_provenance(conf) : status;
+}
+
+int config_load(config *conf, const config_request *request) {
+    message_begin(request->messages, MOST_MESSAGES);
+    const int status = load(conf, request);
+    message_end(request->messages, request->path);
+
+    if (status == 0) {
+        message_begin(request->messages, MOST_MESSAGES);
+        if (conf->purpose != CONFIG_FOR_FLANKS) {
+            config_warn_of_unused(conf);
+        }
+        message_end(request->messages, request->path);
+        return 0;
     }
-    warn_of_unused(conf);
-    record_provenance(conf);
-    return 0;
+    if (status == EXIT_RUN_FAILED) {
+        (void)message_no_memory(request->messages);
+    }
+    config_free(conf);
+    return status;
 }
 
 static void free_flank_files(flank_files *files) {

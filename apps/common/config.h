@@ -9,6 +9,7 @@
 #define APPS_CONFIG_H
 
 #include "exit_code.h"
+#include "messages.h"
 
 #include <gearmesh/gearmesh.h>
 #include <stdint.h>
@@ -22,8 +23,12 @@ enum solver_method { METHOD_BDF, METHOD_ADAMS, METHOD_ERK };
 enum lookup_use { LOOKUP_OFF, LOOKUP_ON };
 enum deviation_direction { DEVIATION_NORMAL, DEVIATION_TRANSVERSE };
 
-/* What a configuration is loaded for: --geometry needs [gears] alone and opens no flank file. */
-enum config_purpose { CONFIG_FOR_RUN, CONFIG_FOR_GEOMETRY };
+/* What a configuration is loaded for. All but a run need [gears] alone and open no flank file. */
+enum config_purpose {
+    CONFIG_FOR_RUN,
+    CONFIG_FOR_GEOMETRY, /* of gearsim */
+    CONFIG_FOR_FLANKS    /* of gearflanks, which does not warn of what gearsim warns of */
+};
 
 typedef struct flank_files {
     char *deviations; /* path as it can be opened from the working folder, NULL = ideal */
@@ -98,7 +103,7 @@ typedef struct config {
     int digits;
     char *columns; /* names separated by commas, NULL = all */
 
-    int quiet; /* no progress, notes and warnings on stderr; errors stay */
+    message_sink *messages; /* where to speak, NULL = nobody listens */
     enum config_purpose purpose;
 
     /* Every key in effect, defaults included, as "section.key = value", and some values that follow from them
@@ -118,14 +123,15 @@ typedef struct config_request {
     char *const *overrides; /* "section.key=value" of each --set, in order */
     int override_count;
     const char *output_file; /* of --output, NULL = not given */
-    int quiet;               /* no progress, notes and warnings; errors stay */
     enum config_purpose purpose;
+    message_sink *messages; /* where to speak, NULL = nobody listens */
 } config_request;
 
 /*
- * Reads and checks an INI file and the `--set section.key=value` overrides. Messages go to stderr as
- * `file:line: section.key: what is wrong (got VALUE), and what would be right`. Returns 0, or
- * EXIT_BAD_INPUT with nothing allocated.
+ * Reads and checks an INI file and the `--set section.key=value` overrides, of which a later one wins. A key with nothing
+ * behind the `=` is not given, also where the file gives it. Messages read
+ * `file:line: section.key: must be WHAT IS RIGHT (got VALUE)`; the first 20 are told, the others counted. Returns 0, or
+ * EXIT_BAD_INPUT or EXIT_RUN_FAILED (no memory) with nothing allocated.
  *
  * Paths in the INI file are relative to its folder, those of --set and --output, and the default output
  * file, to the working folder.
@@ -134,18 +140,19 @@ int config_load(config *config, const config_request *request);
 
 void config_free(config *config);
 
-/* Where a key was set, for messages about its value that only a later step can find: prints
- * "file:line: section.key: " (or "--set section.key: ") and then the formatted message and a newline. */
+/* A message about a key whose fault only a later step can find: "file:line: section.key: " (or "--set section.key: ") and
+ * then the formatted text. */
 void config_complain(const config *config, const char *section_and_key, const char *format, ...);
 
-/* The same with "warning: " behind the key; silent with --quiet. */
+/* The same with "warning: " behind the key; left out with --quiet. */
 void config_warn(const config *config, const char *section_and_key, const char *format, ...);
 
 /* The INI key "section.key" that sets a field of gm_pair_params, and the text it was given (NULL = none). */
 const char *config_key_of_field(const char *field);
 const char *config_text(const config *config, const char *section_and_key);
 
-/* One more line of provenance, at most PROVENANCE_NOTES of them: a value that follows from the keys. */
-void config_note(config *config, const char *name, double value);
+/* One more line of provenance, at most PROVENANCE_NOTES of them: a value that follows from the keys. Returns 0 or
+ * EXIT_RUN_FAILED (no memory). */
+int config_note(config *config, const char *name, double value);
 
 #endif

@@ -50,9 +50,8 @@ static int refuse_geometry(const config *conf, int status) {
     text = config_text(conf, key);
     speak_of_diameters(requirement != NULL ? requirement : gm_status_text(status), wanted,
                        sizeof wanted);
-    config_complain(conf, key,
-                    "gives no gear pair (got %s), must be %s (base diameters %.9g and %.9g mm)",
-                    text != NULL ? text : "none, so it is derived", wanted,
+    config_complain(conf, key, "must be %s (got %s); the base diameters are %.9g and %.9g mm",
+                    wanted, text != NULL ? text : "none, so it is derived",
                     1e3 * base_diameter(&conf->gears, conf->gears.pinion_teeth),
                     1e3 * base_diameter(&conf->gears, conf->gears.wheel_teeth));
     return EXIT_BAD_INPUT;

@@ -31,9 +31,9 @@ static int refuse_file(const config *conf, const char *key, const gm_io_error *e
     const char *file = error->file[0] != '\0' ? error->file : conf->path;
 
     if (error->line > 0) {
-        fprintf(stderr, "%s:%ld: %s\n", file, error->line, error->text);
+        message_error(conf->messages, "%s:%ld: %s", file, error->line, error->text);
     } else {
-        fprintf(stderr, "%s: %s\n", file, error->text);
+        message_error(conf->messages, "%s: %s", file, error->text);
     }
     config_complain(conf, key, "names this file");
     return EXIT_BAD_INPUT;
@@ -41,20 +41,22 @@ static int refuse_file(const config *conf, const char *key, const gm_io_error *e
 
 static void note_ideal_teeth(const config *conf, const char *file, int drive, int coast,
                              int teeth) {
-    if (conf->quiet || (drive == 0 && coast == 0)) {
-        return;
+    if (drive > 0 || coast > 0) {
+        message_note(conf->messages,
+                     "%s: note: no rows for the drive flank of %d and the coast flank of %d of %d "
+                     "teeth: these are ideal",
+                     file, drive, coast, teeth);
     }
-    fprintf(
-        stderr,
-        "%s: note: no rows for the drive flank of %d and the coast flank of %d of %d teeth: these "
-        "are ideal\n",
-        file, drive, coast, teeth);
 }
 
 static int read_deviations(const config *conf, const flank_task *task, gm_deviations *deviations) {
     gm_io_error error = {0};
+    const int status = gm_deviations_read(deviations, task->files->deviations, task->teeth, &error);
 
-    if (gm_deviations_read(deviations, task->files->deviations, task->teeth, &error) != GM_IO_OK) {
+    if (status == GM_IO_ERR_MEMORY) {
+        return message_no_memory(conf->messages);
+    }
+    if (status != GM_IO_OK) {
         return refuse_file(conf, task->deviations_key, &error);
     }
     note_ideal_teeth(conf, task->files->deviations, gm_deviations_ideal_teeth(deviations, GM_DRIVE),
@@ -64,8 +66,12 @@ static int read_deviations(const config *conf, const flank_task *task, gm_deviat
 
 static int read_pitch(const config *conf, const flank_task *task, gm_pitch *pitch) {
     gm_io_error error = {0};
+    const int status = gm_pitch_read(pitch, task->files->pitch, task->teeth, &error);
 
-    if (gm_pitch_read(pitch, task->files->pitch, task->teeth, &error) != GM_IO_OK) {
+    if (status == GM_IO_ERR_MEMORY) {
+        return message_no_memory(conf->messages);
+    }
+    if (status != GM_IO_OK) {
         return refuse_file(conf, task->pitch_key, &error);
     }
     note_ideal_teeth(conf, task->files->pitch, gm_pitch_ideal_teeth(pitch, GM_DRIVE),
@@ -105,7 +111,7 @@ static void note_design(const config *conf, const char *flank, const gm_flanks_s
                     flank, form->face_nodes, form->profile_nodes, 1e6 * form->error);
         return;
     }
-    if (conf->quiet || !has_design(form)) {
+    if (!has_design(form)) {
         return;
     }
 
@@ -117,18 +123,22 @@ static void note_design(const config *conf, const char *flank, const gm_flanks_s
         snprintf(table, sizeof table, "table of %d x %d nodes, off by at most %.3g um",
                  form->face_nodes, form->profile_nodes, 1e6 * form->error);
     }
-    fprintf(stderr, "%s: note: [modifications] of %s: %s%s%s\n", conf->path, flank, ramps,
-            ramps[0] != '\0' && table[0] != '\0' ? "; " : "", table);
+    message_note(conf->messages, "%s: note: [modifications] of %s: %s%s%s", conf->path, flank,
+                 ramps, ramps[0] != '\0' && table[0] != '\0' ? "; " : "", table);
 }
 
-static int refuse_flanks(const config *conf, const flank_task *task, const gm_io_error *error) {
+static int refuse_flanks(const config *conf, const flank_task *task, int status,
+                         const gm_io_error *error) {
+    if (status == GM_IO_ERR_MEMORY) {
+        return message_no_memory(conf->messages);
+    }
     if (task->files->deviations != NULL) {
         return refuse_file(conf, task->deviations_key, error);
     }
     if (task->files->pitch != NULL) {
         return refuse_file(conf, task->pitch_key, error);
     }
-    fprintf(stderr, "%s: [modifications]: %s\n", conf->path, error->text);
+    message_error(conf->messages, "%s: [modifications]: %s", conf->path, error->text);
     return EXIT_BAD_INPUT;
 }
 
@@ -141,9 +151,10 @@ static int build_flanks(gear_flanks *flanks, const config *conf, const gm_pair *
     options.drive_modifications = &design->of[GM_DRIVE];
     options.coast_modifications = &design->of[GM_COAST];
     options.modification_tolerance = conf->modification_tolerance;
-    if (gm_flanks_build(&flanks->storage, &flanks->memory, task->teeth, deviations, pitch, &options,
-                        &flanks->report, &error) != GM_IO_OK) {
-        return refuse_flanks(conf, task, &error);
+    const int status = gm_flanks_build(&flanks->storage, &flanks->memory, task->teeth, deviations,
+                                       pitch, &options, &flanks->report, &error);
+    if (status != GM_IO_OK) {
+        return refuse_flanks(conf, task, status, &error);
     }
 
     note_design(conf, flank_names[task->gear][GM_DRIVE], &flanks->report.drive);
@@ -184,27 +195,32 @@ void gear_flanks_free(gear_flanks *flanks) {
     memset(flanks, 0, sizeof *flanks);
 }
 
-static void note_value(config *conf, const char *flank, const char *what, double value) {
+static int note_value(config *conf, const char *flank, const char *what, double value) {
     char name[64];
 
     snprintf(name, sizeof name, "%s_modification_%s", flank, what);
-    config_note(conf, name, value);
+    return config_note(conf, name, value);
 }
 
 /* What holds a design. */
-static void note_form(config *conf, const char *flank, const gm_flanks_side_report *form) {
+static int note_form(config *conf, const char *flank, const gm_flanks_side_report *form) {
     if (!has_design(form)) {
-        return;
+        return 0;
     }
-    note_value(conf, flank, "ramps", form->ramps);
-    if (form->face_nodes > 0) {
-        note_value(conf, flank, "face_nodes", form->face_nodes);
-        note_value(conf, flank, "profile_nodes", form->profile_nodes);
+
+    int status = note_value(conf, flank, "ramps", form->ramps);
+    if (status == 0 && form->face_nodes > 0) {
+        status = note_value(conf, flank, "face_nodes", form->face_nodes);
     }
-    note_value(conf, flank, "error_um", 1e6 * form->error);
+    if (status == 0 && form->face_nodes > 0) {
+        status = note_value(conf, flank, "profile_nodes", form->profile_nodes);
+    }
+    return status == 0 ? note_value(conf, flank, "error_um", 1e6 * form->error) : status;
 }
 
-void gear_flanks_note(const gear_flanks *flanks, config *conf, int gear) {
-    note_form(conf, flank_names[gear][GM_DRIVE], &flanks->report.drive);
-    note_form(conf, flank_names[gear][GM_COAST], &flanks->report.coast);
+int gear_flanks_note(const gear_flanks *flanks, config *conf, int gear) {
+    const int status = note_form(conf, flank_names[gear][GM_DRIVE], &flanks->report.drive);
+
+    return status == 0 ? note_form(conf, flank_names[gear][GM_COAST], &flanks->report.coast)
+                       : status;
 }

@@ -21,7 +21,7 @@ typedef struct gear_flanks {
 int gear_flanks_load(gear_flanks *flanks, const config *conf, const gm_pair *pair, int gear);
 void gear_flanks_free(gear_flanks *flanks);
 
-/* Notes for the head of the output what holds the designs of a gear. */
-void gear_flanks_note(const gear_flanks *flanks, config *conf, int gear);
+/* Notes for the head of the output what holds the designs of a gear. Returns 0 or EXIT_RUN_FAILED (no memory). */
+int gear_flanks_note(const gear_flanks *flanks, config *conf, int gear);
 
 #endif

@@ -39,7 +39,9 @@ int gear_mesh_open(gear_mesh *mesh, const config *conf) {
     if (status != 0) {
         return status;
     }
-    drawing_warn(conf, &mesh->pair);
+    if (conf->purpose != CONFIG_FOR_FLANKS) {
+        drawing_warn(conf, &mesh->pair);
+    }
     derive_simple_model(mesh, conf);
 
     if (conf->model == MODEL_3D && conf->purpose == CONFIG_FOR_RUN) {
@@ -73,13 +75,15 @@ double gear_mesh_eigenfrequency(const gear_mesh *mesh, const config *conf) {
     return sqrt(gear_mesh_mean_stiffness(mesh, conf) * mobility) / (2 * pi);
 }
 
-void gear_mesh_note(const gear_mesh *mesh, config *conf) {
+int gear_mesh_note(const gear_mesh *mesh, config *conf) {
     const double frequency = gear_mesh_eigenfrequency(mesh, conf);
+    int status = 0;
 
-    for (int gear = 0; gear < 2; ++gear) {
-        gear_flanks_note(&mesh->loaded_flanks[gear], conf, gear);
+    for (int gear = 0; gear < 2 && status == 0; ++gear) {
+        status = gear_flanks_note(&mesh->loaded_flanks[gear], conf, gear);
     }
-    if (isfinite(frequency)) {
-        config_note(conf, "eigenfrequency_Hz", frequency);
+    if (status == 0 && isfinite(frequency)) {
+        status = config_note(conf, "eigenfrequency_Hz", frequency);
     }
+    return status == 0 ? 0 : message_no_memory(conf->messages);
 }

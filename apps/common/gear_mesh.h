@@ -30,7 +30,8 @@ double gear_mesh_mean_stiffness(const gear_mesh *mesh, const config *conf);
  * keys that it needs (Hz). */
 double gear_mesh_eigenfrequency(const gear_mesh *mesh, const config *conf);
 
-/* Notes what follows from the configuration and a reader of the output needs. */
-void gear_mesh_note(const gear_mesh *mesh, config *conf);
+/* Notes what follows from the configuration and a reader of the output needs. Returns 0 or an exit code after a
+ * message. */
+int gear_mesh_note(const gear_mesh *mesh, config *conf);
 
 #endif

@@ -39,7 +39,7 @@ static void stop(line_source *source, const char *text) {
 static void stop_unreadable(line_source *source) {
     char text[256];
 
-    snprintf(text, sizeof text, "cannot be read (%s), expected an INI file", strerror(errno));
+    snprintf(text, sizeof text, "cannot be read: %s", strerror(errno));
     source->line = 0;
     stop(source, text);
 }
@@ -162,32 +162,34 @@ static int take_value(void *user, const char *section, const char *name, const c
     return 1;
 }
 
-static void read_stream(line_source *source) {
+/* inih returns the line of its first fault, -1 for a file and -2 for memory. */
+static enum ini_result read_stream(line_source *source) {
     const int result = ini_parse_stream(next_line, source, take_value, source);
 
     if (ferror(source->file)) {
         stop_unreadable(source);
-    } else if (result != 0 && !source->stopped) {
-        source->line = result > 0 ? result : 0;
-        report(source, result > 0
-                           ? "not understood: expected `[section]`, `key = value` or a comment"
-                           : "out of memory");
+    } else if (result > 0 && !source->stopped) {
+        source->line = result;
+        report(source, "not understood: must be `[section]`, `key = value` or a comment");
     }
+    return result == -2 ? INI_NO_MEMORY : INI_READ;
 }
 
-void ini_file_read(const char *path, const ini_events *events) {
+enum ini_result ini_file_read(const char *path, const ini_events *events) {
     line_source source = {.events = events};
+    enum ini_result result = INI_READ;
     struct stat status;
 
     source.file = fopen(path, "r");
     if (source.file == NULL) {
         stop_unreadable(&source);
-        return;
+        return result;
     }
     if (fstat(fileno(source.file), &status) == 0 && S_ISDIR(status.st_mode)) {
-        stop(&source, "is a folder, expected an INI file");
+        stop(&source, "is a folder, must be an INI file");
     } else {
-        read_stream(&source);
+        result = read_stream(&source);
     }
     fclose(source.file);
+    return result;
 }

@@ -3,54 +3,59 @@
 
 #include "key_reader.h"
 #include "ini_file.h"
+#include "memory.h"
 
 #include <stdarg.h>
 #include <stdlib.h>
 #include <string.h>
 
-enum {
-    FAULT_LIMIT = 20, /* of faults told: the wrong kind of file would give thousands */
-    NAME_SIZE = 128   /* "section.key" of any key */
-};
+enum { NAME_SIZE = 128 }; /* "section.key" of any key */
 
 /* ---------------------------------------------------------------------------------------------
  * Messages
  * ------------------------------------------------------------------------------------------- */
 
-void key_print_place(const char *path, enum key_origin origin, int line) {
+void key_place(char place[KEY_PLACE_SIZE], const char *path, enum key_origin origin, int line,
+               const char *name) {
+    const char *colon = *name != '\0' ? ": " : "";
+
     if (origin == ORIGIN_SET) {
-        fputs("--set ", stderr);
+        snprintf(place, KEY_PLACE_SIZE, "--set %s%s", name, colon);
     } else if (origin == ORIGIN_OUTPUT_OPTION) {
-        fputs("--output: ", stderr);
+        snprintf(place, KEY_PLACE_SIZE, "--output: %s%s", name, colon);
     } else if (line > 0) {
-        fprintf(stderr, "%s:%d: ", path, line);
+        snprintf(place, KEY_PLACE_SIZE, "%s:%d: %s%s", path, line, name, colon);
     } else {
-        fprintf(stderr, "%s: ", path);
+        snprintf(place, KEY_PLACE_SIZE, "%s: %s%s", path, name, colon);
     }
 }
 
 void key_reader_fault(key_reader *reader, const char *name, const char *format, ...) {
-    va_list arguments;
+    char place[KEY_PLACE_SIZE];
+    va_list values;
 
-    if (++reader->faults > FAULT_LIMIT) {
-        return;
+    ++reader->faults;
+    key_place(place, reader->path, reader->from, reader->line, name);
+    va_start(values, format);
+    message_error_list(reader->messages, place, format, values);
+    va_end(values);
+}
+
+/* A fault that only counts needs no search for the name that was meant. */
+static int is_to_be_told(key_reader *reader) {
+    if (!message_is_full(reader->messages)) {
+        return 1;
     }
-    key_print_place(reader->path, reader->from, reader->line);
-    if (*name != '\0') {
-        fprintf(stderr, "%s: ", name);
-    }
-    va_start(arguments, format);
-    vfprintf(stderr, format, arguments);
-    va_end(arguments);
-    fputc('\n', stderr);
-    if (reader->faults == FAULT_LIMIT) {
-        fprintf(stderr, "%s: further faults are not told\n", reader->path);
-    }
+    key_reader_fault(reader, "", "");
+    return 0;
 }
 
 static void unknown_section(key_reader *reader, const char *section) {
-    const char *near = key_section_near(reader->table, section);
+    if (!is_to_be_told(reader)) {
+        return;
+    }
 
+    const char *near = key_section_near(reader->table, section);
     if (near != NULL) {
         key_reader_fault(reader, "", "[%.80s]: unknown section, did you mean [%s]?", section, near);
     } else {
@@ -60,6 +65,10 @@ static void unknown_section(key_reader *reader, const char *section) {
 }
 
 static void unknown_key(key_reader *reader, const char *section, const char *name) {
+    if (!is_to_be_told(reader)) {
+        return;
+    }
+
     const int index = key_near(reader->table, section, name);
     const key_spec *near = index < 0 ? NULL : &reader->table->keys[index];
     char full_name[NAME_SIZE];
@@ -83,23 +92,29 @@ static void unknown_key(key_reader *reader, const char *section, const char *nam
 /* `name` as seen from the folder of `path`. */
 static char *path_beside(const char *path, const char *name) {
     const char *slash = strrchr(path, '/');
-    const size_t folder = slash == NULL || *name == '/' ? 0 : (size_t)(slash - path) + 1;
-    char *joined = allocate(folder + strlen(name) + 1);
+    if (slash == NULL || *name == '/') {
+        return copy_text(name);
+    }
 
-    memcpy(joined, path, folder);
-    memcpy(joined + folder, name, strlen(name) + 1);
+    char *joined = join_texts(path, name);
+    if (joined != NULL) {
+        strcpy(joined + (slash - path) + 1, name);
+    }
     return joined;
 }
 
-static int assign(const key_reader *reader, const key_spec *key, const char *value, char *text) {
-    int result;
-    char *path;
-
+static enum key_result assign(const key_reader *reader, const key_spec *key, const char *value,
+                              char fault[KEY_FAULT_SIZE]) {
     if (key->kind != KEY_PATH || reader->from != ORIGIN_FILE) {
-        return key_assign(key, reader->filled, value, text);
+        return key_assign(key, reader->filled, value, fault);
     }
-    path = path_beside(reader->path, value);
-    result = key_assign(key, reader->filled, path, text);
+
+    /* Names in the file are relative to its folder. */
+    char *path = path_beside(reader->path, value);
+    if (path == NULL) {
+        return KEY_NO_MEMORY;
+    }
+    const enum key_result result = key_assign(key, reader->filled, path, fault);
     free(path);
     return result;
 }
@@ -107,23 +122,35 @@ static int assign(const key_reader *reader, const key_spec *key, const char *val
 static void set_value(key_reader *reader, int index, const char *value) {
     const key_spec *key = &reader->table->keys[index];
     key_entry *entry = &reader->entries[index];
-    char text[KEY_FAULT_SIZE];
+    char fault[KEY_FAULT_SIZE];
 
     free(entry->text);
-    entry->text = copy_text(value);
+    entry->text = NULL;
     entry->origin = reader->from;
     entry->line = reader->line;
+
+    /* Nothing behind the `=`: not given. */
     if (*value == '\0') {
-        key_reader_fault(reader, key->full_name,
-                         "no value, expected one behind the `=`, or leave the key out");
-    } else if (assign(reader, key, value, text)) {
-        key_reader_fault(reader, key->full_name, "%s", text);
+        reader->no_memory = key_assign_default(key, reader->filled) == KEY_NO_MEMORY;
+        return;
+    }
+
+    entry->text = copy_text(value);
+    const enum key_result result =
+        entry->text != NULL ? assign(reader, key, value, fault) : KEY_NO_MEMORY;
+    if (result == KEY_REFUSED) {
+        key_reader_fault(reader, key->full_name, "%s", fault);
+    } else if (result == KEY_NO_MEMORY) {
+        reader->no_memory = 1;
     }
 }
 
 void key_reader_set(key_reader *reader, const char *section, const char *name, const char *value) {
-    const int index = key_find(reader->table, section, name);
+    if (reader->no_memory) {
+        return;
+    }
 
+    const int index = key_find(reader->table, section, name);
     if (index >= 0) {
         set_value(reader, index, value);
     } else if (key_section_find(reader->table, section) >= 0) {
@@ -155,10 +182,12 @@ static void meet_section(void *user, int line, const char *section) {
         unknown_section(reader, section);
         return;
     }
+
     if (reader->section_lines[first] > 0) {
-        key_reader_fault(reader, "",
-                         "[%s]: repeated section, first in line %d: put all its keys there",
-                         section, reader->section_lines[first]);
+        key_reader_fault(
+            reader, "",
+            "[%s]: repeated section, must stand once with all its keys (first in line %d)", section,
+            reader->section_lines[first]);
     } else {
         reader->section_lines[first] = line;
     }
@@ -167,23 +196,27 @@ static void meet_section(void *user, int line, const char *section) {
 
 static void meet_value(void *user, int line, const char *name, const char *value) {
     key_reader *reader = user;
-    int index;
 
     reader->line = line;
+    if (reader->no_memory) {
+        return;
+    }
     if (reader->section == NULL) {
         /* The keys of an unknown section are passed over: the section is the fault. */
         if (!reader->in_section) {
             key_reader_fault(
-                reader, "", "%.80s: a key without a section, expected `[section]` before it", name);
+                reader, "",
+                "%.80s: a key without a section, must stand behind a line such as `[gears]`", name);
         }
         return;
     }
-    index = key_find(reader->table, reader->section, name);
+
+    const int index = key_find(reader->table, reader->section, name);
     if (index < 0) {
         unknown_key(reader, reader->section, name);
-    } else if (reader->entries[index].text != NULL) {
+    } else if (reader->entries[index].line > 0) {
         key_reader_fault(reader, reader->table->keys[index].full_name,
-                         "repeated key, first in line %d: give it once",
+                         "repeated key, must be given once (first in line %d)",
                          reader->entries[index].line);
     } else {
         set_value(reader, index, value);
@@ -200,9 +233,16 @@ static void meet_fault(void *user, int line, const char *text) {
 void key_reader_read(key_reader *reader) {
     const ini_events events = {reader, meet_section, meet_value, meet_fault};
 
-    reader->section_lines = allocate((size_t)reader->table->count * sizeof *reader->section_lines);
+    reader->section_lines = allocate((size_t)reader->table->count, sizeof *reader->section_lines);
+    if (reader->section_lines == NULL) {
+        reader->no_memory = 1;
+        return;
+    }
+
     reader->from = ORIGIN_FILE;
-    ini_file_read(reader->path, &events);
+    if (ini_file_read(reader->path, &events) == INI_NO_MEMORY) {
+        reader->no_memory = 1;
+    }
     reader->line = 0;
     free(reader->section_lines);
     reader->section_lines = NULL;

@@ -2,11 +2,12 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 
 #include "key_table.h"
-#include "config.h"
+#include "memory.h"
 
 #include <ctype.h>
 #include <errno.h>
 #include <math.h>
+#include <stdint.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -123,22 +124,6 @@ static const struct {
     [UNIT_RPM] = {30, 3.14159265358979323846},
 };
 
-void *allocate(size_t size) {
-    void *memory = calloc(1, size);
-
-    if (memory == NULL) {
-        fputs("gearsim: out of memory\n", stderr);
-        exit(EXIT_RUN_FAILED);
-    }
-    return memory;
-}
-
-char *copy_text(const char *text) {
-    const size_t size = strlen(text) + 1;
-
-    return memcpy(allocate(size), text, size);
-}
-
 static const char *skip_digits(const char *text) {
     while (*text >= '0' && *text <= '9') {
         ++text;
@@ -172,10 +157,11 @@ static int is_plain_number(const char *text) {
 }
 
 static int not_a_number(const char *text, char *fault) {
-    const char *advice = strchr(text, ',') != NULL
-                             ? "write it with a decimal point and without separators"
-                             : "write it as in 12, -0.5 or 1e-4, nothing behind it";
-    snprintf(fault, KEY_FAULT_SIZE, "not a number (got %.80s), %s", text, advice);
+    const char *right = strchr(text, ',') != NULL
+                            ? "must be a number with a decimal point and without separators"
+                            : "must be a number such as 12, -0.5 or 1e-4 with nothing behind it";
+
+    snprintf(fault, KEY_FAULT_SIZE, "%s (got %.80s)", right, text);
     return 1;
 }
 
@@ -187,8 +173,7 @@ static int read_number(const char *text, double *value, char *fault) {
     if (isfinite(*value)) {
         return 0;
     }
-    snprintf(fault, KEY_FAULT_SIZE, "too large for a number (got %.80s), must be below 1.8e308",
-             text);
+    snprintf(fault, KEY_FAULT_SIZE, "must be below 1.8e308 (got %.80s)", text);
     return 1;
 }
 
@@ -216,7 +201,7 @@ static int check_range(const key_range *range, double value, const char *text, c
         return 0;
     }
     describe_range(range, requirement, sizeof requirement);
-    snprintf(fault, KEY_FAULT_SIZE, "out of range (got %.80s), must be %s", text, requirement);
+    snprintf(fault, KEY_FAULT_SIZE, "must be %s (got %.80s)", requirement, text);
     return 1;
 }
 
@@ -240,7 +225,7 @@ static int assign_count(const key_spec *key, int *target, const char *text, char
         return 1;
     }
     if (value != floor(value)) {
-        snprintf(fault, KEY_FAULT_SIZE, "not a whole number (got %.80s), must be one", text);
+        snprintf(fault, KEY_FAULT_SIZE, "must be a whole number (got %.80s)", text);
         return 1;
     }
     *target = (int)value;
@@ -248,21 +233,16 @@ static int assign_count(const key_spec *key, int *target, const char *text, char
 }
 
 static int assign_seed(uint64_t *target, const char *text, char *fault) {
-    unsigned long long value = 0;
-    int too_large = 0;
-
     if (*text != '\0' && *skip_digits(text) == '\0') {
         errno = 0;
-        value = strtoull(text, NULL, 10);
-        too_large = errno == ERANGE || value > UINT64_MAX;
-        if (!too_large) {
+        const unsigned long long value = strtoull(text, NULL, 10);
+        if (errno != ERANGE && value <= UINT64_MAX) {
             *target = (uint64_t)value;
             return 0;
         }
     }
     snprintf(fault, KEY_FAULT_SIZE,
-             "%s (got %.80s), must be a whole number from 0 to 18446744073709551615",
-             too_large ? "too large" : "not a seed", text);
+             "must be a whole number from 0 to 18446744073709551615 (got %.80s)", text);
     return 1;
 }
 
@@ -307,51 +287,77 @@ static int assign_choice(const key_spec *key, void *target, const char *text, ch
         return 0;
     }
     print_choices(key->choices, choices, sizeof choices);
-    snprintf(fault, KEY_FAULT_SIZE, "unknown choice (got %.80s), must be %s", text, choices);
+    snprintf(fault, KEY_FAULT_SIZE, "must be %s (got %.80s)", choices, text);
     return 1;
 }
 
-/* NULL where all that exists is meant. */
-static int assign_text(char **target, const char *text) {
+static enum key_result assign_text(char **target, const char *text) {
     free(*target);
-    *target = strcmp(text, "all") == 0 ? NULL : copy_text(text);
-    return 0;
+    *target = copy_text(text);
+    return *target != NULL ? KEY_TAKEN : KEY_NO_MEMORY;
 }
 
-int key_assign(const key_spec *key, void *filled, const char *text, char fault[KEY_FAULT_SIZE]) {
-    void *target = (char *)filled + key->target;
+/* Where a key goes, as one of the types that key_kind names. */
+static void *target_of(const key_spec *key, void *filled) {
+    return (char *)filled + key->target;
+}
+
+enum key_result key_assign(const key_spec *key, void *filled, const char *text,
+                           char fault[KEY_FAULT_SIZE]) {
+    void *target = target_of(key, filled);
 
     switch (key->kind) {
     case KEY_NUMBER:
-        return assign_number(key, target, text, fault);
+        return assign_number(key, target, text, fault) ? KEY_REFUSED : KEY_TAKEN;
     case KEY_COUNT:
-        return assign_count(key, target, text, fault);
+        return assign_count(key, target, text, fault) ? KEY_REFUSED : KEY_TAKEN;
     case KEY_SEED:
-        return assign_seed(target, text, fault);
+        return assign_seed(target, text, fault) ? KEY_REFUSED : KEY_TAKEN;
     case KEY_CHOICE:
-        return assign_choice(key, target, text, fault);
+        return assign_choice(key, target, text, fault) ? KEY_REFUSED : KEY_TAKEN;
     case KEY_TEXT:
-        return assign_text(target, text);
     case KEY_PATH:
         break;
     }
-    free(*(char **)target);
-    *(char **)target = copy_text(text);
-    return 0;
+    return assign_text(target, text);
 }
 
-void key_assign_defaults(const key_table *table, void *filled) {
+enum key_result key_assign_default(const key_spec *key, void *filled) {
     char fault[KEY_FAULT_SIZE];
 
-    for (int i = 0; i < table->count; ++i) {
-        if (table->keys[i].standard != NULL) {
-            (void)key_assign(&table->keys[i], filled, table->keys[i].standard, fault);
-        } else if (table->keys[i].kind == KEY_NUMBER) {
-            *(double *)(void *)((char *)filled + table->keys[i].target) = (double)NAN;
-        } else if (table->keys[i].kind == KEY_CHOICE) {
-            *(int *)(void *)((char *)filled + table->keys[i].target) = -1;
-        }
+    if (key->standard != NULL) {
+        return key_assign(key, filled, key->standard, fault);
     }
+
+    switch (key->kind) {
+    case KEY_NUMBER:
+        *(double *)target_of(key, filled) = (double)NAN;
+        break;
+    case KEY_COUNT:
+        *(int *)target_of(key, filled) = 0;
+        break;
+    case KEY_CHOICE:
+        *(int *)target_of(key, filled) = -1;
+        break;
+    case KEY_SEED:
+        *(uint64_t *)target_of(key, filled) = 0;
+        break;
+    case KEY_TEXT:
+    case KEY_PATH:
+        free(*(char **)target_of(key, filled));
+        *(char **)target_of(key, filled) = NULL;
+        break;
+    }
+    return KEY_TAKEN;
+}
+
+enum key_result key_assign_defaults(const key_table *table, void *filled) {
+    enum key_result result = KEY_TAKEN;
+
+    for (int i = 0; i < table->count && result == KEY_TAKEN; ++i) {
+        result = key_assign_default(&table->keys[i], filled);
+    }
+    return result;
 }
 
 /* ---------------------------------------------------------------------------------------------

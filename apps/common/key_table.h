@@ -71,9 +71,9 @@ typedef struct key_table {
 enum key_origin { ORIGIN_DEFAULT, ORIGIN_FILE, ORIGIN_SET, ORIGIN_OUTPUT_OPTION };
 
 typedef struct key_entry {
-    char *text; /* as given, NULL = not given */
+    char *text; /* as given, NULL = not given, or given as empty: the default counts */
     enum key_origin origin;
-    int line; /* in the INI file */
+    int line; /* in the INI file, 0 = not there */
 } key_entry;
 
 /* Index of a key, or -1. Names are case-sensitive. */
@@ -87,19 +87,19 @@ int key_section_find(const key_table *table, const char *section);
 const char *key_section_near(const key_table *table, const char *section);
 int key_near(const key_table *table, const char *section, const char *name);
 
-/* Puts a value into the struct that the table fills. On success 0; else 1 and `fault` says what is wrong and would be
- * right. */
+/* Puts a value into the struct that the table fills. If it is refused, `fault` says what would be right. */
+enum key_result { KEY_TAKEN, KEY_REFUSED, KEY_NO_MEMORY };
 enum { KEY_FAULT_SIZE = 512 };
-int key_assign(const key_spec *key, void *filled, const char *text, char fault[KEY_FAULT_SIZE]);
+enum key_result key_assign(const key_spec *key, void *filled, const char *text,
+                           char fault[KEY_FAULT_SIZE]);
 
-/* Fills in the defaults of all keys, and NaN for numbers that have none. */
-void key_assign_defaults(const key_table *table, void *filled);
+/* The default of a key; without one NaN, -1 for a choice, 0 for a count, NULL for a text. KEY_TAKEN or KEY_NO_MEMORY. */
+enum key_result key_assign_default(const key_spec *key, void *filled);
+
+/* The defaults of all keys. */
+enum key_result key_assign_defaults(const key_table *table, void *filled);
 
 /* The part of --help that lists all keys. */
 void key_table_print(const key_table *table, FILE *stream);
-
-/* Zeroed memory, and a copy on the heap; end the program if there is no memory left. */
-void *allocate(size_t size);
-char *copy_text(const char *text);
 
 #endif

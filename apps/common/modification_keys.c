@@ -122,7 +122,7 @@ static int check_one_range(const key_place *at) {
             continue;
         }
         config_complain(at->conf, key_name(name, at, field),
-                        "a second range beside %s, give one of the two",
+                        "must not be given beside %s: give one of the two",
                         key_name(other, at, first));
         ++faults;
     }
@@ -135,7 +135,7 @@ static int complain_of_missing(const key_place *amount, int field) {
     char wanted[KEY_SIZE];
 
     config_complain(amount->conf, key_name(name, amount, MODIFICATION_AMOUNT),
-                    "has no range, add %s%s", key_name(wanted, amount, field),
+                    "must have a range: add %s%s", key_name(wanted, amount, field),
                     is_range(field) ? ", or _diameter_mm or _share in place of _length_mm" : "");
     return 1;
 }
@@ -292,7 +292,8 @@ static int refuse(const config *conf, const gm_pair *pair, int gear, int side,
 
     (void)gm_modifications_check(design, &index, &field_name, &requirement);
     if (index < 0) { /* of the flank itself, which is that of a pair */
-        fprintf(stderr, "%s: [modifications]: cannot be used with these gears\n", conf->path);
+        message_error(conf->messages, "%s: [modifications]: cannot be used with these gears",
+                      conf->path);
         return EXIT_BAD_INPUT;
     }
     const int kind = design->list[index].kind;
@@ -301,8 +302,7 @@ static int refuse(const config *conf, const gm_pair *pair, int gear, int side,
     const key_place at = source_of(conf, gear, side, kind, field);
     key_name(name, &at, field);
     describe_limit(limit, sizeof limit, field, requirement, pair, design->gear);
-    config_complain(conf, name, "does not fit the flank (got %.80s), must be %s",
-                    config_text(conf, name), limit);
+    config_complain(conf, name, "must be %s (got %.80s)", limit, config_text(conf, name));
     return EXIT_BAD_INPUT;
 }
 

@@ -27,16 +27,15 @@ static int do_with_gears(const flanks_options *options, const gm_pair *pair, con
 }
 
 static int load_and_do(const flanks_options *options) {
-    const config_request request = {.path = options->parameters,
-                                    .quiet = 1, /* warnings about the gears are gearsim's to tell */
-                                    .purpose = CONFIG_FOR_GEOMETRY};
+    const config_request request = {
+        .path = options->parameters, .purpose = CONFIG_FOR_FLANKS, .messages = options->messages};
     config conf;
-    gear_mesh mesh;
     int status = config_load(&conf, &request);
-
     if (status != 0) {
         return status;
     }
+
+    gear_mesh mesh;
     status = gear_mesh_open(&mesh, &conf);
     if (status == 0) {
         status = do_with_gears(options, &mesh.pair, &conf);
@@ -60,11 +59,11 @@ static int do_task(const flanks_options *options) {
 }
 
 /* A full disk behind stdout shows only when the text is written out. */
-static int finish_stdout(int status) {
+static int finish_stdout(int status, message_sink *messages) {
     if (fflush(stdout) == 0 && !ferror(stdout)) {
         return status;
     }
-    fprintf(stderr, "gearflanks: cannot write to stdout: %s\n", strerror(errno));
+    message_of_program(messages, "cannot write to stdout: %s", strerror(errno));
     return status == EXIT_DONE ? EXIT_RUN_FAILED : status;
 }
 
@@ -73,11 +72,12 @@ int main(int argc, char *argv[]) {
         return EXIT_RUN_FAILED; /* there is nowhere to say it */
     }
 
+    message_sink messages = messages_to(stderr, "gearflanks");
     flanks_options options;
-    int status = options_parse(&options, argc, argv);
 
+    int status = options_parse(&options, argc, argv, &messages);
     if (status == 0) {
         status = do_task(&options);
     }
-    return finish_stdout(status);
+    return finish_stdout(status, &messages);
 }

@@ -43,7 +43,7 @@ static int generate(making *of, const gm_pair *pair) {
     const int status = gm_flanks_generate(&of->deviations, &of->pitch, pair, of->options->wheel,
                                           &of->generate, &error);
 
-    return status == GM_IO_OK ? EXIT_DONE : refuse_input(status, &error);
+    return status == GM_IO_OK ? EXIT_DONE : refuse_input(of->options->messages, status, &error);
 }
 
 static int make_and_write(making *of, const gm_pair *pair) {
@@ -54,7 +54,7 @@ static int make_and_write(making *of, const gm_pair *pair) {
     if (status != EXIT_DONE) {
         return status;
     }
-    status = write_files(files, 2);
+    status = write_files(files, 2, of->options->messages);
     if (status == EXIT_DONE) {
         status = report_quality(of->options, pair, &of->deviations, &of->pitch);
     }
@@ -68,7 +68,7 @@ int make_flanks(const flanks_options *options, const gm_pair *pair) {
     int status = EXIT_DONE;
 
     if (options->scatter != NULL) {
-        status = scatter_read(&of.scatter, options->scatter);
+        status = scatter_read(&of.scatter, options->scatter, options->messages);
         of.generate.scatter = &of.scatter.amounts;
     }
     if (status == EXIT_DONE) {

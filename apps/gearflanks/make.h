@@ -7,7 +7,7 @@
 
 #include "options.h"
 
-/* Returns an exit code; messages go to stderr. */
+/* Returns an exit code. */
 int make_flanks(const flanks_options *options, const gm_pair *pair);
 
 #endif

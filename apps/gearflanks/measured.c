@@ -224,7 +224,7 @@ static int read_traces(measured_gear *of) {
         gm_traces_free(&traces);
         round_deviations(&of->deviations);
     }
-    return status == GM_IO_OK ? EXIT_DONE : refuse_input(status, &error);
+    return status == GM_IO_OK ? EXIT_DONE : refuse_input(options->messages, status, &error);
 }
 
 static int read_pitch(measured_gear *of) {
@@ -242,7 +242,7 @@ static int read_pitch(measured_gear *of) {
         round_values(of->pitch.drive, (size_t)of->gear->teeth);
         round_values(of->pitch.coast, (size_t)of->gear->teeth);
     }
-    return status == GM_IO_OK ? EXIT_DONE : refuse_input(status, &error);
+    return status == GM_IO_OK ? EXIT_DONE : refuse_input(options->messages, status, &error);
 }
 
 static int write_all(const measured_gear *of) {
@@ -257,7 +257,7 @@ static int write_all(const measured_gear *of) {
     if (options->measured_pitch != NULL) {
         files[count++] = (written){options->pitch, NULL, &of->pitch, print_pitch_head, of};
     }
-    return write_files(files, count);
+    return write_files(files, count, options->messages);
 }
 
 int build_measured(const flanks_options *options, const gm_pair *pair) {

@@ -8,7 +8,7 @@
 
 #include "options.h"
 
-/* Returns an exit code; messages go to stderr. */
+/* Returns an exit code. */
 int build_measured(const flanks_options *options, const gm_pair *pair);
 
 #endif

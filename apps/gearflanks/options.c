@@ -23,7 +23,7 @@ static const char usage[] =
     "                  --count clockwise|counterclockwise [--first-number 0|1] [--first-tooth N]\n"
     "                  [--nodes FACExPROFILE] [--pitch-diameter MM] [--transverse] [--held X]\n"
     "                  [--hollow] [--remove-spikes]\n"
-    "       gearflanks --help | --version\n";
+    "       gearflanks --help | --version";
 
 static const char help[] =
     "\n"
@@ -78,13 +78,13 @@ static const char help[] =
     "\n";
 
 void options_print_help(FILE *stream) {
-    fputs(usage, stream);
+    fprintf(stream, "%s\n", usage);
     fputs(help, stream);
     key_table_print(&scatter_keys, stream);
 }
 
-static int refuse(const char *text, const char *what) {
-    fprintf(stderr, "gearflanks: %s%s\n%s", text, what, usage);
+static int refuse(const flanks_options *options, const char *text, const char *what) {
+    message_of_program(options->messages, "%s%s\n%s", text, what, usage);
     return EXIT_BAD_INPUT;
 }
 
@@ -364,15 +364,15 @@ static int take_option(parsing *state, int count, char *const texts[], int *inde
     const int which = find_valued(text);
 
     if (which < 0) {
-        return take_flag(state, text) ? 0 : refuse("unknown option ", text);
+        return take_flag(state, text) ? 0 : refuse(state->options, "unknown option ", text);
     }
     if (value == NULL && *index + 1 >= count) {
-        return refuse("a value is missing behind ", text);
+        return refuse(state->options, "a value is missing behind ", text);
     }
     value = value != NULL ? value + 1 : texts[++*index];
     if (!valued[which].take(state, value)) {
-        fprintf(stderr, "gearflanks: %s: got '%s', must be %s\n", valued[which].name, value,
-                valued[which].right);
+        message_of_program(state->options->messages, "%s: must be %s (got '%s')",
+                           valued[which].name, valued[which].right, value);
         return EXIT_BAD_INPUT;
     }
     note_use(state, valued[which].name, valued[which].use);
@@ -381,33 +381,33 @@ static int take_option(parsing *state, int count, char *const texts[], int *inde
 
 static int take_parameters(parsing *state, const char *path) {
     if (state->options->parameters != NULL) {
-        return refuse("a second INI file, expected one: ", path);
+        return refuse(state->options, "a second INI file, expected one: ", path);
     }
     state->options->parameters = path;
-    return *path != '\0' ? 0 : refuse("the name of the INI file is empty", "");
+    return *path != '\0' ? 0 : refuse(state->options, "the name of the INI file is empty", "");
 }
 
 static int check_way(const parsing *state) {
     const flanks_options *options = state->options;
 
     if (options->generate.quality_class == 0 && options->scatter == NULL) {
-        return refuse("--class or --scatter is missing", "");
+        return refuse(state->options, "--class or --scatter is missing", "");
     }
     if (options->generate.quality_class != 0 && options->scatter != NULL) {
-        return refuse("--class and --scatter exclude each other", "");
+        return refuse(state->options, "--class and --scatter exclude each other", "");
     }
     if (state->has_share && options->scatter != NULL) {
-        return refuse("not together with --scatter: ", "--share");
+        return refuse(state->options, "not together with --scatter: ", "--share");
     }
     return 0;
 }
 
-static int check_place(const char *output) {
+static int check_place(const flanks_options *options, const char *output) {
     result_file file;
     const int status = result_file_check(&file, output);
 
     if (status != EXIT_DONE) {
-        fprintf(stderr, "gearflanks: %s %s\n", file.wrong_path, file.reason);
+        message_of_program(options->messages, "%s %s", file.wrong_path, file.reason);
     }
     result_file_free(&file);
     return status;
@@ -420,20 +420,20 @@ static int check_outputs(const flanks_options *options) {
     const char *const outputs[] = {options->deviations, options->pitch};
 
     if (outputs[0] != NULL && outputs[1] != NULL && is_same_place(outputs[0], outputs[1])) {
-        return refuse("--flanks and --pitch are the same file: ", outputs[0]);
+        return refuse(options, "--flanks and --pitch are the same file: ", outputs[0]);
     }
     for (int i = 0; i < 2; ++i) {
         for (int k = 0; k < 4; ++k) {
             if (outputs[i] != NULL && inputs[k] != NULL &&
                 result_file_would_replace(outputs[i], inputs[k])) {
-                return refuse("an input would be overwritten: ", inputs[k]);
+                return refuse(options, "an input would be overwritten: ", inputs[k]);
             }
         }
     }
 
     int status = EXIT_DONE;
     for (int i = 0; i < 2 && status == EXIT_DONE; ++i) {
-        status = outputs[i] != NULL ? check_place(outputs[i]) : EXIT_DONE;
+        status = outputs[i] != NULL ? check_place(options, outputs[i]) : EXIT_DONE;
     }
     return status;
 }
@@ -442,7 +442,7 @@ static int check_making(const parsing *state) {
     const int status = check_way(state);
 
     if (status == 0 && (state->options->deviations == NULL || state->options->pitch == NULL)) {
-        return refuse("--flanks and --pitch are both needed to make flanks", "");
+        return refuse(state->options, "--flanks and --pitch are both needed to make flanks", "");
     }
     return status == 0 ? check_outputs(state->options) : status;
 }
@@ -450,30 +450,31 @@ static int check_making(const parsing *state) {
 /* What was measured and what is written belong together. */
 static int check_measured(const flanks_options *options) {
     if ((options->traces != NULL) != (options->deviations != NULL)) {
-        return refuse("--traces and --flanks go together: missing is ",
+        return refuse(options, "--traces and --flanks go together: missing is ",
                       options->traces != NULL ? "--flanks" : "--traces");
     }
     if ((options->measured_pitch != NULL) != (options->pitch != NULL)) {
-        return refuse("--measured-pitch and --pitch go together: missing is ",
+        return refuse(options, "--measured-pitch and --pitch go together: missing is ",
                       options->pitch != NULL ? "--measured-pitch" : "--pitch");
     }
     if (options->measurement.datum_face == 0) {
-        return refuse("--datum-face is missing", "");
+        return refuse(options, "--datum-face is missing", "");
     }
     if (options->measurement.counting == 0) {
-        return refuse("--count is missing", "");
+        return refuse(options, "--count is missing", "");
     }
     return check_outputs(options);
 }
 
-static int refuse_odd(enum flanks_task task, const char *option) {
-    if (task == FLANKS_EVALUATE) {
-        return refuse("not together with --evaluate: ", option);
+static int refuse_odd(const flanks_options *options, const char *option) {
+    if (options->task == FLANKS_EVALUATE) {
+        return refuse(options, "not together with --evaluate: ", option);
     }
-    if (task == FLANKS_MEASURED) {
-        return refuse("not together with --traces or --measured-pitch: ", option);
+    if (options->task == FLANKS_MEASURED) {
+        return refuse(options, "not together with --traces or --measured-pitch: ", option);
     }
-    return refuse(strcmp(option, "--teeth") == 0
+    return refuse(options,
+                  strcmp(option, "--teeth") == 0
                       ? "only together with --evaluate: "
                       : "only together with --traces or --measured-pitch: ",
                   option);
@@ -483,13 +484,13 @@ static int check(const parsing *state) {
     const flanks_options *options = state->options;
 
     if (options->parameters == NULL) {
-        return refuse("an INI file is missing", "");
+        return refuse(state->options, "an INI file is missing", "");
     }
     if (!state->has_gear) {
-        return refuse("--gear is missing", "");
+        return refuse(state->options, "--gear is missing", "");
     }
     if (state->odd[options->task] != NULL) {
-        return refuse_odd(options->task, state->odd[options->task]);
+        return refuse_odd(options, state->odd[options->task]);
     }
     if (options->task == FLANKS_MEASURED) {
         return check_measured(options);
@@ -497,11 +498,12 @@ static int check(const parsing *state) {
     return options->task == FLANKS_MAKE ? check_making(state) : 0;
 }
 
-int options_parse(flanks_options *options, int count, char *const texts[]) {
+int options_parse(flanks_options *options, int count, char *const texts[], message_sink *messages) {
     parsing state = {.options = options};
     int status = 0;
 
     memset(options, 0, sizeof *options);
+    options->messages = messages;
     gm_generate_options_default(&options->generate);
     gm_measurement_default(&options->measurement);
     gm_traces_options_default(&options->from_traces);

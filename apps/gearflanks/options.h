@@ -16,6 +16,7 @@ enum { FLANKS_TASKS = FLANKS_HELP }; /* that need gears */
 enum { FLANKS_MOST_WAVES = 100 };
 
 typedef struct flanks_options {
+    message_sink *messages;
     enum flanks_task task;
     const char *parameters; /* the INI file */
     int wheel;              /* 0 = pinion, 1 = wheel */
@@ -31,8 +32,8 @@ typedef struct flanks_options {
     gm_flank_wave waves[FLANKS_MOST_WAVES]; /* what generate.waves points to */
 } flanks_options;
 
-/* Returns 0, or EXIT_BAD_INPUT after a message on stderr. */
-int options_parse(flanks_options *options, int count, char *const texts[]);
+/* Returns 0, or EXIT_BAD_INPUT after a message. */
+int options_parse(flanks_options *options, int count, char *const texts[], message_sink *messages);
 
 void options_print_help(FILE *stream);
 

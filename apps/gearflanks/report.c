@@ -2,7 +2,7 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 
 #include "report.h"
-#include "key_table.h"
+#include "memory.h"
 #include "write.h"
 
 #include <math.h>
@@ -32,16 +32,16 @@ static int open_files(measured *of, const flanks_options *options, const flank_f
 
     memset(of, 0, sizeof *of);
     if (deviations == NULL && pitch == NULL) {
-        fprintf(stderr,
-                "gearflanks: nothing to evaluate: neither --flanks or --pitch nor [flanks] of %s "
-                "name a file of the %s\n",
-                options->parameters, options->wheel ? "wheel" : "pinion");
+        message_of_program(options->messages,
+                           "nothing to evaluate: neither --flanks or --pitch nor [flanks] of %s "
+                           "name a file of the %s",
+                           options->parameters, options->wheel ? "wheel" : "pinion");
         return EXIT_BAD_INPUT;
     }
     if (deviations != NULL) {
         status = gm_deviations_read(&of->deviation_storage, deviations, teeth, &error);
         if (status != GM_IO_OK) {
-            return refuse_input(status, &error);
+            return refuse_input(options->messages, status, &error);
         }
         of->deviations = &of->deviation_storage;
     }
@@ -49,7 +49,7 @@ static int open_files(measured *of, const flanks_options *options, const flank_f
         status = gm_pitch_read(&of->pitch_storage, pitch, teeth, &error);
         if (status != GM_IO_OK) {
             close_files(of);
-            return refuse_input(status, &error);
+            return refuse_input(options->messages, status, &error);
         }
         of->pitch = &of->pitch_storage;
     }
@@ -147,14 +147,18 @@ static void print_teeth(const gm_flank_quality *flanks, int teeth) {
 int report_quality(const flanks_options *options, const gm_pair *pair,
                    const gm_deviations *deviations, const gm_pitch *pitch) {
     const int teeth = options->wheel ? pair->wheel.teeth : pair->pinion.teeth;
-    gm_flank_quality *flanks = allocate(2 * (size_t)teeth * sizeof *flanks);
+    gm_flank_quality *flanks = allocate(2 * (size_t)teeth, sizeof *flanks);
+    if (flanks == NULL) {
+        return message_no_memory(options->messages);
+    }
+
     gm_quality quality;
     gm_io_error error;
     int status = gm_quality_evaluate(&quality, flanks, pair, options->wheel, deviations, pitch,
                                      NULL, &error);
 
     if (status != GM_IO_OK) {
-        status = refuse_input(status, &error);
+        status = refuse_input(options->messages, status, &error);
     } else if (options->teeth) {
         print_teeth(flanks, teeth);
     } else {

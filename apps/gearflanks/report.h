@@ -7,11 +7,11 @@
 
 #include "options.h"
 
-/* Of flanks in memory, NULL = none. Returns an exit code; messages go to stderr. */
+/* Of flanks in memory, NULL = none. Returns an exit code. */
 int report_quality(const flanks_options *options, const gm_pair *pair,
                    const gm_deviations *deviations, const gm_pitch *pitch);
 
-/* Of files; `files`: what PARAMS.ini names. Returns an exit code; messages go to stderr. */
+/* Of files; `files`: what PARAMS.ini names. Returns an exit code. */
 int report_flanks(const flanks_options *options, const gm_pair *pair, const flank_files *files);
 
 #endif

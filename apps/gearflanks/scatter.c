@@ -2,9 +2,10 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 
 #include "scatter.h"
-#include "config.h"
+#include "exit_code.h"
 #include "key_macros.h"
 #include "key_reader.h"
+#include "memory.h"
 
 #include <string.h>
 
@@ -67,9 +68,11 @@ static int check_range(const key_reader *reader, const char *section, const char
     if (range->low <= range->high) {
         return 0;
     }
-    key_print_place(reader->path, entry->origin, entry->line);
-    fprintf(stderr, "%s: is below %s (got %s), must not be\n", keys[index].full_name, least,
-            entry->text != NULL ? entry->text : keys[index].standard);
+
+    char place[KEY_PLACE_SIZE];
+    key_place(place, reader->path, entry->origin, entry->line, keys[index].full_name);
+    message_error(reader->messages, "%smust be at least %s (got %s)", place, least,
+                  entry->text != NULL ? entry->text : keys[index].standard);
     return 1;
 }
 
@@ -79,22 +82,33 @@ static int check_trace(const key_reader *reader, const char *section,
            check_range(reader, section, "waves_least", "waves_most", &trace->wave_count);
 }
 
-int scatter_read(scatter_file *file, const char *path) {
-    key_reader reader = {.table = &scatter_keys, .filled = &file->amounts, .path = path};
-
+int scatter_read(scatter_file *file, const char *path, message_sink *messages) {
     memset(file, 0, sizeof *file);
-    key_assign_defaults(&scatter_keys, &file->amounts);
-    reader.entries = file->entries = allocate(sizeof keys / sizeof keys[0] * sizeof *file->entries);
+    file->entries = allocate((size_t)scatter_keys.count, sizeof *file->entries);
+    if (file->entries == NULL ||
+        key_assign_defaults(&scatter_keys, &file->amounts) == KEY_NO_MEMORY) {
+        scatter_free(file);
+        return message_no_memory(messages);
+    }
+
+    key_reader reader = {.table = &scatter_keys,
+                         .filled = &file->amounts,
+                         .entries = file->entries,
+                         .path = path,
+                         .messages = messages};
+    message_begin(messages, MOST_MESSAGES);
     key_reader_read(&reader);
-    if (reader.faults == 0) {
+    if (reader.faults == 0 && !reader.no_memory) {
         reader.faults = check_trace(&reader, "profile", &file->amounts.profile) +
                         check_trace(&reader, "helix", &file->amounts.helix);
     }
-    if (reader.faults == 0) {
+    message_end(messages, path);
+
+    if (reader.faults == 0 && !reader.no_memory) {
         return 0;
     }
     scatter_free(file);
-    return EXIT_BAD_INPUT;
+    return reader.no_memory ? message_no_memory(messages) : EXIT_BAD_INPUT;
 }
 
 void scatter_print(const scatter_file *file, FILE *stream) {

@@ -6,6 +6,7 @@
 #define GEARFLANKS_SCATTER_H
 
 #include "key_table.h"
+#include "messages.h"
 
 #include <gearmesh/gearmesh_io.h>
 
@@ -17,8 +18,8 @@ typedef struct scatter_file {
 /* Fills a gm_flank_scatter. */
 extern const key_table scatter_keys;
 
-/* Returns 0, or EXIT_BAD_INPUT after messages on stderr, with nothing allocated. */
-int scatter_read(scatter_file *file, const char *path);
+/* Returns 0, or an exit code after messages, with nothing allocated. */
+int scatter_read(scatter_file *file, const char *path, message_sink *messages);
 
 /* What was given, a comment line each. */
 void scatter_print(const scatter_file *file, FILE *stream);

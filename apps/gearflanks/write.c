@@ -10,20 +10,20 @@
 #include <string.h>
 #include <unistd.h>
 
-static int complain(const result_file *wrong, int status) {
+static int complain(message_sink *messages, const result_file *wrong, int status) {
     if (status != EXIT_DONE) {
-        fprintf(stderr, "gearflanks: %s %s\n", wrong->wrong_path, wrong->reason);
+        message_of_program(messages, "%s %s", wrong->wrong_path, wrong->reason);
     }
     return status;
 }
 
 /* Head and rows. The stream has a descriptor of its own: that of the result stays open to bring it to the disk. */
-static int print_part(const written *what, const result_file *result) {
+static int print_part(message_sink *messages, const written *what, const result_file *result) {
     gm_io_error error;
     const int descriptor = dup(result->data);
     FILE *stream = descriptor >= 0 ? fdopen(descriptor, "wb") : NULL;
     if (stream == NULL) {
-        fprintf(stderr, "gearflanks: %s: %s\n", result->part, strerror(errno));
+        message_of_program(messages, "%s: %s", result->part, strerror(errno));
         if (descriptor >= 0) {
             close(descriptor);
         }
@@ -37,30 +37,29 @@ static int print_part(const written *what, const result_file *result) {
     errno = 0;
     const int not_closed = fclose(stream) != 0;
     if (failed || not_closed) {
-        fprintf(stderr, "gearflanks: %s: %s\n", result->part,
-                failed ? error.text : strerror(errno));
+        message_of_program(messages, "%s: %s", result->part, failed ? error.text : strerror(errno));
         return EXIT_RUN_FAILED;
     }
     return EXIT_DONE;
 }
 
-static int write_part(const written *what, result_file *result) {
+static int write_part(message_sink *messages, const written *what, result_file *result) {
     int status = result_file_check(result, what->path);
 
     if (status == EXIT_DONE) {
         status = result_file_open(result);
     }
-    complain(result, status);
-    return status == EXIT_DONE ? print_part(what, result) : status;
+    complain(messages, result, status);
+    return status == EXIT_DONE ? print_part(messages, what, result) : status;
 }
 
-static int interrupted(void) {
-    fputs("gearflanks: interrupted, no file was written\n", stderr);
+static int interrupted(message_sink *messages) {
+    message_of_program(messages, "interrupted, no file was written");
     return EXIT_INTERRUPTED;
 }
 
 /* Flanks and pitch of a gear belong together: no file is touched before all are whole. */
-int write_files(const written files[], int count) {
+int write_files(const written files[], int count, message_sink *messages) {
     result_file results[WRITTEN_MAX];
     const result_file *wrong = NULL;
     int status = EXIT_DONE;
@@ -69,14 +68,14 @@ int write_files(const written files[], int count) {
     /* A signal waits until the files are in order. */
     interrupt_watch(SECOND_WAITS);
     for (; begun < count && status == EXIT_DONE; ++begun) {
-        status = write_part(&files[begun], &results[begun]);
+        status = write_part(messages, &files[begun], &results[begun]);
         if (status == EXIT_DONE && interrupt_requested()) {
-            status = interrupted();
+            status = interrupted(messages);
         }
     }
     if (status == EXIT_DONE) {
         status = result_files_replace(results, count, &wrong);
-        complain(wrong, status);
+        complain(messages, wrong, status);
     }
 
     for (int i = 0; i < begun; ++i) {
@@ -106,15 +105,15 @@ static const char *see_option(const char *field) {
     return "";
 }
 
-int refuse_input(int status, const gm_io_error *error) {
+int refuse_input(message_sink *messages, int status, const gm_io_error *error) {
     const char *option = see_option(error->option);
 
     if (error->file[0] == '\0') {
-        fprintf(stderr, "gearflanks: %s%s\n", error->text, option);
+        message_of_program(messages, "%s%s", error->text, option);
     } else if (error->line > 0) {
-        fprintf(stderr, "%s:%ld: %s%s\n", error->file, error->line, error->text, option);
+        message_error(messages, "%s:%ld: %s%s", error->file, error->line, error->text, option);
     } else {
-        fprintf(stderr, "%s: %s%s\n", error->file, error->text, option);
+        message_error(messages, "%s: %s%s", error->file, error->text, option);
     }
     return status == GM_IO_ERR_MEMORY ? EXIT_RUN_FAILED : EXIT_BAD_INPUT;
 }

@@ -5,6 +5,8 @@
 #ifndef GEARFLANKS_WRITE_H
 #define GEARFLANKS_WRITE_H
 
+#include "messages.h"
+
 #include <gearmesh/gearmesh_io.h>
 #include <stdio.h>
 
@@ -19,10 +21,10 @@ typedef struct written {
 
 enum { WRITTEN_MAX = 2 };
 
-/* Writes FILE.part of each and renames them when all are whole. Returns an exit code; messages go to stderr. */
-int write_files(const written files[], int count);
+/* Writes FILE.part of each and renames them when all are whole. Returns an exit code. */
+int write_files(const written files[], int count, message_sink *messages);
 
 /* Prints file, line and reason of an error in the input; returns EXIT_BAD_INPUT, or EXIT_RUN_FAILED if it is memory. */
-int refuse_input(int status, const gm_io_error *error);
+int refuse_input(message_sink *messages, int status, const gm_io_error *error);
 
 #endif

@@ -3,6 +3,7 @@
 
 #include "arguments.h"
 #include "keys.h"
+#include "memory.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -10,7 +11,7 @@
 static const char usage[] =
     "usage: gearsim PARAMS.ini [--set section.key=value]... [--output FILE] [--quiet]\n"
     "       gearsim PARAMS.ini --check | --geometry\n"
-    "       gearsim --help | --version\n";
+    "       gearsim --help | --version";
 
 static const char options_help[] =
     "\n"
@@ -18,7 +19,9 @@ static const char options_help[] =
     "\n"
     "Options, before or behind PARAMS.ini, with `--option value` or `--option=value`:\n"
     "  --set section.key=value  replaces a key of the file, or adds one; the last --set of a key "
-    "wins\n"
+    "wins;\n"
+    "                           with nothing behind the `=` the key is not given, and its default "
+    "counts\n"
     "  --output FILE            the result, in place of output.file\n"
     "  --quiet                  no progress, notes and warnings on stderr; errors stay\n"
     "  --check                  reads and checks everything, runs and writes nothing\n"
@@ -41,6 +44,7 @@ static const char options_help[] =
     "\n"
     "PARAMS.ini is UTF-8 text: `[section]` lines, `key = value` lines and comments behind `;` or "
     "`#`.\n"
+    "`key =` with nothing behind it is the same as no such line.\n"
     "All keys, with [default], meaning, range and need; keys that the chosen kind, type or model "
     "does\n"
     "not use are accepted with a warning; --geometry needs [gears] alone and opens no flank file:\n"
@@ -63,8 +67,8 @@ static const option options[] = {
 
 enum { OPTION_COUNT = sizeof options / sizeof options[0] };
 
-static int refuse(const char *text, const char *what) {
-    fprintf(stderr, "gearsim: %s%s\n%s", text, what, usage);
+static int refuse(const arguments *args, const char *text, const char *what) {
+    message_of_program(args->request.messages, "%s%s\n%s", text, what, usage);
     return EXIT_BAD_INPUT;
 }
 
@@ -90,11 +94,11 @@ static void take_value(arguments *args, const option *given, char *value) {
 
 static int take_flag(arguments *args, const option *given) {
     if (given->task == TASK_RUN) {
-        args->request.quiet = 1;
+        args->request.messages->quiet = 1;
         return 0;
     }
     if (args->task != TASK_RUN && args->task != given->task) {
-        return refuse("--check and --geometry exclude each other", "");
+        return refuse(args, "--check and --geometry exclude each other", "");
     }
     args->task = given->task;
     return 0;
@@ -102,10 +106,10 @@ static int take_flag(arguments *args, const option *given) {
 
 static int take_file(arguments *args, const char *path) {
     if (args->request.path != NULL) {
-        return refuse("a second INI file, expected one: ", path);
+        return refuse(args, "a second INI file, expected one: ", path);
     }
     if (*path == '\0') {
-        return refuse("the name of the INI file is empty", "");
+        return refuse(args, "the name of the INI file is empty", "");
     }
     args->request.path = path;
     return 0;
@@ -117,14 +121,14 @@ static int take_option(arguments *args, int count, char *const texts[], int *ind
     char *value = strchr(texts[*index], '=');
 
     if (given == NULL) {
-        return refuse("unknown option ", texts[*index]);
+        return refuse(args, "unknown option ", texts[*index]);
     }
     if (given->value == NO_VALUE) {
         return value == NULL ? take_flag(args, given)
-                             : refuse("no value expected: ", texts[*index]);
+                             : refuse(args, "no value expected: ", texts[*index]);
     }
     if (value == NULL && *index + 1 >= count) {
-        return refuse("a value is missing behind ", given->name);
+        return refuse(args, "a value is missing behind ", given->name);
     }
     take_value(args, given, value != NULL ? value + 1 : texts[++*index]);
     return 0;
@@ -151,17 +155,20 @@ static int take_all(arguments *args, int count, char *const texts[]) {
         }
     }
     if (status == 0 && args->request.path == NULL) {
-        status = refuse("no INI file given", "");
+        status = refuse(args, "no INI file given", "");
     }
     return status;
 }
 
-int arguments_parse(arguments *args, int count, char *const texts[]) {
-    int status;
-
+int arguments_parse(arguments *args, int count, char *const texts[], message_sink *messages) {
     memset(args, 0, sizeof *args);
-    args->overrides = allocate((size_t)(count + 1) * sizeof *args->overrides);
-    status = take_all(args, count, texts);
+    args->request.messages = messages;
+    args->overrides = allocate((size_t)count + 1, sizeof *args->overrides);
+    if (args->overrides == NULL) {
+        return message_no_memory(messages);
+    }
+
+    const int status = take_all(args, count, texts);
     args->request.overrides = args->overrides;
     args->request.purpose = args->task == TASK_GEOMETRY ? CONFIG_FOR_GEOMETRY : CONFIG_FOR_RUN;
     if (status != 0) {
@@ -176,7 +183,7 @@ void arguments_free(arguments *args) {
 }
 
 void arguments_print_help(FILE *stream) {
-    fputs(usage, stream);
+    fprintf(stream, "%s\n", usage);
     fputs(options_help, stream);
     key_table_print(&gearsim_keys, stream);
 }

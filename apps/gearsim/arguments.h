@@ -15,8 +15,8 @@ typedef struct arguments {
     char **overrides; /* what request.overrides points to */
 } arguments;
 
-/* Returns 0, or EXIT_BAD_INPUT with nothing allocated after a message on stderr. */
-int arguments_parse(arguments *arguments, int count, char *const texts[]);
+/* Returns 0, or an exit code with nothing allocated after a message. --quiet makes the messages quiet. */
+int arguments_parse(arguments *arguments, int count, char *const texts[], message_sink *messages);
 void arguments_free(arguments *arguments);
 
 /* What --help prints. */

@@ -48,12 +48,12 @@ static int add(column_list *columns, const config *conf, const char *text, size_
 
     if (name < 0) {
         join(known, sizeof known, names, name_count);
-        config_complain(conf, key, "no such column '%.*s'; this analysis has %s", (int)length, text,
-                        known);
+        config_complain(conf, key, "must name columns of this analysis, which are %s (got '%.*s')",
+                        known, (int)length, text);
         return EXIT_BAD_INPUT;
     }
     if (contains(columns, name)) {
-        config_complain(conf, key, "column '%s' is named twice; name it once", names[name]);
+        config_complain(conf, key, "must name each column once (got '%s' twice)", names[name]);
         return EXIT_BAD_INPUT;
     }
     columns->name[columns->count++] = name;
@@ -63,7 +63,7 @@ static int add(column_list *columns, const config *conf, const char *text, size_
 int columns_select(column_list *columns, const config *conf, const char *const names[],
                    int name_count) {
     columns->count = 0;
-    if (conf->columns == NULL) {
+    if (conf->columns == NULL || strcmp(conf->columns, "all") == 0) {
         for (int i = 0; i < name_count; ++i) {
             columns->name[columns->count++] = i;
         }

@@ -149,11 +149,6 @@ static int take_all(dynamic_run *run) {
  * Start and end
  * ------------------------------------------------------------------------------------------- */
 
-static int out_of_memory(void) {
-    fprintf(stderr, "gearsim: out of memory\n");
-    return EXIT_RUN_FAILED;
-}
-
 static int start_solver(dynamic_run *run) {
     const config *conf = run->conf;
     const integrator_options options = {
@@ -166,12 +161,12 @@ static int start_solver(dynamic_run *run) {
     const int status = model_quasi_static_start(&run->model, start);
 
     if (status != GM_OK) {
-        fprintf(stderr, "gearsim: no quasi-static start at the mean load: %s\n",
-                gm_status_text(status));
+        message_of_program(conf->messages, "no quasi-static start at the mean load: %s",
+                           gm_status_text(status));
         return EXIT_RUN_FAILED;
     }
     run->solver = integrator_create(&run->model, &options, start);
-    return run->solver != NULL ? 0 : out_of_memory();
+    return run->solver != NULL ? 0 : message_no_memory(run->conf->messages);
 }
 
 static enum column_need larger(enum column_need a, enum column_need b) {
@@ -198,12 +193,12 @@ static int start_filter(dynamic_run *run) {
     }
     run->factor = any ? run->conf->oversampling : 1;
     run->filter = decimator_create(run->factor, DYNAMIC_COLUMNS, filtered);
-    return run->filter != NULL ? 0 : out_of_memory();
+    return run->filter != NULL ? 0 : message_no_memory(run->conf->messages);
 }
 
 static int start_run(dynamic_run *run, const gear_mesh *gears) {
     if (model_init(&run->model, run->conf, gears) != 0) {
-        return out_of_memory();
+        return message_no_memory(run->conf->messages);
     }
     run->sample.model = &run->model;
 
@@ -220,21 +215,18 @@ static int start_run(dynamic_run *run, const gear_mesh *gears) {
 static void summarize(const dynamic_run *run) {
     const integrator_statistics counts = integrator_counts(run->solver);
 
-    if (!run->progress.quiet) {
-        fprintf(
-            stderr,
-            "gearsim: %.6g s simulated in %.3g s: %ld steps (%ld more repeated), %ld right-hand "
-            "sides, %ld Jacobians\n",
-            integrator_time(run->solver), progress_elapsed(&run->progress), counts.steps,
-            counts.rejected, counts.derivatives, counts.jacobians);
-    }
+    message_note(run->conf->messages,
+                 "gearsim: %.6g s simulated in %.3g s: %ld steps (%ld more repeated), %ld "
+                 "right-hand sides, %ld Jacobians",
+                 integrator_time(run->solver), progress_elapsed(&run->progress), counts.steps,
+                 counts.rejected, counts.derivatives, counts.jacobians);
 }
 
 /* Tells how it went and closes the file; returns the exit code of the run. */
 static int end_run(dynamic_run *run, int exit_code) {
     progress_clear(&run->progress);
     if (exit_code != 0) {
-        fprintf(stderr, "gearsim: %s\n", run->why);
+        message_of_program(run->conf->messages, "%s", run->why);
     }
     summarize(run);
 
@@ -247,7 +239,7 @@ int dynamics_run(const config *conf, const gear_mesh *gears) {
                        .rows = floor(conf->duration * conf->output_rate + 1e-9) + 1.0};
 
     interrupt_watch(SECOND_KILLS);
-    progress_start(&run.progress, conf->duration, conf->quiet);
+    progress_start(&run.progress, conf->duration, conf->messages);
 
     int exit_code = start_run(&run, gears);
     if (exit_code == 0) {

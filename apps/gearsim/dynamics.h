@@ -7,7 +7,7 @@
 
 #include "gear_mesh.h"
 
-/* Returns an exit code, after a message on stderr if it is not EXIT_DONE. */
+/* Returns an exit code, after a message if it is not EXIT_DONE. */
 int dynamics_run(const config *conf, const gear_mesh *gears);
 
 #endif

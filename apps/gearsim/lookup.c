@@ -26,16 +26,14 @@ int lookup_check(const config *conf, const gear_mesh *gears) {
         return 0;
     }
     if (gears->pair.face_advance == 0.0) {
-        config_complain(
-            conf, "solver.lookup",
-            "not for spur gears, whose sum of penetrations jumps (got on), must be off");
+        config_complain(conf, "solver.lookup",
+                        "must be off for spur gears, whose sum of penetrations jumps (got on)");
         return EXIT_BAD_INPUT;
     }
     if (conf->lookup_depth > deepest) {
-        config_complain(
-            conf, "solver.lookup_depth_um",
-            "out of range (got %.9g), must be at most a quarter of the base pitch, %.9g",
-            1e6 * conf->lookup_depth, 1e6 * deepest);
+        config_complain(conf, "solver.lookup_depth_um",
+                        "must be at most a quarter of the base pitch, %.9g (got %.9g)",
+                        1e6 * deepest, 1e6 * conf->lookup_depth);
         return EXIT_BAD_INPUT;
     }
     return 0;

@@ -7,7 +7,7 @@
 
 #include "gear_mesh.h"
 
-/* Whether these gears can have what is asked for. Returns 0, or EXIT_BAD_INPUT after a message on stderr. */
+/* Whether these gears can have what is asked for. Returns 0, or EXIT_BAD_INPUT after a message. */
 int lookup_check(const config *conf, const gear_mesh *gears);
 
 /* NULL if the run is not to use one. Returns 0, or EXIT_RUN_FAILED if there is no memory. */

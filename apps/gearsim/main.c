@@ -49,16 +49,18 @@ static int perform(enum task task, const config *conf, const gear_mesh *mesh) {
 
 static int load_and_perform(const arguments *args) {
     config conf;
-    gear_mesh mesh;
     int status = config_load(&conf, &args->request);
-
     if (status != 0) {
         return status;
     }
+
+    gear_mesh mesh;
     status = gear_mesh_open(&mesh, &conf);
     if (status == 0) {
-        gear_mesh_note(&mesh, &conf);
-        status = perform(args->task, &conf, &mesh);
+        status = gear_mesh_note(&mesh, &conf);
+        if (status == 0) {
+            status = perform(args->task, &conf, &mesh);
+        }
         gear_mesh_close(&mesh);
     }
     config_free(&conf);
@@ -79,11 +81,11 @@ static int do_task(const arguments *args) {
 }
 
 /* A full disk behind stdout shows only when the text is written out. */
-static int finish_stdout(int status) {
+static int finish_stdout(int status, message_sink *messages) {
     if (fflush(stdout) == 0 && !ferror(stdout)) {
         return status;
     }
-    fprintf(stderr, "gearsim: cannot write to stdout: %s\n", strerror(errno));
+    message_of_program(messages, "cannot write to stdout: %s", strerror(errno));
     return status == EXIT_DONE ? EXIT_RUN_FAILED : status;
 }
 
@@ -92,12 +94,13 @@ int main(int argc, char *argv[]) {
         return EXIT_RUN_FAILED; /* there is nowhere to say it */
     }
 
+    message_sink messages = messages_to(stderr, "gearsim");
     arguments args;
-    int status = arguments_parse(&args, argc, argv);
 
+    int status = arguments_parse(&args, argc, argv, &messages);
     if (status == 0) {
         status = do_task(&args);
         arguments_free(&args);
     }
-    return finish_stdout(status);
+    return finish_stdout(status, &messages);
 }

@@ -34,18 +34,13 @@ static const output_format *format_of(const config *conf) {
 
 int output_fail(output_file *output, int error) {
     output->error = error;
-    fprintf(stderr, "gearsim: %s: %s\n", output->result.part, strerror(error));
+    message_of_program(output->messages, "%s: %s", output->result.part, strerror(error));
     return EXIT_RUN_FAILED;
 }
 
 /* ---------------------------------------------------------------------------------------------
  * Opening
  * ------------------------------------------------------------------------------------------- */
-
-static int out_of_memory(void) {
-    fprintf(stderr, "gearsim: out of memory\n");
-    return EXIT_RUN_FAILED;
-}
 
 static void output_free(output_file *output) {
     result_file_free(&output->result);
@@ -66,10 +61,11 @@ static output_file *create(const config *conf, const char *const names[], int na
                            int *exit_code) {
     output_file *created = calloc(1, sizeof *created);
     if (created == NULL) {
-        *exit_code = out_of_memory();
+        *exit_code = message_no_memory(conf->messages);
         return NULL;
     }
 
+    created->messages = conf->messages;
     created->digits = conf->digits;
     created->format = format_of(conf);
     created->result.data = created->result.lock = -1;
@@ -144,7 +140,7 @@ int output_close(output_file *output, const char *incomplete) {
     if (exit_code == EXIT_DONE && incomplete == NULL) {
         exit_code = result_files_replace(&output->result, 1, &wrong);
         if (exit_code != EXIT_DONE) {
-            fprintf(stderr, "gearsim: %s: %s\n", wrong->wrong_path, wrong->reason);
+            message_of_program(output->messages, "%s: %s", wrong->wrong_path, wrong->reason);
         }
     }
     output_free(output);

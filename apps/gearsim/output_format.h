@@ -28,6 +28,7 @@ extern const output_format csv_format, hdf5_format;
 
 struct output_file {
     const output_format *format;
+    message_sink *messages;
     void *memory; /* of the format, freed by its end() */
     result_file result;
     column_list columns;

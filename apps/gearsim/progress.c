@@ -6,7 +6,6 @@
 
 #include <stdio.h>
 #include <time.h>
-#include <unistd.h>
 
 /* Between two looks at the clock; a sample takes some microseconds. */
 enum { CALLS_PER_LOOK = 256 };
@@ -21,12 +20,12 @@ static double now(void) {
     return (double)time.tv_sec + 1e-9 * (double)time.tv_nsec;
 }
 
-void progress_start(progress *line, double end, int quiet) {
+void progress_start(progress *line, double end, message_sink *messages) {
     const double start = now();
 
     *line = (progress){
-        .shown = !quiet && isatty(STDERR_FILENO),
-        .quiet = quiet,
+        .messages = messages,
+        .shown = messages != NULL && messages->show != NULL && !messages->quiet,
         .end = end,
         .started = start,
         .updated = start,
@@ -48,17 +47,16 @@ int progress_due(progress *line) {
 void progress_update(progress *line, const progress_state *state) {
     const double elapsed = progress_elapsed(line);
     const double left = state->time > 0.0 ? elapsed * (line->end / state->time - 1.0) : 0.0;
+    char text[160];
 
     line->updated = now();
-    /* \033[K: the rest of a longer line before is wiped. */
-    fprintf(stderr, "\r%.3f of %g s, %.0f rpm, %ld steps, %.0f s left\033[K", state->time,
-            line->end, state->speed * rpm, state->steps, left);
-    fflush(stderr);
+    snprintf(text, sizeof text, "%.3f of %g s, %.0f rpm, %ld steps, %.0f s left", state->time,
+             line->end, state->speed * rpm, state->steps, left);
+    message_show(line->messages, text);
 }
 
 void progress_clear(const progress *line) {
     if (line->shown) {
-        fprintf(stderr, "\r\033[K");
-        fflush(stderr);
+        message_show(line->messages, "");
     }
 }

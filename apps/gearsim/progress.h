@@ -2,16 +2,16 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 
 /*
- * One line on stderr that tells how far a run is, if stderr is a terminal; and a summary at the end.
+ * One line that tells how far a run is, if messages go to a terminal.
  */
 #ifndef GEARSIM_PROGRESS_H
 #define GEARSIM_PROGRESS_H
 
-#include <stddef.h>
+#include "messages.h"
 
 typedef struct progress {
-    int shown;      /* stderr is a terminal, and nobody asked for quiet */
-    int quiet;      /* no summary either */
+    message_sink *messages;
+    int shown;      /* there is a terminal, and nobody asked for quiet */
     double end;     /* simulated time at the end (s) */
     double started; /* seconds of a clock that only runs forward */
     double updated;
@@ -24,7 +24,7 @@ typedef struct progress_state {
     long steps;   /* of the solver */
 } progress_state;
 
-void progress_start(progress *line, double end, int quiet);
+void progress_start(progress *line, double end, message_sink *messages);
 
 /* Cheap enough to be called very often. Returns whether an update is due. */
 int progress_due(progress *line);

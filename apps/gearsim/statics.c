@@ -95,7 +95,7 @@ static const char *place_text(char text[PLACE_SIZE], double load, double angle) 
 }
 
 /* Why a position could not be written, as a message and in the file. */
-static int fail(output_file *output, double load, double angle, int status) {
+static int fail(const config *conf, output_file *output, double load, double angle, int status) {
     char place[PLACE_SIZE];
     char why[256];
 
@@ -105,17 +105,17 @@ static int fail(output_file *output, double load, double angle, int status) {
     } else {
         snprintf(why, sizeof why, "no equilibrium %s: %s", place, gm_status_text(status));
     }
-    fprintf(stderr, "gearsim: %s\n", why);
+    message_of_program(conf->messages, "%s", why);
     output_close(output, why);
     return EXIT_RUN_FAILED;
 }
 
-static int interrupted(output_file *output, double load, double angle) {
+static int interrupted(const config *conf, output_file *output, double load, double angle) {
     char place[PLACE_SIZE];
     char why[128];
 
     snprintf(why, sizeof why, "interrupted %s", place_text(place, load, angle));
-    fprintf(stderr, "gearsim: %s\n", why);
+    message_of_program(conf->messages, "%s", why);
     output_close(output, why);
     return EXIT_INTERRUPTED;
 }
@@ -130,10 +130,10 @@ static int write_period(const config *conf, const gear_mesh *gears, double load,
         int status;
 
         if (interrupt_requested()) {
-            return interrupted(output, load, angle);
+            return interrupted(conf, output, load, angle);
         }
         if (write_position(conf, gears, angle, &before, output, &status) != 0) {
-            return fail(output, load, angle, status);
+            return fail(conf, output, load, angle, status);
         }
     }
     return 0;

@@ -51,7 +51,7 @@ static double make(const gm_pair *pair) {
     gm_pitch pitch;
     double sum = -1.0;
 
-    if (scatter_read(&file, fuzz_file_path(&input)) != 0)
+    if (scatter_read(&file, fuzz_file_path(&input), NULL) != 0)
         return -2.0;
     gm_generate_options_default(&options);
     options.scatter = &file.amounts;

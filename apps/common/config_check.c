@@ -1,0 +1,158 @@
+/* SPDX-FileCopyrightText: The gearmesh authors */
+/* SPDX-License-Identifier: BSD-3-Clause */
+
+#include "config_check.h"
+#include "keys.h"
+#include "modification_keys.h"
+#include "paths.h"
+#include "result_file.h"
+
+#include <math.h>
+
+/* More rows than anybody can read, and noise values beyond which a double cannot count them. */
+static const double row_limit = 1e9;
+static const double noise_limit = 1e15;
+
+static const char *condition_of(const key_spec *key, const config *conf) {
+    if (key->required & (FOR_SPEED | FOR_TORQUE)) {
+        return conf->drive == DRIVE_SPEED ? " for drive.kind = speed" : " for drive.kind = torque";
+    }
+    if (key->required & FOR_DYNAMIC) {
+        return " for a dynamic run";
+    }
+    return key->required & FOR_RUN ? " for a run" : "";
+}
+
+int config_check_missing(const config *conf) {
+    int faults = 0;
+
+    for (int i = 0; i < gearsim_keys.count; ++i) {
+        if (conf->entries[i].text != NULL || !key_is_required(&gearsim_keys.keys[i], conf)) {
+            continue;
+        }
+        config_complain(conf, gearsim_keys.keys[i].full_name,
+                        "missing, but required%s: add %s to [%s]",
+                        condition_of(&gearsim_keys.keys[i], conf), gearsim_keys.keys[i].name,
+                        gearsim_keys.keys[i].section);
+        ++faults;
+    }
+    return faults;
+}
+
+static int check_profile_window(const config *conf) {
+    if (conf->profile_from < conf->profile_to) {
+        return 0;
+    }
+    config_complain(conf, "flanks.profile_from",
+                    "must be smaller than flanks.profile_to (got %.9g and %.9g)",
+                    conf->profile_from, conf->profile_to);
+    return 1;
+}
+
+/* The loads of a static analysis must not pass zero. */
+static int check_loads(const config *conf) {
+    const double rows = (double)conf->loads * conf->positions;
+
+    if (!(rows <= row_limit)) {
+        config_complain(conf, "analysis.loads",
+                        "must give at most %.9g rows (got %d loads with %d positions)", row_limit,
+                        conf->loads, conf->positions);
+        return 1;
+    }
+    if (conf->loads > 1 && isnan(conf->end_load)) {
+        config_complain(conf, "analysis.loads", "must be 1 without load.end_Nm (got %d)",
+                        conf->loads);
+        return 1;
+    }
+    if (conf->loads > 1 && !(conf->mean_load * conf->end_load > 0)) {
+        config_complain(conf, "load.end_Nm",
+                        "must have the sign of load.mean_Nm (got %.9g and %.9g)", conf->end_load,
+                        conf->mean_load);
+        return 1;
+    }
+    return 0;
+}
+
+static int check_static(const config *conf) {
+    int faults = 0;
+
+    if (conf->model != MODEL_3D) {
+        config_complain(conf, "mesh.model", "must be 3d for a static analysis (got simple)");
+        ++faults;
+    }
+    if (conf->mean_load == 0) {
+        config_complain(conf, "load.mean_Nm",
+                        "must not be 0 in a static analysis, where no load leaves the gears "
+                        "anywhere in the backlash (got 0)");
+        ++faults;
+    }
+    return faults + check_loads(conf);
+}
+
+static int check_dynamic(const config *conf) {
+    int faults = 0;
+
+    if (!(conf->duration * conf->output_rate <= row_limit)) {
+        config_complain(conf, "output.rate_Hz",
+                        "must give at most %.9g rows (got %.9g in %.9g s): lower it or "
+                        "analysis.duration_s",
+                        row_limit, conf->output_rate, conf->duration);
+        ++faults;
+    }
+    if (!(conf->duration / conf->noise_interval <= noise_limit)) {
+        config_complain(conf, "load.noise_interval_s",
+                        "must be at least %.9g of analysis.duration_s (got %.9g)", 1 / noise_limit,
+                        conf->noise_interval);
+        ++faults;
+    }
+    return faults;
+}
+
+static int check_not_input(const config *conf, const char *input, const char *name) {
+    if (input == NULL || !result_file_would_replace(conf->output_file, input)) {
+        return 0;
+    }
+    config_complain(conf, "output.file",
+                    "must not overwrite an input (got %s%s, which is %s): give another name",
+                    conf->output_file, is_same_place(conf->output_file, input) ? "" : ".part",
+                    name);
+    return 1;
+}
+
+/* Neither the result nor the file that it grows in may be one that is read. */
+static int check_output_is_no_input(const config *conf) {
+    return check_not_input(conf, conf->path, "the INI file") +
+           check_not_input(conf, conf->pinion_flanks.deviations, "flanks.pinion") +
+           check_not_input(conf, conf->wheel_flanks.deviations, "flanks.wheel") +
+           check_not_input(conf, conf->pinion_flanks.pitch, "flanks.pinion_pitch") +
+           check_not_input(conf, conf->wheel_flanks.pitch, "flanks.wheel_pitch");
+}
+
+int config_check_together(const config *conf) {
+    int faults = check_profile_window(conf);
+
+    if (conf->purpose != CONFIG_FOR_RUN) {
+        return faults;
+    }
+    if (conf->model == MODEL_3D) {
+        faults += modification_keys_check(conf);
+    }
+    faults += conf->analysis == ANALYSIS_STATIC ? check_static(conf) : check_dynamic(conf);
+    return faults + check_output_is_no_input(conf);
+}
+
+void config_warn_of_unused(const config *conf) {
+    const char *reason;
+
+    for (int i = 0; i < gearsim_keys.count; ++i) {
+        if (conf->entries[i].text != NULL && !key_is_used(&gearsim_keys.keys[i], conf, &reason)) {
+            config_warn(conf, gearsim_keys.keys[i].full_name, "not used with %s", reason);
+        }
+    }
+    if (conf->analysis == ANALYSIS_STATIC && conf->loads == 1 && !isnan(conf->end_load)) {
+        config_warn(conf, "load.end_Nm", "not used with analysis.loads = 1");
+    }
+    if (conf->model == MODEL_3D) {
+        modification_keys_warn(conf);
+    }
+}
