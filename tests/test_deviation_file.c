@@ -153,45 +153,44 @@ static void a_set_that_serves_all_leaves_no_tooth_ideal(void) {
 
 static void a_missing_node_is_named(void) {
     refused(HEADER "1,drive,0,0,1\n1,drive,0,1,2\n1,drive,1,0,3\n", 2,
-            "tooth 1, flank drive, which begins here, has no row for t1 = 1, t2 = 1",
-            "4 rows for 2 x 2 nodes are right, it has 3");
+            "tooth 1, flank drive, which begins here: must have 4 rows for 2 x 2 nodes (got 3",
+            "none for t1 = 1, t2 = 1");
     refused(HEADER "# 3 x 2\n*,*,0,0,1\n*,*,0,1,1\n*,*,0.5,1,1\n*,*,1,0,1\n*,*,1,1,1\n", 3,
-            "has no row for t1 = 0.5, t2 = 0", "6 rows for 3 x 2 nodes are right, it has 5");
+            "none for t1 = 0.5, t2 = 0", "must have 6 rows for 3 x 2 nodes (got 5");
 }
 
 static void a_node_missing_in_a_later_set_is_named(void) {
     refused(HEADER SET("1,drive") "2,drive,0,0,1\n2,drive,1,0,2\n2,drive,1,1,3\n", 6,
-            "tooth 2, flank drive, which begins here, has no row for t1 = 0, t2 = 1", "2 x 2");
+            "tooth 2, flank drive, which begins here: must have", "2 x 2");
 }
 
 static void a_repeated_node_is_named(void) {
-    refused(HEADER SET("1,drive") "1,drive,1,0,3\n", 6,
-            "tooth 1, flank drive has a second row for t1 = 1, t2 = 0", "one row per node");
+    refused(HEADER SET("1,drive") "1,drive,1,0,3\n", 6, "a second one for t1 = 1, t2 = 0",
+            "tooth 1, flank drive: must have one row per node");
     /* In place of a node that is missing: the number of rows looks right. */
     refused(HEADER "1,drive,0,0,1\n1,drive,0,1,2\n1,drive,1,0,3\n1,drive,1,0,4\n", 5,
-            "a second row for t1 = 1, t2 = 0", "one row per node");
+            "a second one for t1 = 1, t2 = 0", "one row per node");
     /* Within the tolerance of positions. */
-    refused(HEADER SET("1,drive") "1,drive,0.999995,0,3\n", 6, "a second row for t1 = 0.999995",
+    refused(HEADER SET("1,drive") "1,drive,0.999995,0,3\n", 6, "a second one for t1 = 0.999995",
             "one row per node");
 }
 
 static void a_line_of_nodes_that_is_mostly_missing_is_named(void) {
     refused(HEADER "*,*,0,0,1\n*,*,0,0.2,1\n*,*,0,0.4,1\n*,*,0,0.6,1\n*,*,0,0.8,1\n*,*,0,1,1\n"
                    "*,*,1,1,1\n",
-            2, "has no row for t1 = 1, t2 = 0", "12 rows for 2 x 6 nodes are right, it has 7");
+            2, "none for t1 = 1, t2 = 0", "must have 12 rows for 2 x 6 nodes (got 7");
 }
 
 static void a_file_that_holds_everything_twice_is_refused(void) {
-    refused(HEADER SET("1,drive") SET("1,drive"), 6, "a second row for t1 = 0, t2 = 0",
+    refused(HEADER SET("1,drive") SET("1,drive"), 6, "a second one for t1 = 0, t2 = 0",
             "one row per node");
 }
 
 static void an_uneven_grid_is_refused(void) {
     refused(HEADER "*,*,0,0,1\n*,*,0.3,0,1\n*,*,1,0,1\n*,*,0,1,1\n*,*,0.3,1,1\n*,*,1,1,1\n", 3,
-            "t1 = 0.3 is not on the grid of 3 x 2 uniform nodes", "the nearest right value is 0.5");
+            "t1: must be on the grid of 3 x 2 uniform nodes", "for example 0.5 (got 0.3)");
     refused(HEADER "*,*,0,0,1\n*,*,0,0.50002,1\n*,*,0,1,1\n*,*,1,0,1\n*,*,1,0.50002,1\n*,*,1,1,1\n",
-            3, "t2 = 0.50002 is not on the grid of 2 x 3 uniform nodes",
-            "the nearest right value is 0.5");
+            3, "t2: must be on the grid of 2 x 3 uniform nodes", "for example 0.5 (got 0.50002)");
 }
 
 static void one_wrong_position_among_many_rows_is_the_one_that_is_named(void) {
@@ -202,25 +201,25 @@ static void one_wrong_position_among_many_rows_is_the_one_that_is_named(void) {
             sprintf(text + strlen(text), "0,coast,%.6f,%.6f,1\n", face / 5.0 + slip, profile / 3.0);
         }
     }
-    refused(text, 2 + 3 * 4 + 2, "t1 = 0.61 is not on the grid of 6 x 4 uniform nodes",
-            "the nearest right value is 0.6");
+    refused(text, 2 + 3 * 4 + 2, "t1: must be on the grid of 6 x 4 uniform nodes",
+            "for example 0.6 (got 0.61)");
 }
 
 static void a_grid_that_differs_between_sets_is_refused(void) {
     refused(HEADER SET("1,drive") "2,drive,0,0,1\n2,drive,0.5,0,1\n2,drive,1,0,1\n"
                                   "2,drive,0,1,1\n2,drive,0.5,1,1\n2,drive,1,1,1\n",
-            7, "t1 = 0.5 is not on the grid of 2 x 2 uniform nodes that tooth 1, flank drive",
-            "the nearest right value is");
+            7, "t1: must be on the grid of 2 x 2 uniform nodes that tooth 1, flank drive",
+            "(got 0.5)");
     /* Coarser than the first: all positions lie on its grid, nodes are missing. */
     refused(HEADER "2,drive,0,0,1\n2,drive,0.5,0,1\n2,drive,1,0,1\n2,drive,0,1,1\n2,drive,0.5,1,1\n"
                    "2,drive,1,1,1\n" SET("3,drive"),
-            8, "tooth 3, flank drive, which begins here, has no row for t1 = 0.5, t2 = 0",
-            "6 rows for 3 x 2 nodes are right, it has 4");
+            8, "tooth 3, flank drive, which begins here: must have 6 rows for 3 x 2 nodes (got 4",
+            "none for t1 = 0.5, t2 = 0");
     /* Turned around: as many rows. */
     refused(HEADER "2,drive,0,0,1\n2,drive,0.5,0,1\n2,drive,1,0,1\n2,drive,0,1,1\n2,drive,0.5,1,1\n"
                    "2,drive,1,1,1\n3,drive,0,0,1\n3,drive,0,0.5,1\n3,drive,0,1,1\n3,drive,1,0,1\n"
                    "3,drive,1,0.5,1\n3,drive,1,1,1\n",
-            9, "t2 = 0.5 is not on the grid of 3 x 2 uniform nodes", "the nearest right value is");
+            9, "t2: must be on the grid of 3 x 2 uniform nodes", "for example 1 (got 0.5)");
 }
 
 static void fewer_than_two_nodes_along_a_direction_are_refused(void) {
@@ -239,11 +238,11 @@ static void a_grid_that_does_not_reach_from_0_to_1_is_refused(void) {
 }
 
 static void positions_outside_0_to_1_are_refused(void) {
-    refused(HEADER "1,drive,-0.1,0,1\n", 2, "t1 is '-0.1'", "from 0 to 1");
-    refused(HEADER "1,drive,1.00002,0,1\n", 2, "t1 is '1.00002'", "from 0 to 1");
-    refused(HEADER "1,drive,0,-0.00002,1\n", 2, "t2 is '-0.00002'", "from 0 to 1");
-    refused(HEADER "1,drive,0,17.5,1\n", 2, "t2 is '17.5'", "from 0 to 1");
-    refused(HEADER "1,drive,0,1e300,1\n", 2, "t2 is '1e300'", "from 0 to 1");
+    refused(HEADER "1,drive,-0.1,0,1\n", 2, "got '-0.1'", "t1: must be from 0 to 1");
+    refused(HEADER "1,drive,1.00002,0,1\n", 2, "got '1.00002'", "t1: must be from 0 to 1");
+    refused(HEADER "1,drive,0,-0.00002,1\n", 2, "got '-0.00002'", "t2: must be from 0 to 1");
+    refused(HEADER "1,drive,0,17.5,1\n", 2, "got '17.5'", "t2: must be from 0 to 1");
+    refused(HEADER "1,drive,0,1e300,1\n", 2, "got '1e300'", "t2: must be from 0 to 1");
 }
 
 static void positions_in_micrometres_of_grid_lines_are_refused(void) {
@@ -253,7 +252,7 @@ static void positions_in_micrometres_of_grid_lines_are_refused(void) {
     for (int face = 0; face <= 20000; face++) {
         end += sprintf(end, "*,*,%.6f,0,1\n*,*,%.6f,1,1\n", face / 20000.0, face / 20000.0);
     }
-    refused(text, 2, "positions t1 too close together", "2 to 10000 uniform ones");
+    refused(text, 2, "too close together", "2 to 10000 uniform ones");
 }
 
 static void as_many_grid_lines_as_the_core_takes_are_accepted(void) {
@@ -274,8 +273,8 @@ static void a_few_scattered_rows_do_not_ask_for_a_large_table(void) {
     for (int line = 0; line < 10000; line++) {
         end += sprintf(end, "*,*,%.5f,%.5f,1\n", line / 9999.0, line / 9999.0);
     }
-    refused(text, 2, "has no row for t1 = 0, t2 = 0.00010001",
-            "100000000 rows for 10000 x 10000 nodes are right, it has 10000");
+    refused(text, 2, "none for t1 = 0, t2 = 0.00010001",
+            "must have 100000000 rows for 10000 x 10000 nodes (got 10000");
 }
 
 /* ---------------------------------------------------------------------------------------------
@@ -284,20 +283,20 @@ static void a_few_scattered_rows_do_not_ask_for_a_large_table(void) {
 
 static void a_pitch_file_in_place_of_deviations_is_refused(void) {
     refused("tooth,flank,deviation_um\n1,drive,1\n", 1, "'tooth,flank,deviation_um'",
-            "tooth,flank,t1,t2,deviation_um is right");
+            "must be tooth,flank,t1,t2,deviation_um");
 }
 
 static void a_file_without_rows_is_refused(void) {
-    refused(HEADER, 1, "no rows", "at least 2 x 2 nodes");
+    refused(HEADER, 1, "(got none)", "at least 2 x 2 nodes");
 }
 
 static void every_column_is_checked(void) {
-    refused(HEADER "45,drive,0,0,1\n", 2, "tooth is '45'", "from 0 to 44");
-    refused(HEADER "1,right,0,0,1\n", 2, "flank is 'right'", "drive, coast, or *");
-    refused(HEADER "1,drive,x,0,1\n", 2, "t1 is 'x'", "a number like");
-    refused(HEADER "1,drive,0,nan,1\n", 2, "t2 is 'nan'", "a number like");
-    refused(HEADER "1,drive,0,0,1um\n", 2, "deviation_um is '1um'", "a number like");
-    refused(HEADER "1,drive,0,0\n", 2, "4 fields", "5 are right");
+    refused(HEADER "45,drive,0,0,1\n", 2, "got '45'", "tooth: must be a whole number from 0 to 44");
+    refused(HEADER "1,right,0,0,1\n", 2, "got 'right'", "flank: must be drive, coast, or *");
+    refused(HEADER "1,drive,x,0,1\n", 2, "got 'x'", "t1: must be a number like");
+    refused(HEADER "1,drive,0,nan,1\n", 2, "got 'nan'", "t2: must be a number like");
+    refused(HEADER "1,drive,0,0,1um\n", 2, "got '1um'", "deviation_um: must be a number like");
+    refused(HEADER "1,drive,0,0\n", 2, "(got 4", "must have 5 fields");
     refused(HEADER "1,drive,0,0,1,5\n", 2, "decimal comma", "write 1.5");
 }
 
@@ -439,10 +438,10 @@ static void not_written(const char *value) {
 static void what_could_not_be_read_back_is_not_written(void) {
     make_own(0);
     values[1][5] = (double)NAN;
-    not_written("set 1 of the deviations has a value that is not finite");
+    not_written("set 1 of the deviations: all values must be finite");
     make_own(0);
     sets[2].tooth = 45;
-    not_written("set 2 of the deviations is for tooth 45");
+    not_written("(got tooth 45 and side 1)");
     make_own(0);
     sets[2].side = 2;
     not_written("side 2");
@@ -451,25 +450,25 @@ static void what_could_not_be_read_back_is_not_written(void) {
     not_written("without values");
     make_own(0);
     sets[2] = sets[0];
-    not_written("tooth *, flank drive has two sets of deviations, 0 and 2");
+    not_written("tooth *, flank drive: must have one set of deviations (got two, 0 and 2)");
     make_own(0);
     own.set_count = 0;
-    not_written("no deviations to write");
+    not_written("deviations to write: must be at least one set");
     make_own(0);
     own.sets = NULL;
-    not_written("which are not there");
+    not_written("must have the sets that they count");
     make_own(0);
     own.profile_nodes = 1;
-    not_written("7 x 1 nodes");
+    not_written("(got 7 x 1)");
     make_own(0);
     own.face_nodes = 1;
-    not_written("1 x 4 nodes");
+    not_written("(got 1 x 4)");
     make_own(0);
     own.face_nodes = 10001;
-    not_written("10001 x 4 nodes");
+    not_written("(got 10001 x 4)");
     make_own(0);
     own.teeth = 2;
-    not_written("a gear of 2 teeth");
+    not_written("(got 2)");
 }
 
 static void a_call_without_a_required_pointer_is_refused(void) {

@@ -296,7 +296,7 @@ static void designs_that_cannot_be_are_refused(void) {
     refused("modification 1: its amount", "at most 10 mm");
     begin();
     design.gear = &pair.wheel;
-    refused("for 41 teeth", "the gear has 45");
+    refused("(got 41)", "the modifications must be for the 45 teeth of the gear");
     begin();
     design.gear = NULL;
     refused("pointer is NULL", "");
@@ -305,7 +305,7 @@ static void designs_that_cannot_be_are_refused(void) {
     refused("its face_width", "> 0");
     begin();
     options.modification_tolerance = 0.0;
-    refused("no grid", "1e-12 m");
+    refused("(got 0)", "modification_tolerance: must be at least 1e-12 m");
     begin();
     static gm_modification
         many[GM_MODIFICATIONS_MAX]; /* 2 m together, beyond a double with this factor */

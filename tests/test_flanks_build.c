@@ -277,7 +277,7 @@ static void refused(const char *value) {
 static void options_out_of_range_are_refused(void) {
     begin();
     options.scale = (double)NAN;
-    refused("the scale is not finite");
+    refused("the scale must be finite");
     begin();
     options.normal_factor = 0.0;
     refused("normal factor");
@@ -301,24 +301,24 @@ static void options_out_of_range_are_refused(void) {
 static void another_number_of_teeth_is_refused(void) {
     begin();
     deviations.teeth = TEETH + 1;
-    refused("flank deviations are for 6 teeth; the gear has 5");
+    refused("flank deviations must be for the 5 teeth of the gear (got 6)");
     begin();
     pitch.teeth = TEETH - 1;
-    refused("pitch deviations are for 4 teeth; the gear has 5");
+    refused("pitch deviations must be for the 5 teeth of the gear (got 4)");
     begin();
     GM_ASSERT_INT(gm_flanks_build(&flanks, &memory, 2, NULL, NULL, NULL, NULL, &error),
                   GM_IO_ERR_OPTION);
-    assert_error(&error, "", 0, "a gear of 2 teeth", "3 to 100000");
+    assert_error(&error, "", 0, "(got 2)", "teeth: must be from 3 to 100000");
 }
 
 static void values_that_are_not_finite_are_refused(void) {
     begin();
     add_set(1, 1, 0.0);
     values[0][7] = (double)NAN;
-    refused("set 0 of the deviations has a value that is not finite");
+    refused("set 0 of the deviations: all values must be finite");
     begin();
     coast_pitch[3] = (double)INFINITY;
-    refused("pitch deviation of tooth 3 is not finite");
+    refused("pitch deviations of tooth 3: must be finite");
 }
 
 static void values_that_the_scale_makes_absurd_are_refused(void) {
@@ -340,7 +340,7 @@ static void two_sets_for_the_same_flank_are_refused(void) {
     add_set(1, GM_DRIVE, 0.0);
     add_set(-1, -1, 0.0);
     add_set(1, GM_DRIVE, 0.0);
-    refused("tooth 1, flank drive has two sets");
+    refused("tooth 1, flank drive: must have one set");
 }
 
 static void a_call_without_a_required_pointer_is_refused(void) {

@@ -177,7 +177,7 @@ class Scatter(Case):
                          "--pitch", "p.csv")
             self.refused(said, PARAMS, "--gear", "wheel", "--scatter", path, "--flanks", "f.csv", "--pitch", "p.csv")
         path = self.write("scatter.ini", "[helix]\nwave_most_um = 1\nwaves_most = 6\n")
-        self.refused("helix: too many waves for 21 nodes", PARAMS, "--gear", "wheel", "--scatter", path, "--flanks",
+        self.refused("helix: must have 4 nodes per wave (got too many waves for 21 nodes)", PARAMS, "--gear", "wheel", "--scatter", path, "--flanks",
                      "f.csv", "--pitch", "p.csv")
         path = self.write("scatter.ini", "[helix]\nwave_least_um = 1\n")
         self.refused("helix.wave_most_um: must be at least wave_least_um (got 0)", PARAMS, "--gear", "wheel", "--scatter", path,

@@ -225,12 +225,12 @@ class Refusals(Case):
             path = self.write("t.csv", "".join(self.each(5, lambda um, factor=factor: factor * um)))
             self.refused(["t.csv:", said], *EXAMPLE, "--traces", path)
         self.traces = self.each(5, lambda um: -um)
-        self.bad_traces(0, ["16 of 16 traces stand out", "> 0 for material added is right", "(see --hollow)"])
+        self.bad_traces(0, ["16 of 16 traces that stand out", "material added: must be > 0", "(see --hollow)"])
 
     def test_lengths(self):
         rows = self.traces
         self.traces = self.each(4, lambda mm: mm / 10)
-        self.bad_traces(5, ["below the base circle", "centimetres"])
+        self.bad_traces(5, ["(base circle)", "centimetres"])
         self.traces = rows
         self.traces = self.each(4, lambda mm: mm / 2)
         self.bad_traces(5, ["a radius"])
@@ -239,7 +239,7 @@ class Refusals(Case):
         self.bad_traces(102, ["the helix trace of tooth 1, flank left", "inches"])
         self.traces = rows
         self.traces[100] = "1,left,profile,8.75,94.2,-14\n"
-        self.bad_traces(101, ["leaves the gear", "is right, the tip"])
+        self.bad_traces(101, ["leaves the gear", "must be at a roll length up to"])
 
     def test_spikes_teeth_and_text(self):
         rows = list(self.traces)
@@ -248,32 +248,32 @@ class Refusals(Case):
         self.traces = rows
         self.bad_traces(5, ["may be missing at either end", "(see --held)"], "--held", "0.01")
         self.traces = self.change(rows, "^1,", "0,")
-        self.bad_traces(5, ["no tooth 0", "(see --first-number)"])
+        self.bad_traces(5, ["(got 0)", "(see --first-number)"])
         self.traces = rows + rows[4:101]
-        self.bad_traces(len(rows) + 1, ["twice", "begins in line 5", "two teeth with the number 1"])
+        self.bad_traces(len(rows) + 1, ["must be there once", "begins in line 5", "two teeth with the number 1"])
         self.traces = self.change(rows, "^34,", "46,")
-        self.bad_traces(4 + 6 * 182 + 1, ["no tooth 46", "1 to 45 is right, as the gear has 45 teeth"])
+        self.bad_traces(4 + 6 * 182 + 1, ["(got 46)", "must be from 1 to 45, as the gear has 45 teeth"])
         self.traces = self.change(rows, "_um", "")
         self.bad_traces(4, ["'deviation' has no unit", "deviation_um"])
         self.traces = self.change(rows, ",", ";")
         self.bad_traces(4, ["semicolons", "commas"])
         self.traces = self.change(rows, r"(\d)\.(\d\d\n)", r"\1,\2")
-        self.bad_traces(5, ["7 fields", "decimal comma"])
+        self.bad_traces(5, ["(got 7", "decimal comma"])
 
     def test_pitch(self):
         rows = list(self.pitch)
         self.pitch = rows[:50] + rows[51:]
-        self.bad_pitch(0, ["no row for tooth 24", "each of the 45 teeth"])
+        self.bad_pitch(0, ["none for tooth 24", "each of the 45 teeth"])
         self.pitch = rows + ["3,left,1.0\n"]
-        self.bad_pitch(len(rows) + 1, ["second row", "the first is in line 8"])
+        self.bad_pitch(len(rows) + 1, ["a second one", "the first is in line 8"])
         self.pitch = rows[:85]
         self.bad_pitch(0, ["42, 43, 44, 45", "the other gear"])
         self.pitch = self.change(rows, "cumulative", "single")
-        self.bad_pitch(5, ["single pitch deviations of flank right add up to", "0 is right"])
+        self.bad_pitch(5, ["single pitch deviations of flank right: must add up to 0", " um)"])
         self.pitch = self.change(rows, r"_um\n", "_mm\n")
         self.bad_pitch(3, ["'cumulative_pitch_mm'", "cumulative_pitch_um"])
         self.pitch = self.change(rows, r"\.(\d)\n", r",\1\n")
-        self.bad_pitch(4, ["4 fields", "decimal comma"])
+        self.bad_pitch(4, ["(got 4", "decimal comma"])
 
     def test_options(self):
         some = EXAMPLE[:3]
@@ -302,9 +302,9 @@ class Refusals(Case):
             ("--count", "left", "clockwise or counterclockwise"),
             ("--first-number", "2", "0 or 1"),
             ("--first-tooth", "-1", "0 or more"),
-            ("--first-tooth", "45", "from 0 to 44 (see --first-tooth)"),
+            ("--first-tooth", "45", "from 0 to 44 (got 45) (see --first-tooth)"),
             ("--pitch-diameter", "x", "in mm"),
-            ("--pitch-diameter", "80", "(tip) (see --pitch-diameter)"),
+            ("--pitch-diameter", "80", "(tip) in diameter (got 80 mm) (see --pitch-diameter)"),
             ("--held", "0.5", "0 to 0.45"),
             ("--nodes", "1x9", "2 to 1000"),
         ):

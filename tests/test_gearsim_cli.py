@@ -781,13 +781,13 @@ class Flanks(Case):
         self.refused_file(DEVIATIONS.replace("*,*,", "45,*,", 1), "flanks.csv:2: ", "45", "44")
 
     def test_duplicate_node(self):
-        self.refused_file(DEVIATIONS + "*,*,1,1,1\n", "flanks.csv:6: ", "second row")
+        self.refused_file(DEVIATIONS + "*,*,1,1,1\n", "flanks.csv:6: ", "a second one")
 
     def test_short_line(self):
-        self.refused_file(DEVIATIONS.replace("*,*,1,0,0", "*,*,1,0"), "flanks.csv:4: ", "4 fields")
+        self.refused_file(DEVIATIONS.replace("*,*,1,0,0", "*,*,1,0"), "flanks.csv:4: ", "must have 5 fields", "(got 4)")
 
     def test_no_rows(self):
-        self.refused_file("tooth,flank,t1,t2,deviation_um\n", "flanks.csv:", "no rows")
+        self.refused_file("tooth,flank,t1,t2,deviation_um\n", "flanks.csv:", "(got none)")
 
     def test_text_for_a_number(self):
         for value in ["much", "nan", "1e400", "0x1"]:
@@ -799,7 +799,7 @@ class Flanks(Case):
         self.refused_file(header + "0,drive,1\n45,drive,1\n", "pitch.csv:3: ", "45", key="pinion_pitch", name="pitch.csv")
         self.refused_file(header + "0,drive,1\n0,drive,1\n", "pitch.csv:3: ", key="pinion_pitch", name="pitch.csv")
         self.refused_file(header + "41,drive,1\n", "pitch.csv:2: ", "41", key="wheel_pitch", name="pitch.csv")
-        self.refused_file(header, "pitch.csv:", "no rows", key="wheel_pitch", name="pitch.csv")
+        self.refused_file(header, "pitch.csv:", "(got none)", key="wheel_pitch", name="pitch.csv")
 
     def test_teeth_without_rows_are_noted(self):
         self.write("flanks.csv", DEVIATIONS.replace("*,*,", "7,drive,"))

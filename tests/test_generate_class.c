@@ -318,9 +318,9 @@ static void refused(const char *text) {
 static void options_out_of_range_are_refused(void) {
     begin(0);
     options.quality_class = 0;
-    refused("class 0; 1 to 11");
+    refused("class: must be from 1 to 11 (got 0)");
     options.quality_class = 12;
-    refused("class 12; 1 to 11");
+    refused("class: must be from 1 to 11 (got 12)");
     begin(0);
     options.share = 0.79;
     refused("0.8 to 0.99");
@@ -328,15 +328,15 @@ static void options_out_of_range_are_refused(void) {
     refused("0.8 to 0.99");
     begin(0);
     options.face_nodes = 8;
-    refused("8 x 31 nodes; 9 to 1000");
+    refused("nodes: must be 9 to 1000 each way (got 8 x 31)");
     begin(0);
     options.profile_nodes = 1001;
-    refused("21 x 1001 nodes");
+    refused("(got 21 x 1001)");
     begin(0);
     options.wave_count = 1;
-    refused("1 waves; 0 to 100");
+    refused("waves: must be 0 to 100 (got 1)");
     pair.pinion.teeth = 2;
-    refused("2 teeth");
+    refused("teeth: must be from 3 to 100000 (got 2)");
     begin(0);
     GM_ASSERT_INT(gm_flanks_generate(&deviations, &pitch, NULL, 0, &options, &error),
                   GM_IO_ERR_NULL);
@@ -349,13 +349,13 @@ static void waves_out_of_range_are_refused(void) {
     begin(0);
     options.waves = &wave;
     options.wave_count = 1;
-    refused("order 0; 1 to 1000000");
+    refused("the order of a wave: must be from 1 to 1000000 (got 0)");
     wave = (gm_flank_wave){30, -1e-9};
     refused("not below 0");
     wave = (gm_flank_wave){30, (double)NAN};
     refused("must be finite");
     wave = (gm_flank_wave){5000, 1e-7};
-    refused("too many for 21 nodes");
+    refused("must have 4 nodes per wave (got 205 waves along t1 for 21 nodes)");
     wave = (gm_flank_wave){67, 20e-6};
     refused("the waves use up a tolerance");
 }

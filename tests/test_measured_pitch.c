@@ -304,28 +304,29 @@ static void bad_files_are_refused(void) {
     refused(file_of("tooth,flank,single_pitch_mm\n1,left,1\n"), 0, 1, "'single_pitch_mm'",
             "single_pitch_um");
     refused(file_of("tooth;flank;cumulative_pitch_um\n1;left;1\n"), 0, 1, "semicolons", "commas");
-    refused(file_of(HEADER "1,left,1,5\n"), 0, 2, "4 fields", "decimal comma");
+    refused(file_of(HEADER "1,left,1,5\n"), 0, 2, "(got 4", "decimal comma");
     refused(file_of(HEADER "1,left,nan\n"), 0, 2, "'nan'", "a number like 1.5");
     refused(file_of(HEADER "1,lefft,1\n"), 0, 2, "'lefft'", "left or right");
     refused(file_of(HEADER "-1,left,1\n"), 0, 2, "'-1'", "whole number");
-    refused(file_of(HEADER), 0, 1, "no rows", "are right");
-    refused(file_of("pitch\n"), 0, 1, "'pitch'", "single_pitch_um is right");
+    refused(file_of(HEADER), 0, 1, "(got none)", "must be rows");
+    refused(file_of("pitch\n"), 0, 1, "'pitch'", "or tooth,flank,single_pitch_um");
 }
 
 static void wrong_teeth_are_refused(void) {
     begin();
     lopsided_text("46,left,1\n");
-    refused(file_of(text), 0, 92, "no tooth 46", "1 to 45 is right");
+    refused(file_of(text), 0, 92, "(got 46)", "tooth: must be from 1 to 45");
     lopsided_text("0,left,1\n");
-    refused(file_of(text), 0, 92, "no tooth 0", "begins at 0");
+    refused(file_of(text), 0, 92, "(got 0)", "begins at 0");
     lopsided_text("7,left,1\n");
-    refused(file_of(text), 0, 92, "line 14", "one is right");
+    refused(file_of(text), 0, 92, "line 14", "must have one row");
     /* 41 of 45 teeth: those of the wheel; and the pinion's 45 for a wheel of 41. */
     refused(pitch_file("cumulative_pitch_um", 41, plain_um), 0, 0, "42, 43, 44, 45", "other gear");
-    refused(pitch_file("cumulative_pitch_um", 45, plain_um), 1, 84, "no tooth 42", "other gear");
+    refused(pitch_file("cumulative_pitch_um", 45, plain_um), 1, 84, "(got 42)", "other gear");
     pitch_file("cumulative_pitch_um", 45, plain_um);
     *strstr(text, "44,right") = '#';
-    refused(file_of(text), 0, 0, "flank right has no row for tooth 44", "each of the 45 teeth");
+    refused(file_of(text), 0, 0, "none for tooth 44",
+            "flank right: must have a row for each of the 45 teeth");
     pitch_file("cumulative_pitch_um", 20, plain_um);
     refused(file_of(text), 0, 0, "the teeth 21, 22, 23, 24, 25 and others", "each of the 45");
 }
@@ -338,8 +339,8 @@ static void wrong_values_are_refused(void) {
     begin();
     refused(pitch_file("cumulative_pitch_um", 45, mm_for_um), 0, 12, "0.006 um", "millimetres");
     refused(pitch_file("cumulative_pitch_um", 45, nm_for_um), 0, 12, "6000 um", "nanometres");
-    refused(file_of(HEADER "1,left,-1e300\n"), 0, 2, "tooth 1", "of some um, are right");
-    refused(pitch_file("single_pitch_um", 45, open_um), 0, 2, "12.5 um", "0 is right");
+    refused(file_of(HEADER "1,left,-1e300\n"), 0, 2, "tooth 1", "must be a deviation, of some um");
+    refused(pitch_file("single_pitch_um", 45, open_um), 0, 2, "12.5 um", "must add up to 0");
 }
 
 static void wrong_set_ups_are_refused(void) {
@@ -370,7 +371,7 @@ static void wrong_set_ups_are_refused(void) {
     setup.datum_face = GM_FACE_I;
     GM_ASSERT_INT(gm_measured_pitch_build(&pitch, NULL, &measured, &setup, &pair, 0, &error),
                   GM_IO_ERR_FORMAT);
-    GM_ASSERT(strstr(error.text, "there is no pitch") != NULL);
+    GM_ASSERT(strstr(error.text, "measured pitch: must be that of all teeth") != NULL);
     GM_ASSERT_INT(gm_measurement_side(NULL, GM_COAST), GM_COAST);
     GM_ASSERT_INT(gm_measurement_tooth(NULL, &pair, 0, 1), -1);
     GM_ASSERT_INT(gm_measurement_side(&setup, 7), -1);

@@ -93,13 +93,13 @@ static void a_row_longer_than_a_line_can_be_is_refused(void) {
     const size_t used = strlen(text);
     memset(text + used, '1', 5000);
     strcpy(text + used + 5000, "\n");
-    refused(text, 2, "longer than 1000 characters", "one short row per line");
+    refused(text, 2, "(got more)", "a line must be one row of at most 1000 characters");
 }
 
 static void a_header_longer_than_a_line_can_be_is_refused(void) {
     char text[6000] = "";
     memset(text, 'x', 5000);
-    refused(text, 1, "longer than 1000 characters", "one short row per line");
+    refused(text, 1, "(got more)", "a line must be one row of at most 1000 characters");
 }
 
 static void a_zero_byte_is_refused_wherever_it_stands(void) {
@@ -126,32 +126,33 @@ static void line_ends_of_old_macs_are_refused(void) {
  * ------------------------------------------------------------------------------------------- */
 
 static void an_empty_file_is_refused(void) {
-    refused("", 0, "is empty", "tooth,flank,deviation_um");
-    refused("# nothing but this\n\n", 2, "is empty", "tooth,flank,deviation_um");
+    refused("", 0, "(got nothing)", "the file must have the header line tooth,flank,deviation_um");
+    refused("# nothing but this\n\n", 2, "(got nothing)",
+            "the file must have the header line tooth,flank,deviation_um");
 }
 
 static void a_file_without_rows_is_refused(void) {
-    refused(HEADER, 1, "no rows", "at least one");
-    refused(HEADER "# 1,drive,3\n\n", 3, "no rows", "at least one");
+    refused(HEADER, 1, "(got none)", "at least one");
+    refused(HEADER "# 1,drive,3\n\n", 3, "(got none)", "at least one");
 }
 
 static void a_missing_header_is_refused(void) {
-    refused("1,drive,3\n", 1, "missing before '1,drive,3'", "tooth,flank,deviation_um");
-    refused("*,drive,3\n", 1, "missing before '*,drive,3'", "tooth,flank,deviation_um");
+    refused("1,drive,3\n", 1, "got the row '1,drive,3'", "tooth,flank,deviation_um");
+    refused("*,drive,3\n", 1, "got the row '*,drive,3'", "tooth,flank,deviation_um");
 }
 
 static void a_wrong_header_is_refused(void) {
     refused("tooth,flank,t1,t2,deviation_um\n1,drive,0,0,1\n", 1,
-            "'tooth,flank,t1,t2,deviation_um'", "tooth,flank,deviation_um is right");
+            "'tooth,flank,t1,t2,deviation_um'", "must be tooth,flank,deviation_um");
     refused("tooth,flank,deviation\n1,drive,1\n", 1, "'tooth,flank,deviation'",
-            "tooth,flank,deviation_um is right");
-    refused("tooth,flank\n1,drive\n", 1, "'tooth,flank'", "tooth,flank,deviation_um is right");
+            "must be tooth,flank,deviation_um");
+    refused("tooth,flank\n1,drive\n", 1, "'tooth,flank'", "must be tooth,flank,deviation_um");
     refused("tooth,flank,deviation_um,note\n1,drive,1\n", 1, "'tooth,flank,deviation_um,note'",
-            "tooth,flank,deviation_um is right");
+            "must be tooth,flank,deviation_um");
     refused("flank,tooth,deviation_um\ndrive,1,1\n", 1, "'flank,tooth,deviation_um'",
-            "tooth,flank,deviation_um is right");
+            "must be tooth,flank,deviation_um");
     refused("Tooth,flank,deviation_um\n1,drive,1\n", 1, "'Tooth,flank,deviation_um'",
-            "tooth,flank,deviation_um is right");
+            "must be tooth,flank,deviation_um");
 }
 
 static void a_second_header_is_refused(void) {
@@ -167,14 +168,14 @@ static void other_delimiters_are_named(void) {
 }
 
 static void a_short_line_is_refused(void) {
-    refused(HEADER "1,drive\n", 2, "2 fields", "3 are right: tooth,flank,deviation_um");
-    refused(HEADER "1\n", 2, "1 field,", "3 are right: tooth,flank,deviation_um");
+    refused(HEADER "1,drive\n", 2, "(got 2", "must have 3 fields, tooth,flank,deviation_um");
+    refused(HEADER "1\n", 2, "(got 1", "must have 3 fields, tooth,flank,deviation_um");
 }
 
 static void a_line_with_too_many_fields_is_refused(void) {
-    refused(HEADER "1,drive,3,4\n", 2, "4 fields", "3 are right: tooth,flank,deviation_um");
-    refused(HEADER "1,drive,3,\n", 2, "4 fields", "3 are right: tooth,flank,deviation_um");
-    refused(HEADER "1,,,,,,,,,\n", 2, "10 fields", "3 are right: tooth,flank,deviation_um");
+    refused(HEADER "1,drive,3,4\n", 2, "(got 4", "must have 3 fields, tooth,flank,deviation_um");
+    refused(HEADER "1,drive,3,\n", 2, "(got 4", "must have 3 fields, tooth,flank,deviation_um");
+    refused(HEADER "1,,,,,,,,,\n", 2, "(got 10", "must have 3 fields, tooth,flank,deviation_um");
 }
 
 static void a_decimal_comma_is_named(void) {
@@ -194,7 +195,8 @@ static void the_first_and_the_last_tooth_are_accepted(void) {
 }
 
 static void a_tooth_beyond_the_gear_is_refused(void) {
-    refused(HEADER "5,drive,1\n", 2, "tooth is '5'", "from 0 to 4 (the gear has 5 teeth)");
+    refused(HEADER "5,drive,1\n", 2, "got '5'",
+            "tooth: must be a whole number from 0 to 4 (the gear has 5 teeth)");
     refused(HEADER "4294967296,drive,1\n", 2, "'4294967296'", "from 0 to 4");
     refused(HEADER "99999999999999999999,drive,1\n", 2, "'99999999999999999999'", "from 0 to 4");
 }
@@ -221,7 +223,7 @@ static void a_tooth_that_is_no_whole_number_is_refused(void) {
 }
 
 static void an_unknown_flank_is_refused(void) {
-    refused(HEADER "1,left,1\n", 2, "flank is 'left'", "drive, coast, or *");
+    refused(HEADER "1,left,1\n", 2, "got 'left'", "flank: must be drive, coast, or *");
     refused(HEADER "1,Drive,1\n", 2, "'Drive'", "drive, coast, or *");
     refused(HEADER "1,drivee,1\n", 2, "'drivee'", "drive, coast, or *");
     refused(HEADER "1,,1\n", 2, "''", "drive, coast, or *");
@@ -310,8 +312,8 @@ static void number_is_refused(const char *text) {
     char file[200];
     snprintf(file, sizeof file, HEADER "1,drive,%s\n", text);
     char quoted[100];
-    snprintf(quoted, sizeof quoted, "deviation_um is '%s'", text);
-    refused(file, 2, quoted, "a number like 1.5");
+    snprintf(quoted, sizeof quoted, "(got '%s')", text);
+    refused(file, 2, quoted, "deviation_um: must be a number like 1.5");
 }
 
 static void plain_and_exponent_numbers_are_read(void) {
@@ -399,10 +401,10 @@ static void text_behind_a_number_is_refused(void) {
 }
 
 static void a_number_beyond_the_range_of_a_double_is_refused(void) {
-    refused(HEADER "1,drive,1e400\n", 2, "'1e400', which is too large", "a finite number");
-    refused(HEADER "1,drive,-1e400\n", 2, "'-1e400', which is too large", "a finite number");
-    refused(HEADER "1,drive,1e4294967297\n", 2, "which is too large", "a finite number");
-    refused(HEADER "1,drive,1e99999999999999999999\n", 2, "which is too large", "a finite number");
+    refused(HEADER "1,drive,1e400\n", 2, "'1e400', which is too large", "a number like");
+    refused(HEADER "1,drive,-1e400\n", 2, "'-1e400', which is too large", "a number like");
+    refused(HEADER "1,drive,1e4294967297\n", 2, "which is too large", "a number like");
+    refused(HEADER "1,drive,1e99999999999999999999\n", 2, "which is too large", "a number like");
 }
 
 /* ---------------------------------------------------------------------------------------------

@@ -467,16 +467,16 @@ static void wrong_input_is_refused(void) {
     refused(GM_IO_ERR_OPTION, "0.45");
     begin(&gears, 0);
     deviations.teeth = 39;
-    refused(GM_IO_ERR_OPTION, "flank deviations are for 39 teeth; the gear has 40");
+    refused(GM_IO_ERR_OPTION, "flank deviations must be for the 40 teeth of the gear (got 39)");
     begin(&gears, 0);
     pitch.teeth = 41;
-    refused(GM_IO_ERR_OPTION, "pitch deviations are for 41 teeth");
+    refused(GM_IO_ERR_OPTION, "pitch deviations must be for the 40 teeth of the gear (got 41)");
     begin(&gears, 0);
     drive[2] = (double)NAN;
-    refused(GM_IO_ERR_OPTION, "tooth 2 is not finite");
+    refused(GM_IO_ERR_OPTION, "tooth 2: must be finite");
     begin(&gears, 0);
     table[3] = (double)INFINITY;
-    refused(GM_IO_ERR_OPTION, "not finite");
+    refused(GM_IO_ERR_OPTION, "must be finite");
     GM_ASSERT_INT(gm_quality_evaluate(NULL, NULL, &pair, 0, NULL, NULL, NULL, &error),
                   GM_IO_ERR_NULL);
     GM_ASSERT_INT(gm_quality_evaluate(&quality, NULL, NULL, 0, NULL, NULL, NULL, NULL),

@@ -123,37 +123,38 @@ static void headers_say_what_is_wrong(void) {
     refused("tooth;flank;trace;face_mm;diameter_mm;deviation_um\n", 1, "semicolons", "commas");
     refused("tooth\tflank\n", 1, "tabs", "commas");
     refused("tooth,flank,t1,t2,deviation_um\n", 1, "'tooth,flank,t1,t2,deviation_um'",
-            "diameter_mm,deviation_um is right");
-    refused("1,left,profile,8,9,0\n", 1, "header line is missing", "is right");
-    refused("", 0, "empty", "tooth,flank,trace");
+            "diameter_mm,deviation_um (got");
+    refused("1,left,profile,8,9,0\n", 1, "got the row '1,left,profile,8,9,0'",
+            "the header must be tooth");
+    refused("", 0, "got nothing", "header line tooth,flank,trace");
 }
 
 static void rows_say_what_is_wrong(void) {
-    refused(ROLL, 1, "no rows", "are right");
-    refused(ROLL "1,left,profile,8,9\n", 2, "5 fields", "6 are right");
-    refused(ROLL "1,left,profile,8,9,1,5\n", 2, "7 fields", "write 1.5");
+    refused(ROLL, 1, "(got none)", "must be rows");
+    refused(ROLL "1,left,profile,8,9\n", 2, "(got 5", "must have 6 fields");
+    refused(ROLL "1,left,profile,8,9,1,5\n", 2, "(got 7", "write 1.5");
     refused(ROLL "1;left;profile;8;9;1\n", 2, "semicolons", "commas");
-    refused(ROLL "1.0,left,profile,8,9,0\n", 2, "'1.0'", "whole number is right");
-    refused(ROLL "*,left,profile,8,9,0\n", 2, "'*'", "whole number is right");
-    refused(ROLL "1,L,profile,8,9,0\n", 2, "'L'", "drive, coast, left or right is right");
-    refused(ROLL "1,left,lead,8,9,0\n", 2, "'lead'", "profile or helix is right");
-    refused(ROLL "1,left,profile,x,9,0\n", 2, "face_mm is 'x'", "a number");
-    refused(ROLL "1,left,profile,8,,0\n", 2, "roll_length_mm is ''", "a number");
+    refused(ROLL "1.0,left,profile,8,9,0\n", 2, "'1.0'", "a whole number");
+    refused(ROLL "*,left,profile,8,9,0\n", 2, "'*'", "a whole number");
+    refused(ROLL "1,L,profile,8,9,0\n", 2, "'L'", "flank: must be drive, coast, left or right");
+    refused(ROLL "1,left,lead,8,9,0\n", 2, "'lead'", "trace: must be profile or helix");
+    refused(ROLL "1,left,profile,x,9,0\n", 2, "got 'x'", "face_mm: must be a number");
+    refused(ROLL "1,left,profile,8,,0\n", 2, "got ''", "roll_length_mm: must be a number");
     refused(ROLL "1,left,profile,8,9,nan\n", 2, "'nan'", "a number");
-    refused(ROLL "1,left,profile,8,9,1e999\n", 2, "too large", "finite");
-    refused(DIAMETER "1,left,profile,8,80,0\n", 2, "80', below the base circle", "is right");
+    refused(ROLL "1,left,profile,8,9,1e999\n", 2, "too large", "a number");
+    refused(DIAMETER "1,left,profile,8,80,0\n", 2, "'80'", "(base circle) to 93.87678 (tip)");
     refused(DIAMETER "1,left,profile,8,9.3,0\n", 2, "'9.3'", "centimetres");
     refused(DIAMETER "1,left,profile,8,46,0\n", 2, "'46'", "a radius");
-    refused(DIAMETER "1,left,profile,8,-92,0\n", 2, "'-92'", "is right");
+    refused(DIAMETER "1,left,profile,8,-92,0\n", 2, "'-92'", "(base circle)");
 }
 
 static void a_trace_goes_one_way(void) {
     refused(ROLL "3,left,profile,8,9,0\n3,left,profile,8,10,0\n3,left,profile,8,9.5,0\n", 4,
-            "roll_length_mm is '9.5'", "two teeth with the number 3?");
-    refused(ROLL "3,left,helix,8,9,0\n3,left,helix,7,9,0\n3,left,helix,7,9,0\n", 4,
-            "face_mm is '7'", "only rise or only fall");
+            "got '9.5'; are there", "two teeth with the number 3?");
+    refused(ROLL "3,left,helix,8,9,0\n3,left,helix,7,9,0\n3,left,helix,7,9,0\n", 4, "got '7'",
+            "face_mm: must go on from the row before");
     refused(DIAMETER "3,left,profile,8,90,0\n3,left,profile,8,91,0\n3,left,profile,8,90,0\n", 4,
-            "diameter_mm is '90'", "only rise or only fall");
+            "got '90'", "diameter_mm: must go on from the row before");
 }
 
 static void bad_calls_are_refused(void) {

@@ -130,7 +130,8 @@ static void assert_told(const gm_trace *trace, const fault *of) {
              trace->kind == GM_TRACE_PROFILE ? "profile" : "helix", trace->tooth);
     snprintf(count, sizeof count, "%g um at all %d points from ", of->um, of->count);
     GM_ASSERT_INT(build(), GM_IO_ERR_FORMAT);
-    assert_error(&error, "traces.csv", trace->line[of->first], tooth, "must be left out");
+    assert_error(&error, "traces.csv", trace->line[of->first], tooth,
+                 "all points must be measured, rows without");
     GM_ASSERT(strstr(error.text, count) != NULL);
     GM_ASSERT(error.option != NULL && strcmp(error.option, "remove_spikes") == 0);
 }
@@ -230,7 +231,7 @@ static void a_trace_of_nothing_but_fillings_is_refused(void) {
     fill(trace, 40, 20, 0.0);
     GM_ASSERT_INT(build(), GM_IO_ERR_FORMAT);
     assert_error(&error, "traces.csv", trace->line[40], "0 um at all 20 points",
-                 "must be left out");
+                 "all points must be measured, rows without");
     end();
 }
 

@@ -273,7 +273,7 @@ static void too_many_traces_of_a_flank_are_refused(void) {
         add_profile(additive, 2, 0, i / 100.0, 0.0);
     }
     GM_ASSERT_INT(build(), GM_IO_ERR_FORMAT);
-    assert_error(&error, "traces.csv", 0, "101 profiles", "up to 100 are right");
+    assert_error(&error, "traces.csv", 0, "101 profiles", "at most 100 of a kind");
     traces.traces[0].flank = flank_of(1); /* 100 on one, 1 on the other */
     GM_ASSERT_INT(build(), GM_IO_OK);
     end();
@@ -569,7 +569,7 @@ static void the_opposite_sign_is_noticed(void) {
     end();
     begin();
     add_teeth(wrong_sign, 3);
-    refused(0, "12 of 12 traces stand out at their ends", "> 0 for material added is right");
+    refused(0, "12 of 12 traces that stand out at their ends", "material added: must be > 0");
     options.hollow = 1;
     GM_ASSERT_INT(build(), GM_IO_OK);
     GM_ASSERT_INT(report.hollow_traces, 12);
@@ -640,9 +640,9 @@ static void lengths_in_other_units_are_noticed(void) {
         double face;
         const char *said;
     } cases[] = {
-        {0.1, 1.0, "centimetres"}, {1e-3, 1.0, "metres"},           {1 / 25.4, 1.0, "inches"},
-        {1e3, 1.0, "micrometres"}, {1.0, 0.1, "centimetres"},       {1.0, 1 / 25.4, "inches"},
-        {1.0, 1e3, "micrometres"}, {1.1, 1.0, "is right, the tip"}, {1.0, 1.1, "the face width"},
+        {0.1, 1.0, "centimetres"}, {1e-3, 1.0, "metres"},     {1 / 25.4, 1.0, "inches"},
+        {1e3, 1.0, "micrometres"}, {1.0, 0.1, "centimetres"}, {1.0, 1 / 25.4, "inches"},
+        {1.0, 1e3, "micrometres"}, {1.1, 1.0, "the tip"},     {1.0, 1.1, "the face width"},
     };
     for (size_t i = 0; i < GM_TEST_COUNT(cases); i++) {
         begin();
@@ -723,29 +723,30 @@ static void files_that_do_not_fit_the_gear_are_refused(void) {
     begin();
     GM_ASSERT_INT(read_and_build(HEADER PROFILE("1", "8.75") HELIX("1", "12")), GM_IO_OK);
     gm_deviations_free(&deviations);
-    refused_text(HEADER PROFILE("1", "8.75") PROFILE("46", "8.75"), 4, "no tooth 46", "1 to 45");
-    refused_text(HEADER PROFILE("0", "8.75"), 2, "no tooth 0", "begins at 0");
-    refused_text(HEADER PROFILE("1", "18"), 2, "at 18 mm", "0 to 17.5 mm");
-    refused_text(HEADER PROFILE("1", "-1"), 2, "at -1 mm", "0 to 17.5 mm");
-    refused_text(HEADER HELIX("1", "22"), 2, "22 mm (diameter", "is right, the tip");
-    refused_text(HEADER HELIX("1", "2"), 2, "2 mm, below the active profile", "is right");
+    refused_text(HEADER PROFILE("1", "8.75") PROFILE("46", "8.75"), 4, "(got 46)",
+                 "must be from 1 to 45");
+    refused_text(HEADER PROFILE("0", "8.75"), 2, "(got 0)", "begins at 0");
+    refused_text(HEADER PROFILE("1", "18"), 2, "(got 18 mm)", "0 to 17.5 mm");
+    refused_text(HEADER PROFILE("1", "-1"), 2, "(got -1 mm)", "0 to 17.5 mm");
+    refused_text(HEADER HELIX("1", "22"), 2, "(got 22 mm, diameter", "the tip");
+    refused_text(HEADER HELIX("1", "2"), 2, "(got 2 mm)", "must be on the active profile");
     refused_text(HEADER "1,left,profile,8.75,9,0\n1,left,profile,8.75,22,0\n", 3, "22 mm",
-                 "is right, the tip");
-    refused_text(HEADER "1,left,profile,8.75,-1,0\n1,left,profile,8.75,21,0\n", 2, "-1 mm",
-                 "is right");
+                 "the tip");
+    refused_text(HEADER "1,left,profile,8.75,-1,0\n1,left,profile,8.75,21,0\n", 2, "(got -1 mm",
+                 "must be at a roll length up to");
     refused_text(HEADER "1,left,helix,0,12,0\n1,left,helix,17.6,12,0\n", 3, "17.6 mm",
                  "0 to 17.5 mm");
-    refused_text(HEADER "1,left,helix,0,12,0\n1,left,helix,9,12,0\n", 2, "from 0 to 9 mm",
-                 "0 to 17.5 mm is right");
+    refused_text(HEADER "1,left,helix,0,12,0\n1,left,helix,9,12,0\n", 2, "(got 0 to 9 mm)",
+                 "must reach from 0 to 17.5 mm");
     refused_text(HEADER "1,left,profile,8.75,12,0\n1,left,profile,8.75,21,0\n", 2,
-                 "from 12 to 21 mm roll length", "8.7648 to 21.184 mm is right");
-    refused_text(HEADER "1,left,profile,8.75,12,0\n", 2, "has 1 point", "are right");
+                 "(got 12 to 21 mm)", "must reach from 8.7648 to 21.184 mm");
+    refused_text(HEADER "1,left,profile,8.75,12,0\n", 2, "(got 1)", "must be at least 2 rows");
     refused_text(HEADER "1,left,profile,8,4,0\n1,left,profile,8.1,5,0\n1,left,profile,8.2,6,0\n", 2,
-                 "has 1 point", "all at the same distance");
+                 "(got 1)", "all at the same distance");
     refused_text(HEADER PROFILE("1", "8.75") HELIX("1", "12") PROFILE("1", "8.751"), 6,
                  "begins in line 2", "two teeth with the number 1");
-    refused_text(HEADER HELIX("1", "12") HELIX("1", "14"), 2, "without a profile trace",
-                 "is right");
+    refused_text(HEADER HELIX("1", "12") HELIX("1", "14"), 2, "without a profile",
+                 "must have a profile trace beside it");
 }
 
 /* How much more the surface rises along the profile, from 0.2 to 0.8, at t1 = 0.8 than at 0.2. */
@@ -778,7 +779,7 @@ static void traces_that_contradict_each_other_are_refused(void) {
         traces.traces[1].deviation[k] -= 16e-6 * k / (PROFILE_NODES - 1);
         traces.traces[1].deviation[k] += 18e-6 * fmax(0.0, 1.0 - fabs(k - 6.0) / 6.0);
     }
-    refused(0, "contradict each other by 4.5 um", "of one and the same flank");
+    refused(0, "a contradiction of 4.5 um", "must be of the same flank");
     end();
 }
 
@@ -800,7 +801,7 @@ static void bad_calls_are_refused(void) {
     GM_ASSERT_INT(build(), GM_IO_ERR_OPTION);
     setup.datum_face = GM_FACE_I;
     traces.traces[0].flank = 4;
-    refused(0, "flank 4", "left or right");
+    refused(0, "got number 4", "left or right");
     traces.traces[0].flank = GM_DRIVE;
     traces.traces[0].kind = 2;
     refused(0, "kind 2", "profile or helix");
@@ -808,7 +809,7 @@ static void bad_calls_are_refused(void) {
     traces.traces[0].deviation[3] = (double)NAN;
     refused(0, "not finite", "rise");
     traces.traces[0].deviation[3] = -1e308;
-    refused(0, "beyond 1 km", "those of a gear are right");
+    refused(0, "beyond 1 km", "values of a gear");
     traces.traces[0].deviation[3] = 0.0;
     traces.traces[0].position[3] = traces.traces[0].position[2];
     refused(0, "not finite", "rise");

@@ -78,7 +78,7 @@ static int read_position(const gmi_table *table, int column, double *position) {
     if (*position < -GMI_POSITION_TOLERANCE || *position > 1.0 + GMI_POSITION_TOLERANCE) {
         char quoted[GMI_QUOTE_SIZE];
         return gmi_error_set(table->error, GM_IO_ERR_FORMAT, table->line,
-                             "%s is %s; a value from 0 to 1 is right", columns[column],
+                             "%s: must be from 0 to 1 (got %s)", columns[column],
                              gmi_quote(quoted, table->fields[column]));
     }
     return GM_IO_OK;
@@ -119,8 +119,9 @@ static int read_rows(loader *load, gmi_table *table) {
         load->row_count[row.slot]++;
     }
     if (more == 0 && load->rows.first == NULL) {
-        return gmi_error_set(load->error, GM_IO_ERR_FORMAT, table->line,
-                             "there are no rows below the header; at least 2 x 2 nodes are right");
+        return gmi_error_set(
+            load->error, GM_IO_ERR_FORMAT, table->line,
+            "there must be rows below the header, of at least 2 x 2 nodes (got none)");
     }
     return more;
 }
@@ -216,13 +217,16 @@ static int check_sizes(const gm_deviations *deviations, gm_io_error *error) {
     if (deviations->face_nodes < GMI_SMALLEST_NODES || deviations->face_nodes > GMI_LARGEST_NODES ||
         deviations->profile_nodes < GMI_SMALLEST_NODES ||
         deviations->profile_nodes > GMI_LARGEST_NODES) {
-        return gmi_error_set(error, GM_IO_ERR_OPTION, 0,
-                             "deviations on %d x %d nodes; 2 to %d along each direction are right",
-                             deviations->face_nodes, deviations->profile_nodes, GMI_LARGEST_NODES);
+        return gmi_error_set(
+            error, GM_IO_ERR_OPTION, 0,
+            "deviations: must be on 2 to %d nodes along each direction (got %d x %d)",
+            GMI_LARGEST_NODES, deviations->face_nodes, deviations->profile_nodes);
     }
     if (deviations->set_count < 0 || (deviations->set_count > 0 && deviations->sets == NULL)) {
-        return gmi_error_set(error, GM_IO_ERR_OPTION, 0,
-                             "deviations with %d sets, which are not there", deviations->set_count);
+        return gmi_error_set(
+            error, GM_IO_ERR_OPTION, 0,
+            "deviations: must have the sets that they count (got %d and no list of them)",
+            deviations->set_count);
     }
     return GM_IO_OK;
 }
@@ -232,15 +236,16 @@ static int check_set(const gm_deviations *deviations, int index, gm_io_error *er
     if (set->tooth < GMI_ALL || set->tooth >= deviations->teeth || set->side < GMI_ALL ||
         set->side > GM_COAST || set->values == NULL) {
         return gmi_error_set(error, GM_IO_ERR_OPTION, 0,
-                             "set %d of the deviations is for tooth %d and side %d%s; teeth -1 to "
-                             "%d and sides -1 to 1 are right",
-                             index, set->tooth, set->side, set->values ? "" : " without values",
-                             deviations->teeth - 1);
+                             "set %d of the deviations: must have values, for a tooth from -1 to "
+                             "%d and a side from -1 to 1 (got tooth %d and side %d%s)",
+                             index, deviations->teeth - 1, set->tooth, set->side,
+                             set->values ? "" : " without values");
     }
     for (size_t node = 0; node < node_count(deviations); node++) {
         if (!isfinite(set->values[node])) {
-            return gmi_error_set(error, GM_IO_ERR_OPTION, 0,
-                                 "set %d of the deviations has a value that is not finite", index);
+            return gmi_error_set(
+                error, GM_IO_ERR_OPTION, 0,
+                "set %d of the deviations: all values must be finite (got one that is not)", index);
         }
     }
     return GM_IO_OK;
@@ -256,7 +261,7 @@ static int index_set(const gm_deviations *deviations, int index, int *set_of_slo
     if (set_of_slot[slot] >= 0) {
         char name[GMI_SLOT_NAME_SIZE];
         return gmi_error_set(error, GM_IO_ERR_OPTION, 0,
-                             "%s has two sets of deviations, %d and %d; one is right",
+                             "%s: must have one set of deviations (got two, %d and %d)",
                              gmi_slot_name(name, slot), set_of_slot[slot], index);
     }
     set_of_slot[slot] = index;
@@ -347,7 +352,7 @@ static int check_writable(const gm_deviations *deviations, gm_io_error *error) {
     free(set_of_slot);
     if (status == GM_IO_OK && deviations->set_count == 0) {
         return gmi_error_set(error, GM_IO_ERR_OPTION, 0,
-                             "there are no deviations to write; at least one set is right");
+                             "deviations to write: must be at least one set (got none)");
     }
     return status;
 }

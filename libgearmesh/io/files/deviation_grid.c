@@ -111,25 +111,23 @@ static int check_axis(const positions *seen, int nodes, int axis, gm_io_error *e
     gmi_slot_name(name, seen->lowest->slot);
 
     if (high - low <= 2.0 * GMI_POSITION_TOLERANCE) {
-        return gmi_error_set(
-            error, GM_IO_ERR_FORMAT, seen->lowest->line,
-            "%s has only one position %s = %s; a grid of at least 2 x 2 nodes from "
-            "0 to 1 is right",
-            name, axis_name[axis], position_text(number, low));
+        return gmi_error_set(error, GM_IO_ERR_FORMAT, seen->lowest->line,
+                             "%s: must be a grid of at least 2 x 2 nodes from 0 to 1 (got only one "
+                             "position %s = %s)",
+                             name, axis_name[axis], position_text(number, low));
     }
     if (low > GMI_POSITION_TOLERANCE || high < 1.0 - GMI_POSITION_TOLERANCE) {
         const int is_low = low > GMI_POSITION_TOLERANCE;
         return gmi_error_set(
             error, GM_IO_ERR_FORMAT, is_low ? seen->lowest->line : seen->highest->line,
-            "%s has %s = %s as %s position; a grid from 0 to 1 is right", name, axis_name[axis],
+            "%s: must be a grid from 0 to 1 (got %s = %s as %s position)", name, axis_name[axis],
             position_text(number, is_low ? low : high), is_low ? "first" : "last");
     }
     if (nodes < 2 || nodes > GMI_LARGEST_NODES) {
-        return gmi_error_set(
-            error, GM_IO_ERR_FORMAT, seen->lowest->line,
-            "%s has positions %s too close together; 2 to %d uniform ones from 0 to "
-            "1 are right",
-            name, axis_name[axis], GMI_LARGEST_NODES);
+        return gmi_error_set(error, GM_IO_ERR_FORMAT, seen->lowest->line,
+                             "%s: positions %s must be 2 to %d uniform ones from 0 to 1 (got some "
+                             "that are too close together)",
+                             name, axis_name[axis], GMI_LARGEST_NODES);
     }
     return GM_IO_OK;
 }
@@ -178,12 +176,12 @@ static int fail_position(const gmi_grid *grid, const gmi_row *row, int axis, gm_
     char name[GMI_SLOT_NAME_SIZE];
     char got[GMI_NUMBER_SIZE];
     char right[GMI_NUMBER_SIZE];
-    return gmi_error_set(error, GM_IO_ERR_FORMAT, row->line,
-                         "%s = %s is not on the grid of %d x %d uniform nodes that %s begins and "
-                         "the whole file must keep to; the nearest right value is %s",
-                         axis_name[axis], position_text(got, position), grid->nodes[GMI_FACE],
-                         grid->nodes[GMI_PROFILE], gmi_slot_name(name, grid->slot),
-                         position_text(right, nearest));
+    return gmi_error_set(
+        error, GM_IO_ERR_FORMAT, row->line,
+        "%s: must be on the grid of %d x %d uniform nodes that %s begins, for example %s (got %s)",
+        axis_name[axis], grid->nodes[GMI_FACE], grid->nodes[GMI_PROFILE],
+        gmi_slot_name(name, grid->slot), position_text(right, nearest),
+        position_text(got, position));
 }
 
 /* Index of the node that a row is for. */
@@ -209,7 +207,7 @@ static int fail_repeated(const gmi_row *row, gm_io_error *error) {
     char t1[GMI_NUMBER_SIZE];
     char t2[GMI_NUMBER_SIZE];
     return gmi_error_set(error, GM_IO_ERR_FORMAT, row->line,
-                         "%s has a second row for t1 = %s, t2 = %s; one row per node is right",
+                         "%s: must have one row per node (got a second one for t1 = %s, t2 = %s)",
                          gmi_slot_name(name, row->slot), position_text(t1, row->position[GMI_FACE]),
                          position_text(t2, row->position[GMI_PROFILE]));
 }
@@ -222,12 +220,12 @@ static int fail_missing(const gmi_grid *grid, const gmi_row *first_row, size_t r
     char t2[GMI_NUMBER_SIZE];
     return gmi_error_set(
         error, GM_IO_ERR_FORMAT, first_row->line,
-        "%s, which begins here, has no row for t1 = %s, t2 = %s; %ld rows for %d x %d nodes are "
-        "right, it has %ld",
-        gmi_slot_name(name, first_row->slot),
+        "%s, which begins here: must have %ld rows for %d x %d nodes (got %ld, and none for t1 = "
+        "%s, t2 = %s)",
+        gmi_slot_name(name, first_row->slot), (long)gmi_grid_size(grid), grid->nodes[GMI_FACE],
+        grid->nodes[GMI_PROFILE], (long)rows,
         position_text(t1, line_position(grid, GMI_FACE, (int)(node / profile_nodes))),
-        position_text(t2, line_position(grid, GMI_PROFILE, (int)(node % profile_nodes))),
-        (long)gmi_grid_size(grid), grid->nodes[GMI_FACE], grid->nodes[GMI_PROFILE], (long)rows);
+        position_text(t2, line_position(grid, GMI_PROFILE, (int)(node % profile_nodes))));
 }
 
 /* Finds what is wrong with a set whose number of rows is not that of its nodes. */

@@ -59,6 +59,6 @@ int gmi_check_teeth(int teeth, gm_io_error *error) {
     if (teeth >= GMI_SMALLEST_TEETH && teeth <= GMI_LARGEST_TEETH) {
         return GM_IO_OK;
     }
-    return gmi_error_set(error, GM_IO_ERR_OPTION, 0, "a gear of %d teeth; %d to %d teeth are right",
-                         teeth, GMI_SMALLEST_TEETH, GMI_LARGEST_TEETH);
+    return gmi_error_set(error, GM_IO_ERR_OPTION, 0, "teeth: must be from %d to %d (got %d)",
+                         GMI_SMALLEST_TEETH, GMI_LARGEST_TEETH, teeth);
 }

@@ -50,7 +50,7 @@ static int keep_row(const gmi_table *table, int slot, double deviation, entry *e
     if (entries[slot].line != 0) {
         char name[GMI_SLOT_NAME_SIZE];
         return gmi_error_set(table->error, GM_IO_ERR_FORMAT, table->line,
-                             "%s has a second row, the first is in line %ld; one is right",
+                             "%s: must have one row (got a second one, the first is in line %ld)",
                              gmi_slot_name(name, slot), entries[slot].line);
     }
     entries[slot].deviation = deviation;
@@ -75,7 +75,7 @@ static int read_rows(gmi_table *table, int teeth, entry *entries) {
     }
     if (more == 0 && rows == 0) {
         return gmi_error_set(table->error, GM_IO_ERR_FORMAT, table->line,
-                             "there are no rows below the header; at least one is right");
+                             "there must be at least one row below the header (got none)");
     }
     return more;
 }
@@ -185,12 +185,14 @@ int gmi_pitch_check(const gm_pitch *pitch, gm_io_error *error) {
         return status;
     }
     if (!pitch->drive || !pitch->coast || !pitch->drive_set || !pitch->coast_set) {
-        return gmi_error_set(error, GM_IO_ERR_NULL, 0, "an array of the pitch deviations is NULL");
+        return gmi_error_set(error, GM_IO_ERR_NULL, 0,
+                             "pitch deviations: no array must be NULL (got one that is)");
     }
     for (int tooth = 0; tooth < pitch->teeth; tooth++) {
         if (!isfinite(pitch->drive[tooth]) || !isfinite(pitch->coast[tooth])) {
-            return gmi_error_set(error, GM_IO_ERR_OPTION, 0,
-                                 "a pitch deviation of tooth %d is not finite", tooth);
+            return gmi_error_set(
+                error, GM_IO_ERR_OPTION, 0,
+                "the pitch deviations of tooth %d: must be finite (got one that is not)", tooth);
         }
     }
     return GM_IO_OK;
@@ -205,7 +207,7 @@ static int check_writable(const gm_pitch *pitch, gm_io_error *error) {
     if (gm_pitch_ideal_teeth(pitch, GM_DRIVE) == pitch->teeth &&
         gm_pitch_ideal_teeth(pitch, GM_COAST) == pitch->teeth) {
         return gmi_error_set(error, GM_IO_ERR_OPTION, 0,
-                             "there are no pitch deviations to write; at least one is right");
+                             "pitch deviations to write: must be at least one (got none)");
     }
     return GM_IO_OK;
 }

@@ -41,16 +41,17 @@ static int read_characters(gmi_table *table, int c, size_t *length) {
     *length = 0;
     for (; c != '\n' && c != EOF; c = getc(table->file)) {
         if (c == '\0') {
-            return fail(table, "the file holds a zero byte, so it is not plain text; a UTF-8 text "
-                               "file with comma separated values is right");
+            return fail(
+                table,
+                "the file must be plain UTF-8 text with comma separated values (got a zero byte)");
         }
         if (*length < GMI_LINE_LENGTH) {
             table->text[(*length)++] = (char)c;
         } else if (!is_comment(table)) {
-            return gmi_error_set(table->error, GM_IO_ERR_FORMAT, table->line,
-                                 "the line is longer than %d characters; one short row per line, "
-                                 "ended by LF or CRLF, is right",
-                                 GMI_LINE_LENGTH);
+            return gmi_error_set(
+                table->error, GM_IO_ERR_FORMAT, table->line,
+                "a line must be one row of at most %d characters, ended by LF or CRLF (got more)",
+                GMI_LINE_LENGTH);
         }
     }
     return ferror(table->file) ? gmi_error_file(table->error, table->line, "read", errno) : 0;
@@ -81,8 +82,8 @@ static int read_line(gmi_table *table) {
     }
     table->text[length] = '\0';
     if (strchr(table->text, '\r') != NULL) {
-        return fail(table, "a carriage return stands within the line; lines ended by LF or CRLF "
-                           "are right");
+        return fail(table,
+                    "lines must end with LF or CRLF (got a carriage return within the line)");
     }
     if (table->line == 1) {
         drop_byte_order_mark(table->text);
@@ -168,19 +169,17 @@ static const char *other_delimiter(const char *line) {
 }
 
 static int fail_delimiter(const gmi_table *table, const char *delimiter) {
-    return gmi_error_set(table->error, GM_IO_ERR_FORMAT, table->line,
-                         "the fields are separated by %s; commas, with a point as decimal sign, "
-                         "are right",
-                         delimiter);
+    return gmi_error_set(
+        table->error, GM_IO_ERR_FORMAT, table->line,
+        "fields must be separated by commas, with a point as decimal sign (got %s)", delimiter);
 }
 
 static int fail_field_count(const gmi_table *table, int count) {
     char header[GMI_LINE_LENGTH];
     return gmi_error_set(
-        table->error, GM_IO_ERR_FORMAT, table->line, "the row has %d %s, but %d are right: %s%s",
-        count, count == 1 ? "field" : "fields", table->column_count,
-        columns_text(table, table->columns, header),
-        count > table->column_count ? " (a decimal comma makes two fields of one number: write 1.5)"
+        table->error, GM_IO_ERR_FORMAT, table->line, "a row must have %d fields, %s (got %d%s)",
+        table->column_count, columns_text(table, table->columns, header), count,
+        count > table->column_count ? "; a decimal comma makes two fields of one number: write 1.5"
                                     : "");
 }
 
@@ -257,9 +256,8 @@ static int fail_header(const gmi_table *table, const char *line, int count) {
     char quoted[GMI_QUOTE_SIZE];
     const int is_row = strchr("*+-.0123456789", line[0]) != NULL;
     return gmi_error_set(table->error, GM_IO_ERR_FORMAT, table->line,
-                         is_row ? "the header line is missing before %s; %s is right%s"
-                                : "the header is %s; %s is right%s",
-                         gmi_quote(quoted, line), header_text(table, header),
+                         "the header must be %s (got %s%s)%s", header_text(table, header),
+                         is_row ? "the row " : "", gmi_quote(quoted, line),
                          unit_hint(table, count, hint));
 }
 
@@ -279,9 +277,10 @@ static int read_header(gmi_table *table, int *which) {
     }
     if (status == 0) {
         char header[GMI_LINE_LENGTH];
-        return gmi_error_set(table->error, GM_IO_ERR_FORMAT, table->line,
-                             "the file is empty; the header line %s and rows below it are right",
-                             header_text(table, header));
+        return gmi_error_set(
+            table->error, GM_IO_ERR_FORMAT, table->line,
+            "the file must have the header line %s and rows below it (got nothing)",
+            header_text(table, header));
     }
     char line[GMI_LINE_LENGTH + 1]; /* as it was before it is cut into fields */
     strcpy(line, skip_blanks(table->text));
@@ -358,9 +357,9 @@ int gmi_table_tooth(const gmi_table *table, int column, int teeth, int *tooth) {
     if (!parse_whole_number(field, &value) || value >= teeth) {
         char quoted[GMI_QUOTE_SIZE];
         return gmi_error_set(table->error, GM_IO_ERR_FORMAT, table->line,
-                             "%s is %s; a whole number from 0 to %d (the gear has %d teeth), or * "
-                             "for all teeth, is right",
-                             table->columns[column], gmi_quote(quoted, field), teeth - 1, teeth);
+                             "%s: must be a whole number from 0 to %d (the gear has %d teeth), or "
+                             "* for all teeth (got %s)",
+                             table->columns[column], teeth - 1, teeth, gmi_quote(quoted, field));
     }
     *tooth = value;
     return GM_IO_OK;
@@ -372,7 +371,7 @@ int gmi_table_whole(const gmi_table *table, int column, int *value) {
     }
     char quoted[GMI_QUOTE_SIZE];
     return gmi_error_set(table->error, GM_IO_ERR_FORMAT, table->line,
-                         "%s is %s; a whole number is right", table->columns[column],
+                         "%s: must be a whole number (got %s)", table->columns[column],
                          gmi_quote(quoted, table->fields[column]));
 }
 
@@ -388,8 +387,8 @@ int gmi_table_word(const gmi_table *table, int column, const char *const *words,
         strcat(right, words[i]);
     }
     char quoted[GMI_QUOTE_SIZE];
-    return gmi_error_set(table->error, GM_IO_ERR_FORMAT, table->line, "%s is %s; %s is right",
-                         table->columns[column], gmi_quote(quoted, table->fields[column]), right);
+    return gmi_error_set(table->error, GM_IO_ERR_FORMAT, table->line, "%s: must be %s (got %s)",
+                         table->columns[column], right, gmi_quote(quoted, table->fields[column]));
 }
 
 int gmi_table_flank(const gmi_table *table, int column, int *side) {
@@ -402,7 +401,7 @@ int gmi_table_flank(const gmi_table *table, int column, int *side) {
     }
     char quoted[GMI_QUOTE_SIZE];
     return gmi_error_set(table->error, GM_IO_ERR_FORMAT, table->line,
-                         "%s is %s; drive, coast, or * for both is right", table->columns[column],
+                         "%s: must be drive, coast, or * for both (got %s)", table->columns[column],
                          gmi_quote(quoted, field));
 }
 
@@ -414,8 +413,7 @@ int gmi_table_number(const gmi_table *table, int column, int exponent, double *v
     }
     char quoted[GMI_QUOTE_SIZE];
     return gmi_error_set(table->error, GM_IO_ERR_FORMAT, table->line,
-                         status == GMI_NUMBER_TOO_LARGE
-                             ? "%s is %s, which is too large; a finite number like 1.5 is right"
-                             : "%s is %s; a number like 1.5 or -2e-3 is right",
-                         table->columns[column], gmi_quote(quoted, field));
+                         "%s: must be a number like 1.5 or -2e-3 (got %s%s)",
+                         table->columns[column], gmi_quote(quoted, field),
+                         status == GMI_NUMBER_TOO_LARGE ? ", which is too large" : "");
 }

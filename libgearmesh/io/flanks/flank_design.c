@@ -5,10 +5,12 @@
 
 #include "flank_design.h"
 
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include "files/io_error.h"
+#include "files/number_text.h"
 
 static size_t node_count(const gmi_design *design) {
     return (size_t)design->nodes[0] * (size_t)design->nodes[1];
@@ -23,9 +25,8 @@ static int fail_modification(const gm_modifications *modifications, gm_io_error 
         return gmi_error_set(error, GM_IO_ERR_OPTION, 0, "the modifications cannot be used: %s",
                              gm_status_text(status));
     }
-    return gmi_error_set(error, GM_IO_ERR_OPTION, 0,
-                         "modification %d: its %s is wrong; %s is right", index, field,
-                         requirement);
+    return gmi_error_set(error, GM_IO_ERR_OPTION, 0, "modification %d: its %s must be %s", index,
+                         field, requirement);
 }
 
 static int find_grid(gmi_design *design, const gm_modifications *modifications, double tolerance,
@@ -34,9 +35,10 @@ static int find_grid(gmi_design *design, const gm_modifications *modifications, 
     const int status = gm_modifications_grid_find(modifications, design->file_nodes[0],
                                                   design->file_nodes[1], tolerance, &grid);
     if (status != GM_OK) {
-        return gmi_error_set(error, GM_IO_ERR_OPTION, 0,
-                             "no grid for the modifications; a tolerance of at least 1e-12 m is "
-                             "right");
+        char text[GMI_NUMBER_SIZE];
+        return gmi_error_set(
+            error, GM_IO_ERR_OPTION, 0, "modification_tolerance: must be at least 1e-12 m (got %s)",
+            isfinite(tolerance) ? gmi_number_text(text, tolerance, 0, 6) : "not finite");
     }
     design->nodes[0] = grid.face_nodes;
     design->nodes[1] = grid.profile_nodes;

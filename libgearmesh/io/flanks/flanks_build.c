@@ -44,7 +44,7 @@ void gm_flanks_options_default(gm_flanks_options *options) {
 static int check_options(const gm_flanks_options *options, gm_io_error *error) {
     const char *wrong = NULL;
     if (!isfinite(options->scale)) {
-        wrong = "the scale is not finite";
+        wrong = "the scale must be finite";
     }
     if (!(options->normal_factor > 0.0) || !isfinite(options->normal_factor)) {
         wrong = "the normal factor must be finite and above 0";
@@ -226,8 +226,9 @@ static int make_ideal(const builder *build, int teeth, void **memory) {
     const gm_flanks_params params = sizes_of(build, teeth);
     const size_t size = gm_flanks_size(&params);
     if (size == 0) {
-        return gmi_error_set(build->error, GM_IO_ERR_OPTION, 0,
-                             "the flank tables of %d teeth are too large for this machine", teeth);
+        return gmi_error_set(
+            build->error, GM_IO_ERR_OPTION, 0,
+            "the flank tables of %d teeth must fit into memory (got too large ones)", teeth);
     }
     *memory = malloc(size);
     if (*memory == NULL) {
@@ -292,18 +293,19 @@ static int make_design(builder *build, int side, int teeth) {
         modifications == NULL || modifications->gear == NULL || modifications->gear->teeth == teeth;
     if (!is_for_gear) {
         return gmi_error_set(build->error, GM_IO_ERR_OPTION, 0,
-                             "the modifications are for %d teeth; the gear has %d",
-                             modifications->gear->teeth, teeth);
+                             "the modifications must be for the %d teeth of the gear (got %d)",
+                             teeth, modifications->gear->teeth);
     }
     return gmi_design_make(&build->design[side], modifications, build->deviations,
                            build->options->modification_tolerance, build->error);
 }
 
 static int check_same_teeth(int teeth, int got, const char *what, gm_io_error *error) {
-    return got == teeth ? GM_IO_OK
-                        : gmi_error_set(error, GM_IO_ERR_OPTION, 0,
-                                        "the %s deviations are for %d teeth; the gear has %d", what,
-                                        got, teeth);
+    return got == teeth
+               ? GM_IO_OK
+               : gmi_error_set(error, GM_IO_ERR_OPTION, 0,
+                               "the %s deviations must be for the %d teeth of the gear (got %d)",
+                               what, teeth, got);
 }
 
 static int check_inputs(int teeth, const gm_deviations *deviations, const gm_pitch *pitch,

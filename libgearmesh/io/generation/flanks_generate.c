@@ -82,9 +82,8 @@ static int check_options(const gmi_generator *make) {
     if (options->face_nodes < GMI_LEAST_NODES || options->face_nodes > GMI_MOST_NODES ||
         options->profile_nodes < GMI_LEAST_NODES || options->profile_nodes > GMI_MOST_NODES) {
         return gmi_error_set(make->error, GM_IO_ERR_OPTION, 0,
-                             "a grid of %d x %d nodes; %d to %d each way are right",
-                             options->face_nodes, options->profile_nodes, GMI_LEAST_NODES,
-                             GMI_MOST_NODES);
+                             "nodes: must be %d to %d each way (got %d x %d)", GMI_LEAST_NODES,
+                             GMI_MOST_NODES, options->face_nodes, options->profile_nodes);
     }
     int status = gmi_check_teeth(make->gear->teeth, make->error);
     if (status == GM_IO_OK) {

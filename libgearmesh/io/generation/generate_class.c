@@ -34,7 +34,7 @@ typedef struct generator {
 
 static int fail_contradiction(const generator *make, const char *what) {
     return gmi_error_set(make->common->error, GM_IO_ERR_OPTION, 0,
-                         "%s; more teeth, or smaller or other waves, are right", what);
+                         "%s: must be more teeth, or smaller or other waves", what);
 }
 
 static double draw(generator *make, double low, double high) {
@@ -415,8 +415,9 @@ int gmi_class_check(const gmi_generator *make) {
     const gm_generate_options *options = make->options;
     if (options->quality_class < GM_QUALITY_BEST_CLASS ||
         options->quality_class > GM_QUALITY_WORST_CLASS) {
-        return gmi_error_set(make->error, GM_IO_ERR_OPTION, 0, "class %d; %d to %d are right",
-                             options->quality_class, GM_QUALITY_BEST_CLASS, GM_QUALITY_WORST_CLASS);
+        return gmi_error_set(make->error, GM_IO_ERR_OPTION, 0,
+                             "class: must be from %d to %d (got %d)", GM_QUALITY_BEST_CLASS,
+                             GM_QUALITY_WORST_CLASS, options->quality_class);
     }
     if (!(options->share >= least_share && options->share <= most_share)) {
         return gmi_error_set(make->error, GM_IO_ERR_OPTION, 0,

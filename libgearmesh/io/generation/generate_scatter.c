@@ -48,7 +48,7 @@ void gm_flank_scatter_paper(gm_flank_scatter *scatter) {
  * ------------------------------------------------------------------------------------------- */
 
 static int fail(const gmi_generator *make, const char *name, const char *right) {
-    return gmi_error_set(make->error, GM_IO_ERR_OPTION, 0, "%s: %s right", name, right);
+    return gmi_error_set(make->error, GM_IO_ERR_OPTION, 0, "%s: must be %s", name, right);
 }
 
 static int is_size(double value) {
@@ -67,18 +67,19 @@ static int check_trace(const gmi_generator *make, const char *name, const gm_tra
                        int nodes) {
     const gm_scatter_uniform *count = &trace->wave_count;
     if (!is_normal(&trace->slope) || !is_normal(&trace->crowning)) {
-        return fail(make, name, "slope and crowning of at most 10 mm, deviations not below 0, are");
+        return fail(make, name,
+                    "slope and crowning of at most 10 mm, with standard deviations not below 0");
     }
     if (!is_range(&trace->wave)) {
-        return fail(make, name, "amplitudes of waves from low to high, from 0 to 10 mm, are");
+        return fail(make, name, "amplitudes of waves from low to high, from 0 to 10 mm");
     }
     if (!(count->low >= 0.0 && count->low <= count->high && isfinite(count->high))) {
-        return fail(make, name, "numbers of waves from low to high, not below 0, are");
+        return fail(make, name, "numbers of waves from low to high, not below 0");
     }
     if (trace->wave.high > 0.0 && GMI_NODES_PER_WAVE * count->high > nodes - 1) {
         return gmi_error_set(make->error, GM_IO_ERR_OPTION, 0,
-                             "%s: too many waves for %d nodes; %d nodes per wave are right", name,
-                             nodes, GMI_NODES_PER_WAVE);
+                             "%s: must have %d nodes per wave (got too many waves for %d nodes)",
+                             name, GMI_NODES_PER_WAVE, nodes);
     }
     return GM_IO_OK;
 }
@@ -86,11 +87,11 @@ static int check_trace(const gmi_generator *make, const char *name, const gm_tra
 static int check_ends(const gmi_generator *make) {
     const gm_flank_scatter *scatter = make->options->scatter;
     if (!is_normal(&scatter->foot) || !(scatter->foot_end > 0.0 && scatter->foot_end <= 1.0)) {
-        return fail(make, "foot", "at most 10 mm, and an end above 0 and not above 1, are");
+        return fail(make, "foot", "at most 10 mm, with an end above 0 and not above 1");
     }
     if (!is_normal(&scatter->tip_relief) ||
         !(scatter->tip_start >= 0.0 && scatter->tip_start < 1.0)) {
-        return fail(make, "tip relief", "at most 10 mm, and a start from 0 to below 1, are");
+        return fail(make, "tip relief", "at most 10 mm, with a start from 0 to below 1");
     }
     return GM_IO_OK;
 }
@@ -98,9 +99,10 @@ static int check_ends(const gmi_generator *make) {
 int gmi_scatter_check(const gmi_generator *make) {
     const gm_flank_scatter *scatter = make->options->scatter;
     if (make->options->quality_class != 0) {
-        return gmi_error_set(make->error, GM_IO_ERR_OPTION, 0,
-                             "class %d and a scatter as well; one of them is right",
-                             make->options->quality_class);
+        return gmi_error_set(
+            make->error, GM_IO_ERR_OPTION, 0,
+            "flanks: must be of a class or have a scatter (got class %d and a scatter)",
+            make->options->quality_class);
     }
     int status = check_trace(make, "profile", &scatter->profile, make->options->profile_nodes);
     if (status == GM_IO_OK) {
@@ -111,7 +113,7 @@ int gmi_scatter_check(const gmi_generator *make) {
     }
     if (status == GM_IO_OK && !(is_size(scatter->roughness) && is_size(scatter->pitch) &&
                                 is_size(scatter->eccentricity))) {
-        status = fail(make, "roughness, pitch, eccentricity", "0 to 10 mm are");
+        status = fail(make, "roughness, pitch, eccentricity", "from 0 to 10 mm");
     }
     return status;
 }

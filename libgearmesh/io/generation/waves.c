@@ -57,25 +57,26 @@ static int check_resolution(const gmi_generator *make, const char *axis, double 
     if (nodes - 1 >= GMI_NODES_PER_WAVE * waves) {
         return GM_IO_OK;
     }
-    return gmi_error_set(make->error, GM_IO_ERR_OPTION, 0,
-                         "order %d makes %ld waves along %s, too many for %d nodes; %d nodes per "
-                         "wave are right",
-                         order, (long)waves + 1, axis, nodes, GMI_NODES_PER_WAVE);
+    return gmi_error_set(
+        make->error, GM_IO_ERR_OPTION, 0,
+        "order %d: must have %d nodes per wave (got %ld waves along %s for %d nodes)", order,
+        GMI_NODES_PER_WAVE, (long)waves + 1, axis, nodes);
 }
 
 int gmi_waves_check(const gmi_generator *make) {
     const gm_generate_options *options = make->options;
     if (options->wave_count < 0 || options->wave_count > MOST_WAVES ||
         (options->wave_count > 0 && options->waves == NULL)) {
-        return gmi_error_set(make->error, GM_IO_ERR_OPTION, 0, "%d waves; 0 to %d are right",
-                             options->wave_count, MOST_WAVES);
+        return gmi_error_set(make->error, GM_IO_ERR_OPTION, 0, "waves: must be 0 to %d (got %d)",
+                             MOST_WAVES, options->wave_count);
     }
     int status = GM_IO_OK;
     for (int i = 0; status == GM_IO_OK && i < options->wave_count; i++) {
         const gm_flank_wave *wave = &options->waves[i];
         if (wave->order < 1 || wave->order > MOST_ORDER) {
             return gmi_error_set(make->error, GM_IO_ERR_OPTION, 0,
-                                 "a wave of order %d; 1 to %d are right", wave->order, MOST_ORDER);
+                                 "the order of a wave: must be from 1 to %d (got %d)", MOST_ORDER,
+                                 wave->order);
         }
         if (!(wave->amplitude >= 0.0) || !isfinite(wave->amplitude)) {
             return gmi_error_set(make->error, GM_IO_ERR_OPTION, 0,

@@ -51,14 +51,14 @@ static int place_point(builder *build, int row) {
     const gm_pitch_point *first = point_of(build, side, index);
     if (first != NULL) {
         return gmi_error_set(build->error, GM_IO_ERR_FORMAT, point->line,
-                             "tooth %d, flank %s, has a second row, the first is in line %ld; one "
-                             "is right (are there two teeth with this number?)",
+                             "tooth %d, flank %s: must have one row (got a second one, the first "
+                             "is in line %ld; are there two teeth with this number?)",
                              point->tooth, gmi_flank_word(point->flank), first->line);
     }
     if (!(fabs(point->value) < 1.0)) { /* no overflow on the way to a message */
         return gmi_error_set(build->error, GM_IO_ERR_FORMAT, point->line,
-                             "the pitch of tooth %d is not finite or beyond 1 m; deviations of the "
-                             "pitch, of some um, are right",
+                             "the pitch of tooth %d: must be a deviation, of some um (got one that "
+                             "is not finite or beyond 1 m)",
                              point->tooth);
     }
     build->row[side * build->gear->teeth + index] = row + 1;
@@ -92,8 +92,8 @@ static int fail_missing(const builder *build, int side) {
     }
     return gmi_error_set(
         build->error, GM_IO_ERR_FORMAT, 0,
-        "flank %s has no row for %s %s%s; one for each of the %d teeth is right%s", flank,
-        missing == 1 ? "tooth" : "the teeth", list, missing > shown ? " and others" : "", teeth,
+        "flank %s: must have a row for each of the %d teeth (got none for %s %s%s)%s", flank, teeth,
+        missing == 1 ? "tooth" : "the teeth", list, missing > shown ? " and others" : "",
         build->present[side] == mate ? " (is it the other gear that was measured?)" : "");
 }
 
@@ -131,8 +131,8 @@ static int add_up(builder *build, int side, double *place) {
     if (fabs(sum) > teeth * rounding_per_pitch + rounding) {
         char text[GMI_NUMBER_SIZE];
         return gmi_error_set(build->error, GM_IO_ERR_FORMAT, point_of(build, side, 0)->line,
-                             "the single pitch deviations of flank %s add up to %s um; 0 is right, "
-                             "as the last pitch leads back to the first tooth",
+                             "the single pitch deviations of flank %s: must add up to 0, as the "
+                             "last pitch leads back to the first tooth (got %s um)",
                              gmi_flank_word(point_of(build, side, 0)->flank),
                              gmi_number_text(text, sum, 6, 4));
     }
@@ -284,7 +284,7 @@ static int build_pitch(builder *build, gm_pitch *pitch) {
     int status = gmi_measurement_check(build->measurement, build->pair, build->wheel, build->error);
     if (status == GM_IO_OK && (build->measured->count < 1 || build->measured->points == NULL)) {
         status = gmi_error_set(build->error, GM_IO_ERR_FORMAT, 0,
-                               "there is no pitch; that of all teeth is right");
+                               "measured pitch: must be that of all teeth (got none)");
     }
     if (status == GM_IO_OK) {
         status = gmi_pitch_allocate(pitch, build->gear->teeth, build->error);

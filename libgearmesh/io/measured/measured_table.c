@@ -15,6 +15,5 @@ int gmi_measured_place(const gmi_table *table, int *tooth, int *flank) {
 
 int gmi_measured_fail_empty(const gmi_table *table) {
     return gmi_error_set(table->error, GM_IO_ERR_FORMAT, table->line,
-                         "there are no rows below the header; those of what was measured are "
-                         "right");
+                         "there must be rows of what was measured below the header (got none)");
 }

@@ -74,23 +74,23 @@ int gmi_measurement_check(const gm_measurement *measurement, const gm_pair *pair
     }
     if (measurement->datum_face != GM_FACE_I && measurement->datum_face != GM_FACE_II) {
         return gmi_error_set(error, GM_IO_ERR_OPTION, 0,
-                             "the datum face must be said: it must be I or II");
+                             "the datum face: must be said, I or II (got none)");
     }
     if (measurement->counting != GM_CLOCKWISE && measurement->counting != GM_COUNTERCLOCKWISE) {
         return gmi_error_set(error, GM_IO_ERR_OPTION, 0,
-                             "the direction of counting must be said: it must be clockwise or "
-                             "counter-clockwise, seen from the datum face");
+                             "the direction of counting: must be said, clockwise or "
+                             "counter-clockwise as seen from the datum face (got none)");
     }
     if (measurement->first_number < 0 || measurement->first_number > 1) {
         return gmi_error_set(error, GM_IO_ERR_OPTION, 0,
-                             "the number of the first tooth is %d; it must be 0 or 1",
+                             "the number of the first tooth: must be 0 or 1 (got %d)",
                              measurement->first_number);
     }
     if (measurement->first_tooth < 0 || measurement->first_tooth >= teeth) {
         gmi_error_option(error, "first_tooth");
         return gmi_error_set(error, GM_IO_ERR_OPTION, 0,
-                             "the first tooth measured is tooth %d; it must be from 0 to %d",
-                             measurement->first_tooth, teeth - 1);
+                             "the first tooth measured: must be from 0 to %d (got %d)", teeth - 1,
+                             measurement->first_tooth);
     }
     const double diameter = measurement->pitch_diameter;
     const gm_gear *gear = gmi_gear_of(pair, wheel);
@@ -101,11 +101,12 @@ int gmi_measurement_check(const gm_measurement *measurement, const gm_pair *pair
         char high[GMI_NUMBER_SIZE];
         gmi_error_option(error, "pitch_diameter");
         return gmi_error_set(error, GM_IO_ERR_OPTION, 0,
-                             "the measuring circle of the pitch is %s mm in diameter; it must be "
-                             "from %s (base) to %s (tip)",
-                             isfinite(diameter) ? gmi_number_text(got, diameter, 3, 7) : "infinite",
+                             "the measuring circle of the pitch: must be from %s mm (base) to %s "
+                             "mm (tip) in diameter (got %s mm)",
                              gmi_number_text(low, 2.0 * gear->base_radius, 3, 7),
-                             gmi_number_text(high, 2.0 * gear->tip_radius, 3, 7));
+                             gmi_number_text(high, 2.0 * gear->tip_radius, 3, 7),
+                             isfinite(diameter) ? gmi_number_text(got, diameter, 3, 7)
+                                                : "infinite");
     }
     return GM_IO_OK;
 }
@@ -117,7 +118,7 @@ int gmi_measurement_place(const gm_measurement *measurement, const gm_pair *pair
     *side = gm_measurement_side(measurement, flank);
     if (*side < 0) {
         return gmi_error_set(error, GM_IO_ERR_FORMAT, line,
-                             "flank %d is none; drive, coast, left or right is right", flank);
+                             "flank: must be drive, coast, left or right (got number %d)", flank);
     }
     *tooth = gm_measurement_tooth(measurement, pair, wheel, number);
     if (*tooth < 0) {
@@ -125,8 +126,8 @@ int gmi_measurement_place(const gm_measurement *measurement, const gm_pair *pair
         const int first = measurement->first_number;
         gmi_error_option(error, number == 0 ? "first_number" : NULL);
         return gmi_error_set(error, GM_IO_ERR_FORMAT, line,
-                             "there is no tooth %d; %d to %d is right, as the gear has %d teeth%s",
-                             number, first, first + teeth - 1, teeth,
+                             "tooth: must be from %d to %d, as the gear has %d teeth (got %d)%s",
+                             first, first + teeth - 1, teeth, number,
                              number >= first && number - first < mate
                                  ? " (is it the other gear that was measured?)"
                              : number == 0 ? " (if the count begins at 0, that has to be said)"
@@ -173,9 +174,9 @@ int gmi_check_size(double range, double most, const char *what, long line, gm_io
     char low[GMI_NUMBER_SIZE];
     char high[GMI_NUMBER_SIZE];
     return gmi_error_set(error, GM_IO_ERR_FORMAT, line,
-                         "%s vary by %s um at most; %s to %s um is right for this gear (%s)", what,
-                         gmi_number_text(text, range, 6, 4),
+                         "%s: must vary by %s to %s um for this gear (got %s um at most: %s)", what,
                          gmi_number_text(low, least_range, 6, 1), gmi_number_text(high, most, 6, 4),
+                         gmi_number_text(text, range, 6, 4),
                          range < least_range ? "it looks like millimetres"
                                              : "it looks like nanometres, or a point is wild");
 }

@@ -75,8 +75,8 @@ static int fail_spike(const gmi_measured *trace, int k, double height, gm_io_err
     char text[GMI_NUMBER_SIZE];
     gmi_error_option(error, "remove_spikes");
     return gmi_error_set(error, GM_IO_ERR_FORMAT, from->line != NULL ? from->line[index] : 0,
-                         "%s has a spike of %s um here; a trace without dust is right (spikes can "
-                         "be left out if that is asked for)",
+                         "%s: must be without dust (got a spike of %s um here; spikes can be left "
+                         "out if that is asked for)",
                          gmi_trace_name(name, from), gmi_number_text(text, height, 6, 3));
 }
 
@@ -194,13 +194,12 @@ static int check_sign(const gmi_measured *traces, int count, const gm_traces_opt
     char profile_text[GMI_NUMBER_SIZE];
     char helix_text[GMI_NUMBER_SIZE];
     gmi_error_option(error, "hollow");
-    return gmi_error_set(
-        error, GM_IO_ERR_FORMAT, 0,
-        "%d of %d traces stand out at their ends (profile by %s um, helix by %s um "
-        "in the mean), as if material were counted < 0; > 0 for material added is "
-        "right (flanks that are meant hollow have to be called so)",
-        hollow, count, gmi_number_text(profile_text, profile, 6, 2),
-        gmi_number_text(helix_text, helix, 6, 2));
+    return gmi_error_set(error, GM_IO_ERR_FORMAT, 0,
+                         "material added: must be > 0 (got %d of %d traces that stand out at their "
+                         "ends, profile by %s um, helix by %s um in the mean, as if it were < 0; "
+                         "flanks that are meant hollow have to be called so)",
+                         hollow, count, gmi_number_text(profile_text, profile, 6, 2),
+                         gmi_number_text(helix_text, helix, 6, 2));
 }
 
 int gmi_judge_deviations(const gmi_measured *traces, int count, const gm_pair *pair,

@@ -83,10 +83,10 @@ static int roll_of_diameter(const loader *load, const gmi_table *table, double d
         char low[GMI_NUMBER_SIZE];
         char high[GMI_NUMBER_SIZE];
         return gmi_error_set(load->error, GM_IO_ERR_FORMAT, table->line,
-                             "diameter_mm is %s, below the base circle; %s to %s is right%s",
-                             gmi_quote(quoted, table->fields[ROLL]),
+                             "diameter_mm: must be from %s (base circle) to %s (tip) (got %s)%s",
                              gmi_number_text(low, 2.0 * base, 3, 7),
                              gmi_number_text(high, 2.0 * load->gear->tip_radius, 3, 7),
+                             gmi_quote(quoted, table->fields[ROLL]),
                              gmi_length_hint(diameter, 2.0 * load->gear->tip_radius));
     }
     *roll = gmi_roll_length(0.5 * diameter, base);
@@ -140,11 +140,11 @@ static int check_direction(loader *load, const gmi_table *table, const trace_row
     if (direction == 0 || direction == -load->direction) {
         const int column = row->trace.kind == GM_TRACE_PROFILE ? ROLL : FACE;
         char quoted[GMI_QUOTE_SIZE];
-        return gmi_error_set(
-            load->error, GM_IO_ERR_FORMAT, table->line,
-            "%s is %s, which does not go on from the row before; positions of a trace that only "
-            "rise or only fall are right (are there two teeth with the number %d?)",
-            table->columns[column], gmi_quote(quoted, table->fields[column]), row->trace.tooth);
+        return gmi_error_set(load->error, GM_IO_ERR_FORMAT, table->line,
+                             "%s: must go on from the row before, as positions of a trace only "
+                             "rise or only fall (got %s; are there two teeth with the number %d?)",
+                             table->columns[column], gmi_quote(quoted, table->fields[column]),
+                             row->trace.tooth);
     }
     load->direction = direction;
     return GM_IO_OK;

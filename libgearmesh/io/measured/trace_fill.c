@@ -184,8 +184,8 @@ static int fail_filled(const gmi_measured *trace, const stretch *of, gm_io_error
     gmi_error_option(error, "remove_spikes");
     return gmi_error_set(
         error, GM_IO_ERR_FORMAT, line,
-        "%s: all points must be measured, and rows of what was not must be left out (got exactly "
-        "%s um at all %d points from %s to %s mm %s, and a step of %s um beside them)",
+        "%s: all points must be measured, rows without a measurement left out (got exactly %s um "
+        "at all %d points from %s to %s mm %s, and a step of %s um beside them)",
         gmi_trace_name(name, from), gmi_number_text(value, from->deviation[low], 6, 6),
         high - low + 1, gmi_number_text(begin, from->position[low], 3, 6),
         gmi_number_text(end, from->position[high], 3, 6),

@@ -39,12 +39,11 @@ static int fail_face(const gmi_mapping *map, const gm_trace *trace, int point, d
     char name[GMI_TRACE_NAME_SIZE];
     char got[GMI_NUMBER_SIZE];
     char right[GMI_NUMBER_SIZE];
-    return gmi_error_set(map->error, GM_IO_ERR_FORMAT, line_of(trace, point),
-                         "%s leaves the gear: it lies at %s mm from the datum face; 0 to %s mm is "
-                         "right, the face width%s",
-                         gmi_trace_name(name, trace), gmi_number_text(got, face, 3, 7),
-                         gmi_number_text(right, map->pair->face_width, 3, 7),
-                         gmi_length_hint(reach, map->pair->face_width));
+    return gmi_error_set(
+        map->error, GM_IO_ERR_FORMAT, line_of(trace, point),
+        "%s leaves the gear: must be 0 to %s mm from the datum face, the face width (got %s mm)%s",
+        gmi_trace_name(name, trace), gmi_number_text(right, map->pair->face_width, 3, 7),
+        gmi_number_text(got, face, 3, 7), gmi_length_hint(reach, map->pair->face_width));
 }
 
 static int fail_roll(const gmi_mapping *map, const gm_trace *trace, int point, double roll,
@@ -55,15 +54,15 @@ static int fail_roll(const gmi_mapping *map, const gm_trace *trace, int point, d
     char got_diameter[GMI_NUMBER_SIZE];
     char right[GMI_NUMBER_SIZE];
     char right_diameter[GMI_NUMBER_SIZE];
-    return gmi_error_set(
-        map->error, GM_IO_ERR_FORMAT, line_of(trace, point),
-        "%s leaves the gear: it lies at a roll length of %s mm (diameter %s mm); up to %s mm "
-        "(diameter %s mm) is right, the tip%s",
-        gmi_trace_name(name, trace), gmi_number_text(got, roll, 3, 7),
-        gmi_number_text(got_diameter, 2.0 * hypot(roll, base), 3, 7),
-        gmi_number_text(right, map->gear->tip_roll_length, 3, 7),
-        gmi_number_text(right_diameter, 2.0 * map->gear->tip_radius, 3, 7),
-        gmi_length_hint(reach, map->gear->tip_roll_length));
+    return gmi_error_set(map->error, GM_IO_ERR_FORMAT, line_of(trace, point),
+                         "%s leaves the gear: must be at a roll length up to %s mm (diameter %s "
+                         "mm), the tip (got %s mm, diameter %s mm)%s",
+                         gmi_trace_name(name, trace),
+                         gmi_number_text(right, map->gear->tip_roll_length, 3, 7),
+                         gmi_number_text(right_diameter, 2.0 * map->gear->tip_radius, 3, 7),
+                         gmi_number_text(got, roll, 3, 7),
+                         gmi_number_text(got_diameter, 2.0 * hypot(roll, base), 3, 7),
+                         gmi_length_hint(reach, map->gear->tip_roll_length));
 }
 
 static int is_on_face(double t1) {
@@ -83,16 +82,16 @@ static int is_sane(double length) {
 static int check_structure(const gmi_mapping *map, const gm_trace *trace) {
     const int known = trace->kind == GM_TRACE_PROFILE || trace->kind == GM_TRACE_HELIX;
     if (!known || trace->position == NULL || trace->deviation == NULL || trace->count < 1) {
-        return gmi_error_set(map->error, GM_IO_ERR_FORMAT, 0,
-                             "a trace of kind %d with %d points; profile or helix, with points, "
-                             "is right",
-                             trace->kind, trace->count);
+        return gmi_error_set(
+            map->error, GM_IO_ERR_FORMAT, 0,
+            "a trace: must be a profile or helix, with points (got kind %d with %d points)",
+            trace->kind, trace->count);
     }
     if (trace->count < 2) {
         char name[GMI_TRACE_NAME_SIZE];
         return gmi_error_set(
             map->error, GM_IO_ERR_FORMAT, line_of(trace, 0),
-            "%s has 1 point; rows that stand together, all at the same %s, are right",
+            "%s: must be at least 2 rows that stand together, all at the same %s (got 1)",
             gmi_trace_name(name, trace),
             trace->kind == GM_TRACE_PROFILE ? "distance from the datum face"
                                             : "roll length or diameter");
@@ -103,8 +102,8 @@ static int check_structure(const gmi_mapping *map, const gm_trace *trace) {
             !rises) {
             char name[GMI_TRACE_NAME_SIZE];
             return gmi_error_set(map->error, GM_IO_ERR_FORMAT, line_of(trace, i),
-                                 "%s has a value that is not finite or beyond 1 km, or a position "
-                                 "that does not rise; those of a gear are right",
+                                 "%s: must have rising positions and values of a gear (got one "
+                                 "that is not finite, beyond 1 km, or does not rise)",
                                  gmi_trace_name(name, trace));
         }
     }
@@ -128,12 +127,12 @@ static int map_place(const gmi_mapping *map, const gm_trace *trace, double *at) 
     char got[GMI_NUMBER_SIZE];
     char low[GMI_NUMBER_SIZE];
     char high[GMI_NUMBER_SIZE];
-    return gmi_error_set(map->error, GM_IO_ERR_FORMAT, line_of(trace, 0),
-                         "%s lies at a roll length of %s mm, below the active profile; %s to %s mm "
-                         "is right",
-                         gmi_trace_name(name, trace), gmi_number_text(got, trace->at, 3, 7),
-                         gmi_number_text(low, map->gear->start_roll_length, 3, 7),
-                         gmi_number_text(high, map->gear->tip_roll_length, 3, 7));
+    return gmi_error_set(
+        map->error, GM_IO_ERR_FORMAT, line_of(trace, 0),
+        "%s: must be on the active profile, at a roll length of %s to %s mm (got %s mm)",
+        gmi_trace_name(name, trace), gmi_number_text(low, map->gear->start_roll_length, 3, 7),
+        gmi_number_text(high, map->gear->tip_roll_length, 3, 7),
+        gmi_number_text(got, trace->at, 3, 7));
 }
 
 /* Points of a trace as t and deviation along the normal. */
@@ -179,13 +178,13 @@ static int check_cover(const gmi_mapping *map, const gmi_measured *trace) {
     }
     return gmi_error_set(
         map->error, GM_IO_ERR_FORMAT, gmi_measured_line(trace),
-        "%s reaches from %s to %s mm %s only; %s to %s mm is right, of which %s may be missing at "
-        "either end%s",
-        gmi_trace_name(name, raw), gmi_number_text(got[0], raw->position[0], 3, 5),
-        gmi_number_text(got[1], raw->position[raw->count - 1], 3, 5),
-        profile ? "roll length" : "from the datum face",
+        "%s: must reach from %s to %s mm %s, of which %s may be missing at either end (got %s to "
+        "%s mm)%s",
+        gmi_trace_name(name, raw),
         gmi_number_text(right[0], profile ? map->gear->start_roll_length : 0.0, 3, 5),
-        gmi_number_text(right[1], full, 3, 5), gmi_number_text(share, limit, 0, 3),
+        gmi_number_text(right[1], full, 3, 5), profile ? "roll length" : "from the datum face",
+        gmi_number_text(share, limit, 0, 3), gmi_number_text(got[0], raw->position[0], 3, 5),
+        gmi_number_text(got[1], raw->position[raw->count - 1], 3, 5),
         gmi_length_hint(raw->position[raw->count - 1], full));
 }
 

@@ -119,12 +119,11 @@ static int check_contradiction(const surface *of, double worst, gm_io_error *err
     }
     char name[GMI_TRACE_NAME_SIZE];
     char text[GMI_NUMBER_SIZE];
-    return gmi_error_set(error, GM_IO_ERR_FORMAT, gmi_measured_line(&of->profile.traces[0]),
-                         "%s and the others of this flank contradict each other by %s um where "
-                         "they cross, whatever their levels; traces of one and the same flank, "
-                         "each with its own place, are right",
-                         gmi_trace_name(name, of->profile.traces[0].from),
-                         gmi_number_text(text, worst, 6, 3));
+    return gmi_error_set(
+        error, GM_IO_ERR_FORMAT, gmi_measured_line(&of->profile.traces[0]),
+        "%s: must be of the same flank as the others there, each with its own place (got a "
+        "contradiction of %s um where they cross, whatever their levels)",
+        gmi_trace_name(name, of->profile.traces[0].from), gmi_number_text(text, worst, 6, 3));
 }
 
 /* ---------------------------------------------------------------------------------------------

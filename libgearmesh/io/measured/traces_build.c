@@ -55,8 +55,8 @@ static int check_options(const gm_traces_options *options, gm_io_error *error) {
     if (options->face_nodes < LEAST_NODES || options->face_nodes > MOST_NODES ||
         options->profile_nodes < LEAST_NODES || options->profile_nodes > MOST_NODES) {
         return gmi_error_set(error, GM_IO_ERR_OPTION, 0,
-                             "%d x %d nodes asked for; %d to %d each way are right",
-                             options->face_nodes, options->profile_nodes, LEAST_NODES, MOST_NODES);
+                             "nodes: must be %d to %d each way (got %d x %d)", LEAST_NODES,
+                             MOST_NODES, options->face_nodes, options->profile_nodes);
     }
     if (!(options->held_limit >= 0.0 && options->held_limit <= GMI_MOST_HELD)) {
         gmi_error_option(error, "held_limit");
@@ -101,8 +101,8 @@ static int check_double(const builder *build, const gmi_measured *a, const gmi_m
     const gmi_measured *earlier = later == a ? b : a;
     char name[GMI_TRACE_NAME_SIZE];
     return gmi_error_set(build->error, GM_IO_ERR_FORMAT, gmi_measured_line(later),
-                         "%s is there twice at the same place, the first one begins in line %ld; "
-                         "one is right (are there two teeth with the number %d?)",
+                         "%s: must be there once (got a second one at the same place, the first "
+                         "one begins in line %ld; are there two teeth with the number %d?)",
                          gmi_trace_name(name, later->from), gmi_measured_line(earlier),
                          later->from->tooth);
 }
@@ -326,14 +326,15 @@ static int check_flank(const builder *build, int begin, int profiles, int helice
     const gmi_measured *trace = &build->measured[begin];
     char name[GMI_TRACE_NAME_SIZE];
     if (profiles > GMI_MAX_TRACES || helices > GMI_MAX_TRACES) {
-        return gmi_error_set(build->error, GM_IO_ERR_FORMAT, gmi_measured_line(trace),
-                             "%s has %d profiles and %d helices beside it; up to %d are right",
-                             gmi_trace_name(name, trace->from), profiles, helices, GMI_MAX_TRACES);
+        return gmi_error_set(
+            build->error, GM_IO_ERR_FORMAT, gmi_measured_line(trace),
+            "%s: must be one of at most %d of a kind on its flank (got %d profiles and %d helices)",
+            gmi_trace_name(name, trace->from), GMI_MAX_TRACES, profiles, helices);
     }
     if (profiles == 0 && helices > 1) {
         return gmi_error_set(build->error, GM_IO_ERR_FORMAT, gmi_measured_line(trace),
-                             "%s is one of %d on a flank without a profile trace; a profile trace "
-                             "beside them, or one helix trace, is right",
+                             "%s: must have a profile trace beside it, or be the only helix trace "
+                             "(got %d on a flank without a profile)",
                              gmi_trace_name(name, trace->from), helices);
     }
     return GM_IO_OK;
@@ -409,7 +410,7 @@ static int check_arguments(builder *build) {
     }
     if (status == GM_IO_OK && (build->traces->count < 1 || build->traces->traces == NULL)) {
         return gmi_error_set(build->error, GM_IO_ERR_FORMAT, 0,
-                             "there are no traces; at least one is right");
+                             "traces: must be at least one (got none)");
     }
     return status;
 }

@@ -242,8 +242,8 @@ static int check_teeth(const evaluation *of, int teeth, const char *what, gm_io_
     return teeth == of->gear->teeth
                ? GM_IO_OK
                : gmi_error_set(error, GM_IO_ERR_OPTION, 0,
-                               "the %s deviations are for %d teeth; the gear has %d", what, teeth,
-                               of->gear->teeth);
+                               "the %s deviations must be for the %d teeth of the gear (got %d)",
+                               what, of->gear->teeth, teeth);
 }
 
 static int check_inputs(evaluation *of, const gm_deviations *deviations, const gm_pitch *pitch,
