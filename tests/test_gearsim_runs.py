@@ -9,6 +9,7 @@ Whole runs of gearsim against closed forms and against each other.
 import math
 import os
 import pty
+import re
 import resource
 import signal
 import statistics
@@ -17,6 +18,7 @@ import sys
 import tempfile
 import time
 import unittest
+from random import Random
 
 GEARSIM = os.environ.get("GEARSIM", "gearsim")
 OLD_RESULT = "an older result\n"
@@ -272,6 +274,70 @@ class ClosedForms(Case):
         # Kinks of the curve ring at (0.75 Hz / 2 kHz)^2 of its 0.1 um; damping lags by as little.
         self.assert_all_close(dynamic["dte_um"][:60], static["te_um"], absolute=1e-5)
         self.assertGreater(spread(static["te_um"]), 1e-3)
+
+
+class Rattle(Case):
+    """Rough teeth that part and meet again, without noise: in flight no error estimate limits a step."""
+    LIGHT = ["load.mean_Nm=3", "drive.start_rpm=3000", "drive.end_rpm=3001", "analysis.duration_s=0.012", *PLAIN,
+             "output.columns=contact_force_N"]
+
+    def roughen(self, seed):
+        """Deviations of some micrometres that change from node to node, on all teeth of both gears."""
+        random = Random(seed)
+        self.rough = []
+        for gear, teeth in (("pinion", 45), ("wheel", 41)):
+            with open(self.path(gear), "w") as file:
+                file.write("tooth,flank,t1,t2,deviation_um\n")
+                for tooth in range(teeth):
+                    for flank in ("drive", "coast"):
+                        pitch = random.uniform(-4, 4)
+                        for node in range(35):
+                            deviation = pitch + random.uniform(-6, 6)
+                            file.write(f"{tooth},{flank},{node // 7 / 4},{node % 7 / 6:.9f},{deviation:.6f}\n")
+            self.rough.append(f"flanks.{gear}={gear}")
+
+    def force(self, tolerance, *others):
+        return self.run_columns([*self.rough, *self.LIGHT, f"solver.relative_tolerance={tolerance}",
+                                 f"solver.absolute_tolerance_um={tolerance}", *others])["contact_force_N"]
+
+    def assert_converges(self, *others):
+        """Against steps so short that they do not miss a touch."""
+        exact = self.force(1e-10, "solver.max_step_s=5e-7", *others)
+        scale = max(map(abs, exact))
+        self.assertGreater(exact.count(0.0), 60, others)  # of 308: teeth do part
+        self.assertGreater(scale, 100.0)
+        for tolerance, limit in ((1e-6, 2e-2), (1e-8, 1e-3), (1e-10, 1e-4)):
+            error = largest_difference(self.force(tolerance, *others), exact) / scale
+            self.assertLess(error, limit, f"{others}, tolerance {tolerance}")
+
+    def test_force_converges_with_the_tolerance(self):
+        self.roughen(5)
+        for method in ("adams", "bdf", "erk"):
+            self.assert_converges(f"solver.method={method}")
+
+    def test_torque_driven(self):
+        self.roughen(5)
+        self.assert_converges("drive.kind=torque", "drive.torque_Nm=3.3", f"bodies.pinion_inertia_kg_m2={I_P}")
+
+    def test_other_flanks_and_other_direction(self):
+        self.roughen(1)
+        self.assert_converges("load.mean_Nm=-3")
+        self.assert_converges("drive.start_rpm=-3000", "drive.end_rpm=-3001")
+
+    def test_lookup(self):
+        self.roughen(5)
+        self.assert_converges("solver.lookup=on")
+
+    def test_weak_noise_counts_as_none(self):
+        self.roughen(5)
+        self.assert_converges("load.noise_amplitude_Nm=1e-4")
+
+    def test_looks_ahead_are_those_of_flights(self):
+        self.roughen(5)
+        for others, flies in [(["load.mean_Nm=300"], False), ([], True)]:
+            result = self.gearsim([*self.rough, *self.LIGHT, *others], "--output", "run.csv")
+            looks = int(re.search(r"(\d+) looks ahead", result.stderr).group(1))
+            self.assertEqual(looks > 0, flies, result.stderr)
 
 
 class Solver(Case):

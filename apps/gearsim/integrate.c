@@ -2,9 +2,11 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 
 /* Step by step to the samples, with whichever package of SUNDIALS 6 or 7 has the method asked for. */
+#include "flight.h"
 #include "integrate_package.h"
 #include "interrupt.h"
 
+#include <float.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -18,6 +20,9 @@
 /* So many steps in a row that are next to nothing of a vibration (in rad of it): the solver is stuck. */
 enum { STALLED_STEPS = 100 };
 static const double stalled_step = 1e-10;
+
+/* Longest step without a force where nothing else limits it, in rad of a vibration. */
+static const double longest_flight = 600.0;
 
 /* ---------------------------------------------------------------------------------------------
  * What the packages call
@@ -34,8 +39,8 @@ int integrator_keep_status(integrator *solver, int status) {
 int integrator_derivative(sunrealtype time, N_Vector state, N_Vector result, void *data) {
     integrator *solver = data;
 
-    return integrator_keep_status(
-        solver, model_derivative(solver->model, time, NV_DATA_S(state), NV_DATA_S(result)));
+    return integrator_keep_status(solver, model_derivative(solver->model, time, NV_DATA_S(state),
+                                                           NV_DATA_S(result), &solver->contact));
 }
 
 int integrator_error_weights(N_Vector state, N_Vector weights, void *data) {
@@ -111,6 +116,10 @@ static int set_up(integrator *solver, const double start[]) {
         return -1;
     }
     memcpy(NV_DATA_S(solver->state), start, (size_t)states * sizeof start[0]);
+
+    /* Whether the first step starts in contact; a state that the model refuses fails in that step. */
+    double derivative[STATES_MAX];
+    (void)model_derivative(solver->model, 0.0, start, derivative, &solver->contact);
     return solver->package->create(solver);
 }
 
@@ -158,6 +167,42 @@ static int fail(integrator *solver, const char *what) {
     return EXIT_RUN_FAILED;
 }
 
+/* Error that a step may make in x' (m/s). */
+static double speed_tolerance(const integrator *solver) {
+    double weights[STATES_MAX];
+
+    model_error_weights(solver->model, solver->options.relative_tolerance,
+                        solver->options.absolute_tolerance, NV_DATA_S(solver->state), weights);
+    return model_speed_unit(solver->model) / weights[STATE_OFFSET_RATE];
+}
+
+/*
+ * Time that the next step must not go beyond. In flight the error estimate is zero and does not limit the step: the
+ * next contact does. Firm contact, and flights that strong noise bends, are left to the error estimate.
+ */
+static double stop_time(integrator *solver, double longest) {
+    const gear_model *model = solver->model;
+    const double *state = NV_DATA_S(solver->state);
+
+    if (solver->contact == MESH_CARRIES) {
+        return DBL_MAX;
+    }
+
+    const flight_options options = {
+        .longest = longest > 0.0 ? longest : longest_flight / model->natural_frequency,
+        .speed_tolerance = speed_tolerance(solver),
+    };
+    if (flight_noise_guides(model, &options)) {
+        return DBL_MAX;
+    }
+
+    const double allowed =
+        solver->contact == MESH_FREE
+            ? flight_clear_time(model, solver->time, state, &options, &solver->looks)
+            : flight_light_step(model, solver->time, state, &options);
+    return solver->time + allowed;
+}
+
 /* The smaller of what the user allows and what the model needs; 0 = none. */
 static double longest_step(const integrator *solver) {
     const double asked = solver->options.max_step;
@@ -178,7 +223,8 @@ static int step(integrator *solver) {
     solver->message[0] = '\0';
 
     const double before = solver->time;
-    const int flag = solver->package->step(solver, longest_step(solver));
+    const double longest = longest_step(solver);
+    const int flag = solver->package->step(solver, longest, stop_time(solver, longest));
     if (flag < 0) {
         char *name = solver->package->flag_name(flag);
         char what[sizeof solver->message + 64];
@@ -229,5 +275,8 @@ const char *integrator_failure(const integrator *solver) {
 }
 
 integrator_statistics integrator_counts(const integrator *solver) {
-    return solver->package->counts(solver);
+    integrator_statistics counts = solver->package->counts(solver);
+
+    counts.looks = solver->looks;
+    return counts;
 }

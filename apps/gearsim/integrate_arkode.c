@@ -85,11 +85,12 @@ static int note_derivative(const arkode_memory *memory, step_end *end) {
     return flag;
 }
 
-static int step(integrator *solver, double longest) {
+static int step(integrator *solver, double longest, double stop) {
     arkode_memory *memory = solver->memory;
 
     note_state(solver, &memory->from);
     ERKStepSetMaxStep(memory->arkode, longest);
+    ERKStepSetStopTime(memory->arkode, stop);
     const int flag = ERKStepEvolve(memory->arkode, integrator_first_target(solver), solver->state,
                                    &solver->time, ARK_ONE_STEP);
     if (flag < 0) {

@@ -103,10 +103,11 @@ static void destroy(integrator *solver) {
     free(memory);
 }
 
-static int step(integrator *solver, double longest) {
+static int step(integrator *solver, double longest, double stop) {
     cvode_memory *memory = solver->memory;
 
     CVodeSetMaxStep(memory->cvode, longest);
+    CVodeSetStopTime(memory->cvode, stop);
     return CVode(memory->cvode, integrator_first_target(solver), solver->state, &solver->time,
                  CV_ONE_STEP);
 }

@@ -20,9 +20,10 @@ typedef struct solver_package {
     int (*create)(integrator *solver);
     void (*free)(integrator *solver);
 
-    /* One step, no longer than `longest` (s, 0 = any): moves `time` and `state`. Returns the package's flag,
-     * < 0 = failed, and its name in a string for free(). */
-    int (*step)(integrator *solver, double longest);
+    /* One step, no longer than `longest` (s, 0 = any) and not beyond the time `stop`: moves `time` and `state`. A
+     * longest step that has become shorter holds from the step after on, `stop` at once. Returns the package's
+     * flag, < 0 = failed, and its name in a string for free(). */
+    int (*step)(integrator *solver, double longest, double stop);
     char *(*flag_name)(long flag);
 
     /* State at a time within the last step; 0 = done. */
@@ -39,8 +40,11 @@ struct integrator {
     const gear_model *model;
     integrator_options options;
     SUNContext context;
-    N_Vector state;    /* at the end of the last step */
-    sunrealtype time;  /* end of the last step (s) */
+    N_Vector state;            /* at the end of the last step */
+    sunrealtype time;          /* end of the last step (s) */
+    enum mesh_contact contact; /* in the last evaluation of the model */
+    double free_time;
+    long looks;        /* evaluations of the mesh ahead of the solver */
     int stalled;       /* steps of next to nothing in a row */
     int status;        /* of the last evaluation of the model that went wrong */
     char message[256]; /* what the package said last */

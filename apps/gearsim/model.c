@@ -36,6 +36,9 @@ static const double steps_per_vibration = 10.0;
  * vibrate. */
 static const double smallest_ratio = 0.02, largest_ratio = 0.5;
 
+/* Part of the mean contact length below which a contact is light. */
+static const double light_contact = 0.5;
+
 static double square(double value) {
     return value * value;
 }
@@ -73,6 +76,67 @@ static void init_bodies(gear_model *model, const config *conf) {
     }
 }
 
+/* The flanks of one side of a gear; NULL = ideal. */
+static const gm_flank_tables *side_of(const gm_flanks *flanks, int side) {
+    if (flanks == NULL) {
+        return NULL;
+    }
+    return side == GM_DRIVE ? &flanks->drive : &flanks->coast;
+}
+
+/* Steepest rise along the profile of any table, over one cell: bilinear between its nodes (m). */
+static double steepest_cell(const gm_flank_tables *tables) {
+    enum { NODE_DOUBLES = 4 }; /* the node's value is the first */
+    const size_t lines = (size_t)tables->count * (size_t)tables->face_nodes;
+    const size_t nodes = (size_t)tables->profile_nodes;
+    double steepest = 0.0;
+
+    for (size_t line = 0; line < lines; ++line) {
+        const double *node = tables->values + line * nodes * NODE_DOUBLES;
+        for (size_t i = 1; i < nodes; ++i) {
+            const double rise = node[i * NODE_DOUBLES] - node[(i - 1) * NODE_DOUBLES];
+            steepest = fmax(steepest, fabs(rise));
+        }
+    }
+    return steepest;
+}
+
+/* Adds what the flanks of one gear can do to meet their mates. */
+static void add_flanks(gear_model *model, int side, const gm_flanks *flanks, const gm_gear *gear) {
+    const gm_flank_tables *tables = side_of(flanks, side);
+    if (tables == NULL) {
+        return;
+    }
+
+    model->is_ideal[side] = 0;
+
+    /* Ramps only take material away, so they do not count for the reach. */
+    model->reach[side] += tables->peak;
+
+    double steepest = 0.0;
+    if (tables->count > 0) {
+        steepest = steepest_cell(tables) * (double)(tables->profile_nodes - 1);
+    }
+    for (int i = 0; i < tables->ramp_count; ++i) {
+        steepest += fabs(tables->ramps[i].per_t2);
+    }
+    model->slope[side] += steepest / (gear->tip_roll_length - gear->start_roll_length);
+}
+
+/* Bounds of the flanks for the look ahead in free flight; the simple model has ideal flanks. */
+static void init_flanks(gear_model *model) {
+    const gear_mesh *gears = model->gears;
+
+    for (int side = GM_DRIVE; side <= GM_COAST; ++side) {
+        model->is_ideal[side] = 1;
+        model->reach[side] = model->slope[side] = 0.0;
+        if (model->mesh == MODEL_3D) {
+            add_flanks(model, side, gears->pinion_flanks, &gears->pair.pinion);
+            add_flanks(model, side, gears->wheel_flanks, &gears->pair.wheel);
+        }
+    }
+}
+
 static double mobility(const gear_model *model) {
     return model->pinion_mobility + model->wheel_mobility;
 }
@@ -103,6 +167,7 @@ int model_init(gear_model *model, const config *conf, const gear_mesh *gears) {
         load_create(conf->mean_load, conf->noise_amplitude, conf->noise_interval, conf->seed);
     init_mesh(model, conf);
     init_bodies(model, conf);
+    init_flanks(model);
 
     model->natural_frequency = sqrt(model->mean_stiffness * mobility(model));
     if (init_response(model) != 0 || lookup_create(&model->lookup, conf, gears) != 0) {
@@ -207,9 +272,13 @@ static double pinion_angle(const gear_model *model, double time, const double st
     return drive_at(&model->drive, time).angle;
 }
 
+double model_speed_unit(const gear_model *model) {
+    return model->natural_frequency * micrometre;
+}
+
 static gear_motion motion_with(const gear_model *model, double time, const double state[],
                                const response_value *noise) {
-    const double speed_unit = model->natural_frequency * micrometre;
+    const double speed_unit = model_speed_unit(model);
     const gear_motion motion = {
         .pinion_angle = pinion_angle(model, time, state),
         .pinion_speed = pinion_speed(model, time, state),
@@ -281,8 +350,20 @@ double model_force(const gear_model *model, const gm_penetration *penetration) {
     return gm_contact_force(model->stiffness, model->damping, penetration);
 }
 
+static enum mesh_contact contact_of(const gear_model *model, const gm_penetration *penetration,
+                                    double force) {
+    const double touching = penetration->drive_contact + penetration->coast_contact;
+    if (touching == 0.0) {
+        return MESH_FREE;
+    }
+
+    /* Flanks that would have to pull carry nothing either. */
+    const double pairs = model->mean_stiffness / model->stiffness;
+    return force == 0.0 || touching < light_contact * pairs ? MESH_LIGHT : MESH_CARRIES;
+}
+
 int model_derivative(const gear_model *model, double time, const double state[],
-                     double derivative[]) {
+                     double derivative[], enum mesh_contact *contact) {
     /* Once: next to the mesh it is the dearest part. */
     const response_value noise = noise_response(model, time);
     const gear_motion motion = motion_with(model, time, state, &noise);
@@ -296,6 +377,7 @@ int model_derivative(const gear_model *model, double time, const double state[],
     const double to_state = 1.0 / (w0 * micrometre);
     const double force = model_force(model, &penetration);
     const double applied = applied_acceleration(model, time, &noise);
+    *contact = contact_of(model, &penetration, force);
 
     derivative[STATE_OFFSET] = w0 * state[STATE_OFFSET_RATE];
     derivative[STATE_OFFSET_RATE] = (applied - mobility(model) * force) * to_state;

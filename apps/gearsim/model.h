@@ -54,8 +54,18 @@ typedef struct gear_model {
     double response_decay;    /* zeta w0 of the response (1/s) */
     response *noise;          /* to the noise; NULL: the load is as it is, and u = x */
     gm_cache *lookup;         /* in place of the 3D model; NULL: the model itself */
+    int is_ideal[2];          /* [side] neither flank deviates: the gap depends on x alone */
+    double reach[2];          /* [side] highest points of both flanks together (m) */
+    double slope[2];          /* [side] steepest rise of both along the profile together (m/m) */
     int states;
 } gear_model;
+
+/* What the flanks do in a state. */
+enum mesh_contact {
+    MESH_FREE, /* nothing touches: x is in free flight */
+    MESH_LIGHT, /* a small part of the lines touches, or flanks part so fast that they carry nothing */
+    MESH_CARRIES
+};
 
 /* Motion in SI units. */
 typedef struct gear_motion {
@@ -72,6 +82,9 @@ void model_free(gear_model *model);
 /* State in which x' = x'' = 0 at the mean load. Returns a library status. */
 int model_quasi_static_start(const gear_model *model, double state[]);
 
+/* x' of 1 in the state (m/s). */
+double model_speed_unit(const gear_model *model);
+
 gear_motion model_motion(const gear_model *model, double time, const double state[]);
 
 /* Penetration of the flanks, without its derivatives. Returns a library status. */
@@ -83,9 +96,10 @@ int model_pairs(const gear_model *model, const gear_motion *motion, gm_penetrati
 
 double model_force(const gear_model *model, const gm_penetration *penetration);
 
-/* d state / dt. Returns a library status: > 0 a smaller step may help, < 0 it cannot. */
+/* d state / dt, and the contact that it belongs to. Returns a library status: > 0 a smaller step may help,
+ * < 0 it cannot. */
 int model_derivative(const gear_model *model, double time, const double state[],
-                     double derivative[]);
+                     double derivative[], enum mesh_contact *contact);
 
 /* jacobian[column][row] = d derivative[row] / d state[column]. Returns a library status. */
 int model_jacobian(const gear_model *model, double time, const double state[],
