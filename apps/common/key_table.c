@@ -67,16 +67,22 @@ static size_t edit_distance(const char *a, const char *b) {
 /* How unlike two names are: UNLIKE = too much to guess one from the other. */
 static size_t unlikeness(const char *given, const char *known) {
     const size_t length = strlen(given);
-    size_t distance;
+    const size_t known_length = strlen(known);
 
     if (length == 0 || length >= NAME_SIZE) {
         return UNLIKE;
     }
-    distance = edit_distance(given, known);
-    if (distance <= 1 + length / 4) {
-        return distance;
+
+    /* Each letter that one has more costs 1: most names are too unlike by that alone. */
+    const size_t most = 1 + length / 4;
+    const size_t surplus = length > known_length ? length - known_length : known_length - length;
+    const int is_part = length >= 4 && strstr(known, given) != NULL;
+    if (surplus > most && !is_part) {
+        return UNLIKE;
     }
-    return length >= 4 && strstr(known, given) != NULL ? distance : UNLIKE;
+
+    const size_t distance = edit_distance(given, known);
+    return distance <= most || is_part ? distance : UNLIKE;
 }
 
 const char *key_section_near(const key_table *table, const char *section) {
@@ -84,6 +90,9 @@ const char *key_section_near(const key_table *table, const char *section) {
     size_t least = UNLIKE;
 
     for (int i = 0; i < table->count; ++i) {
+        if (i > 0 && strcmp(table->keys[i].section, table->keys[i - 1].section) == 0) {
+            continue; /* the rows of a section stand together */
+        }
         const size_t distance = unlikeness(section, table->keys[i].section);
         if (distance < least) {
             least = distance;

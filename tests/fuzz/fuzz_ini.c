@@ -7,6 +7,7 @@
  */
 #include "fuzz.h"
 #include "fuzz_file.h"
+#include "fuzz_messages.h"
 
 #include <config.h>
 #include <gear_mesh.h>
@@ -24,13 +25,30 @@ static void claim_config(const config *conf) {
     FUZZ_CLAIM(conf->output_file != NULL && conf->provenance_count > 0);
 }
 
-static int load(enum config_purpose purpose) {
-    const config_request request = {.path = fuzz_file_path(&input), .purpose = purpose};
+/* The listing of --geometry, of which only the end of the call is looked at. */
+static void print_geometry(const gear_mesh *mesh, const config *conf) {
+    static FILE *nowhere;
+    if (nowhere == NULL) {
+        nowhere = fopen("/dev/null", "w");
+        FUZZ_CLAIM(nowhere != NULL);
+    }
+    geometry_print(mesh, conf, nowhere);
+}
+
+/* With a listener or without: to find the words for a message is most of the work. */
+static int load(enum config_purpose purpose, int listening) {
+    int messages;
+    message_sink sink = fuzz_messages(&messages);
+    const config_request request = {
+        .path = fuzz_file_path(&input), .purpose = purpose, .messages = listening ? &sink : NULL};
     config conf;
     const int status = config_load(&conf, &request);
     FUZZ_CLAIM(status == 0 || status == EXIT_BAD_INPUT);
-    if (status != 0)
+    FUZZ_CLAIM(status == 0 || messages > 0 || !listening);
+    FUZZ_CLAIM(messages <= 2 * MOST_MESSAGES);
+    if (status != 0) {
         return status;
+    }
     claim_config(&conf);
 
     /* Flank files have fuzzers of their own, and a name may be that of a device. */
@@ -38,13 +56,12 @@ static int load(enum config_purpose purpose) {
     int opened = 0;
     if (conf.pinion_flanks.deviations == NULL && conf.pinion_flanks.pitch == NULL &&
         conf.wheel_flanks.deviations == NULL && conf.wheel_flanks.pitch == NULL) {
+        messages = 0;
         opened = gear_mesh_open(&mesh, &conf);
         FUZZ_CLAIM(opened == 0 || opened == EXIT_BAD_INPUT);
+        FUZZ_CLAIM(opened == 0 || messages > 0 || !listening);
         if (opened == 0) {
-            FILE *nowhere = fopen("/dev/null", "w");
-            FUZZ_CLAIM(nowhere != NULL);
-            geometry_print(&mesh, &conf, nowhere);
-            fclose(nowhere);
+            print_geometry(&mesh, &conf);
             gear_mesh_close(&mesh);
         }
     }
@@ -52,10 +69,14 @@ static int load(enum config_purpose purpose) {
     return opened;
 }
 
+/* The last byte says for what. Some of the inputs are read again by somebody who listens: the answer is the same. */
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size) {
+    const int is_geometry = size > 0 && data[size - 1] == '\n';
+    const enum config_purpose purpose = is_geometry ? CONFIG_FOR_GEOMETRY : CONFIG_FOR_RUN;
     fuzz_file_with(&input, data, size);
-    const int status = load(CONFIG_FOR_RUN);
-    FUZZ_CLAIM(load(CONFIG_FOR_RUN) == status);
-    load(CONFIG_FOR_GEOMETRY);
+    const int status = load(purpose, 0);
+    if (size % 64 == 0) {
+        FUZZ_CLAIM(load(purpose, 1) == status);
+    }
     return 0;
 }
