@@ -174,7 +174,7 @@ static int take_wave(parsing *state, const char *value) {
     gm_generate_options *generate = &state->options->generate;
     gm_flank_wave *wave = &state->options->waves[generate->wave_count];
 
-    if (generate->wave_count == FLANKS_MOST_WAVES || !split(value, ':', parts) ||
+    if (generate->wave_count == GM_FLANK_WAVES_MAX || !split(value, ':', parts) ||
         !parse_count(parts[0], &wave->order) || !parse_number(parts[1], &wave->amplitude)) {
         return 0;
     }

@@ -13,8 +13,6 @@ enum flanks_task { FLANKS_MAKE, FLANKS_EVALUATE, FLANKS_MEASURED, FLANKS_HELP, F
 
 enum { FLANKS_TASKS = FLANKS_HELP }; /* that need gears */
 
-enum { FLANKS_MOST_WAVES = 100 };
-
 typedef struct flanks_options {
     message_sink *messages;
     enum flanks_task task;
@@ -29,7 +27,7 @@ typedef struct flanks_options {
     gm_measurement measurement;
     gm_traces_options from_traces;
     gm_generate_options generate;
-    gm_flank_wave waves[FLANKS_MOST_WAVES]; /* what generate.waves points to */
+    gm_flank_wave waves[GM_FLANK_WAVES_MAX]; /* what generate.waves points to */
 } flanks_options;
 
 /* Returns 0, or EXIT_BAD_INPUT after a message. */

@@ -548,16 +548,6 @@ int gm_cache_penetration_at(gm_cache *cache, const gm_position *position, gm_pen
  * Measuring the error
  * ------------------------------------------------------------------------------------------- */
 
-/* Uniform in [0, 1): splitmix64. */
-static double uniform(uint64_t *seed) {
-    *seed += UINT64_C(0x9E3779B97F4A7C15);
-    uint64_t bits = *seed;
-    bits = (bits ^ (bits >> 30)) * UINT64_C(0xBF58476D1CE4E5B9);
-    bits = (bits ^ (bits >> 27)) * UINT64_C(0x94D049BB133111EB);
-    bits ^= bits >> 31;
-    return (double)(bits >> 11) * 0x1p-53;
-}
-
 static void add_error(double error, double *largest, double *squares) {
     *largest = fmax(*largest, fabs(error));
     *squares += error * error;
@@ -580,13 +570,13 @@ int gm_cache_error(gm_cache *cache, int states, unsigned seed, gm_cache_errors *
     double sum_largest = 0.0, sum_squares = 0.0, contact_largest = 0.0, contact_squares = 0.0;
     uint64_t random = seed;
     for (int i = 0; i < states; ++i) {
-        const int pass = (int)(uniform(&random) * (double)cache->passes);
-        gm_position position = {0, 0, uniform(&random) * last_phase, 0.0, 0.0};
+        const int pass = (int)(gmi_random_unit(&random) * (double)cache->passes);
+        gm_position position = {0, 0, gmi_random_unit(&random) * last_phase, 0.0, 0.0};
         const int index = column_before(cache, position.phase);
         set_teeth(cache, pass, &position);
         need_column(cache, pass, index);
         const double start = cache->starts[(size_t)pass * (size_t)cache->columns + (size_t)index];
-        const double delta = start + uniform(&random) * cache->depth;
+        const double delta = start + gmi_random_unit(&random) * cache->depth;
         gmi_side_sum looked_up;
         const gmi_side_sum exact = exact_at(cache, &position, delta);
         if (!(start < HUGE_VAL) || !look_up(cache, &position, &looked_up)) {

@@ -10,7 +10,6 @@
 #include <float.h>
 #include <math.h>
 
-#define LARGEST_AMOUNT     0.01  /* m; what is more is a slip of the unit */
 #define SMALLEST_TOLERANCE 1e-12 /* m; below it rounding takes over */
 #define LARGEST_CELLS      (GMI_LARGEST_NODES - 1)
 
@@ -162,7 +161,7 @@ static problem check_one(const gm_modifications *of, const gm_modification *m) {
     if (m->kind < 0 || m->kind >= GM_MODIFICATION_KINDS) {
         return problem_of("kind", "one of enum gm_modification_kind");
     }
-    if (!(fabs(m->amount) <= LARGEST_AMOUNT)) {
+    if (!(fabs(m->amount) <= GMI_LARGEST_AMOUNT)) {
         return problem_of("amount", "a number of at most 10 mm");
     }
     if (is_relief(m->kind) && m->amount < 0.0) {

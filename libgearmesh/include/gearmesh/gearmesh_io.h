@@ -291,6 +291,9 @@ GM_API int gm_quality_evaluate(gm_quality *quality, gm_flank_quality *flanks, co
                                int wheel, const gm_deviations *deviations, const gm_pitch *pitch,
                                const gm_quality_options *options, gm_io_error *error);
 
+/** Most waves that gm_flanks_generate() takes. */
+#define GM_FLANK_WAVES_MAX 100
+
 /** A wave that goes on from tooth to tooth, as a ghost order of a machine: along the path of contact it is a
  *  pure sine of the gear's rotation. */
 typedef struct gm_flank_wave {
@@ -354,7 +357,7 @@ typedef struct gm_generate_options {
     int face_nodes;    /**< along t1, 9 .. 1000 [21] */
     int profile_nodes; /**< along t2, 9 .. 1000 [31] */
     const gm_flank_wave *waves; /**< [wave_count], added to all flanks [NULL] */
-    int wave_count;             /**< 0 .. 100 [0] */
+    int wave_count;             /**< 0 .. GM_FLANK_WAVES_MAX [0] */
 } gm_generate_options;
 
 /** Fills in the defaults. */

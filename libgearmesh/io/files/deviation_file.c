@@ -322,24 +322,25 @@ int gm_deviations_ideal_teeth(const gm_deviations *deviations, int side) {
  * Writing
  * ------------------------------------------------------------------------------------------- */
 
-static void write_node(FILE *file, const gm_deviations *deviations, const gm_deviation_set *set,
+static void print_node(FILE *stream, const gm_deviations *deviations, const gm_deviation_set *set,
                        int face, int profile) {
     const size_t node = (size_t)face * (size_t)deviations->profile_nodes + (size_t)profile;
     char tooth[GMI_SLOT_NAME_SIZE];
     char t1[GMI_NUMBER_SIZE];
     char t2[GMI_NUMBER_SIZE];
     char value[GMI_NUMBER_SIZE];
-    fprintf(file, "%s,%s,%s,%s,%s\n", gmi_tooth_name(tooth, set->tooth), gmi_side_name(set->side),
+    fprintf(stream, "%s,%s,%s,%s,%s\n", gmi_tooth_name(tooth, set->tooth), gmi_side_name(set->side),
             gmi_number_text(t1, (double)face / (deviations->face_nodes - 1), 0, PLACE_DIGITS),
             gmi_number_text(t2, (double)profile / (deviations->profile_nodes - 1), 0, PLACE_DIGITS),
             gmi_number_text(value, set->values[node], -MICRO, 0));
 }
 
-static void write_rows(FILE *file, const gm_deviations *deviations) {
-    for (int i = 0; i < deviations->set_count; i++) {
-        for (int face = 0; face < deviations->face_nodes; face++) {
-            for (int profile = 0; profile < deviations->profile_nodes; profile++) {
-                write_node(file, deviations, &deviations->sets[i], face, profile);
+static void print_rows(FILE *stream, const void *data) {
+    const gm_deviations *deviations = data;
+    for (int i = 0; i < deviations->set_count; ++i) {
+        for (int face = 0; face < deviations->face_nodes; ++face) {
+            for (int profile = 0; profile < deviations->profile_nodes; ++profile) {
+                print_node(stream, deviations, &deviations->sets[i], face, profile);
             }
         }
     }
@@ -357,13 +358,6 @@ static int check_writable(const gm_deviations *deviations, gm_io_error *error) {
     return status;
 }
 
-/* Header and rows of what check_writable() has passed. */
-static int print_table(const gm_deviations *deviations, FILE *stream, gm_io_error *error) {
-    gmi_writer_head(stream, columns, COLUMN_COUNT);
-    write_rows(stream, deviations);
-    return gmi_writer_flush(stream, error);
-}
-
 int gm_deviations_print(const gm_deviations *deviations, FILE *stream, gm_io_error *error) {
     gmi_error_begin(error, NULL);
     if (deviations == NULL || stream == NULL) {
@@ -371,7 +365,8 @@ int gm_deviations_print(const gm_deviations *deviations, FILE *stream, gm_io_err
     }
 
     const int status = check_writable(deviations, error);
-    return status == GM_IO_OK ? print_table(deviations, stream, error) : status;
+    const gmi_written table = {columns, COLUMN_COUNT, print_rows, deviations};
+    return status == GM_IO_OK ? gmi_table_print(&table, stream, error) : status;
 }
 
 int gm_deviations_write(const gm_deviations *deviations, const char *path, gm_io_error *error) {
@@ -381,15 +376,7 @@ int gm_deviations_write(const gm_deviations *deviations, const char *path, gm_io
     }
 
     /* No file is touched for data that cannot be read back. */
-    int status = check_writable(deviations, error);
-    if (status != GM_IO_OK) {
-        return status;
-    }
-
-    FILE *file = NULL;
-    status = gmi_writer_open(&file, path, error);
-    if (status != GM_IO_OK) {
-        return status;
-    }
-    return gmi_writer_close(file, print_table(deviations, file, error), error);
+    const int status = check_writable(deviations, error);
+    const gmi_written table = {columns, COLUMN_COUNT, print_rows, deviations};
+    return status == GM_IO_OK ? gmi_table_write(&table, path, error) : status;
 }

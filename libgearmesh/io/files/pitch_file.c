@@ -212,22 +212,20 @@ static int check_writable(const gm_pitch *pitch, gm_io_error *error) {
     return GM_IO_OK;
 }
 
-static void write_flank(FILE *file, int tooth, int side, double deviation, int set) {
+static void print_flank(FILE *stream, int tooth, int side, double deviation, int set) {
     char value[GMI_NUMBER_SIZE];
     if (set) {
-        fprintf(file, "%d,%s,%s\n", tooth, gmi_side_name(side),
+        fprintf(stream, "%d,%s,%s\n", tooth, gmi_side_name(side),
                 gmi_number_text(value, deviation, -MICRO, 0));
     }
 }
 
-/* Header and rows of what check_writable() has passed. */
-static int print_table(const gm_pitch *pitch, FILE *stream, gm_io_error *error) {
-    gmi_writer_head(stream, columns, COLUMN_COUNT);
+static void print_rows(FILE *stream, const void *data) {
+    const gm_pitch *pitch = data;
     for (int tooth = 0; tooth < pitch->teeth; ++tooth) {
-        write_flank(stream, tooth, GM_DRIVE, pitch->drive[tooth], pitch->drive_set[tooth]);
-        write_flank(stream, tooth, GM_COAST, pitch->coast[tooth], pitch->coast_set[tooth]);
+        print_flank(stream, tooth, GM_DRIVE, pitch->drive[tooth], pitch->drive_set[tooth]);
+        print_flank(stream, tooth, GM_COAST, pitch->coast[tooth], pitch->coast_set[tooth]);
     }
-    return gmi_writer_flush(stream, error);
 }
 
 int gm_pitch_print(const gm_pitch *pitch, FILE *stream, gm_io_error *error) {
@@ -237,7 +235,8 @@ int gm_pitch_print(const gm_pitch *pitch, FILE *stream, gm_io_error *error) {
     }
 
     const int status = check_writable(pitch, error);
-    return status == GM_IO_OK ? print_table(pitch, stream, error) : status;
+    const gmi_written table = {columns, COLUMN_COUNT, print_rows, pitch};
+    return status == GM_IO_OK ? gmi_table_print(&table, stream, error) : status;
 }
 
 int gm_pitch_write(const gm_pitch *pitch, const char *path, gm_io_error *error) {
@@ -247,15 +246,7 @@ int gm_pitch_write(const gm_pitch *pitch, const char *path, gm_io_error *error) 
     }
 
     /* No file is touched for data that cannot be read back. */
-    int status = check_writable(pitch, error);
-    if (status != GM_IO_OK) {
-        return status;
-    }
-
-    FILE *file = NULL;
-    status = gmi_writer_open(&file, path, error);
-    if (status != GM_IO_OK) {
-        return status;
-    }
-    return gmi_writer_close(file, print_table(pitch, file, error), error);
+    const int status = check_writable(pitch, error);
+    const gmi_written table = {columns, COLUMN_COUNT, print_rows, pitch};
+    return status == GM_IO_OK ? gmi_table_write(&table, path, error) : status;
 }

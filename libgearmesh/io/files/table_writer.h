@@ -3,7 +3,7 @@
 
 /**
  * @file table_writer.h
- * Opens and closes a tidy CSV table for writing, so that no loss goes unnoticed.
+ * Writes tidy CSV tables, so that no loss goes unnoticed.
  */
 #ifndef GEARMESH_TABLE_WRITER_H
 #define GEARMESH_TABLE_WRITER_H
@@ -12,17 +12,18 @@
 
 #include "gearmesh/gearmesh_io.h"
 
-/** Opens a file. On an error there is nothing to close. */
-int gmi_writer_open(FILE **file, const char *path, gm_io_error *error);
+/** What a table holds. */
+typedef struct gmi_written {
+    const char *const *columns; /**< [column_count] names in the header */
+    int column_count;
+    void (*print_rows)(FILE *stream, const void *data);
+    const void *data; /**< what print_rows() needs */
+} gmi_written;
 
-/** Writes the names of the columns. */
-void gmi_writer_head(FILE *file, const char *const *columns, int column_count);
+/** Writes header and rows and flushes, to tell whether all of it was written. */
+int gmi_table_print(const gmi_written *table, FILE *stream, gm_io_error *error);
 
-/** Flushes the file and tells whether all of it was written so far. */
-int gmi_writer_flush(FILE *file, gm_io_error *error);
-
-/** Closes the file and tells whether all of it was written; a full disk often shows only here. The status of what was
- *  written before comes first if it is an error. */
-int gmi_writer_close(FILE *file, int status, gm_io_error *error);
+/** The same into a file, which is replaced. A full disk often shows only when it is closed: that is told too. */
+int gmi_table_write(const gmi_written *table, const char *path, gm_io_error *error);
 
 #endif /* GEARMESH_TABLE_WRITER_H */

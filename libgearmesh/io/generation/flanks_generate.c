@@ -123,7 +123,7 @@ int gm_flanks_generate(gm_deviations *deviations, gm_pitch *pitch, const gm_pair
                           .gear = gmi_gear_of(pair, wheel),
                           .wheel = wheel != 0,
                           .options = options,
-                          .random = {wheel ? ~options->seed : options->seed},
+                          .random = wheel ? ~options->seed : options->seed,
                           .error = error};
     int status = check_options(&make);
     if (status == GM_IO_OK) {

@@ -6,12 +6,14 @@
  * stated share of each tolerance. docs/flank-quality.md says how.
  */
 
+#include "generate_class.h"
+
 #include <math.h>
 
 #include "files/io_error.h"
-#include "generate_class.h"
 #include "quality/run_out.h"
 #include "quality/trace_values.h"
+#include "shared.h"
 #include "spaces.h"
 #include "waves.h"
 
@@ -27,7 +29,7 @@ static const double most_share = 0.99;
 
 typedef struct generator {
     gmi_generator *common;
-    gmi_random *random;
+    uint64_t *random;
     gmi_range range[2];              /* of profile and helix */
     double target[GM_QUALITY_KINDS]; /* wanted worst values (m) */
 } generator;

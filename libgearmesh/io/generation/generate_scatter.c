@@ -5,17 +5,16 @@
  * Flanks of a production: amounts that scatter from tooth to tooth about a mean. docs/flank-quality.md says how.
  */
 
+#include "generate_scatter.h"
+
 #include <math.h>
 #include <string.h>
 
 #include "files/io_error.h"
-#include "generate_scatter.h"
 #include "quality/run_out.h"
+#include "shared.h"
 #include "spaces.h"
 #include "waves.h"
-
-/* No deviation of a gear is larger (m). */
-static const double most_amount = 0.01;
 
 void gm_flank_scatter_default(gm_flank_scatter *scatter) {
     if (scatter != NULL) {
@@ -52,11 +51,11 @@ static int fail(const gmi_generator *make, const char *name, const char *right) 
 }
 
 static int is_size(double value) {
-    return value >= 0.0 && value <= most_amount; /* false for NaN */
+    return value >= 0.0 && value <= GMI_LARGEST_AMOUNT; /* false for NaN */
 }
 
 static int is_normal(const gm_scatter_normal *amount) {
-    return fabs(amount->mean) <= most_amount && is_size(amount->deviation);
+    return fabs(amount->mean) <= GMI_LARGEST_AMOUNT && is_size(amount->deviation);
 }
 
 static int is_range(const gm_scatter_uniform *sizes) {
@@ -122,7 +121,7 @@ int gmi_scatter_check(const gmi_generator *make) {
  * Pitch
  * ------------------------------------------------------------------------------------------- */
 
-static void draw_errors(gmi_random *random, double *error, int teeth) {
+static void draw_errors(uint64_t *random, double *error, int teeth) {
     double mean = 0.0;
     for (int i = 0; i < teeth; i++) {
         error[i] = gmi_random_normal(random, 0.0, 1.0);
@@ -156,16 +155,16 @@ static void fill_pitch(gmi_generator *make) {
  * Flanks
  * ------------------------------------------------------------------------------------------- */
 
-static double draw_normal(gmi_random *random, const gm_scatter_normal *from) {
+static double draw_normal(uint64_t *random, const gm_scatter_normal *from) {
     return gmi_random_normal(random, from->mean, from->deviation);
 }
 
-static double draw_uniform(gmi_random *random, const gm_scatter_uniform *from) {
+static double draw_uniform(uint64_t *random, const gm_scatter_uniform *from) {
     return gmi_random_uniform(random, from->low, from->high);
 }
 
 /* Slope, crowning and wave. */
-static void draw_trace(gmi_random *random, double *trace, int nodes, const gm_trace_scatter *from) {
+static void draw_trace(uint64_t *random, double *trace, int nodes, const gm_trace_scatter *from) {
     const double slope = draw_normal(random, &from->slope);
     const double crowning = draw_normal(random, &from->crowning);
     const double wave = draw_uniform(random, &from->wave);
@@ -180,7 +179,7 @@ static void draw_trace(gmi_random *random, double *trace, int nodes, const gm_tr
 }
 
 /* What both ends of the profile have of their own. */
-static void add_ends(gmi_random *random, double *profile, int nodes,
+static void add_ends(uint64_t *random, double *profile, int nodes,
                      const gm_flank_scatter *scatter) {
     const double foot = draw_normal(random, &scatter->foot);
     const double relief = draw_normal(random, &scatter->tip_relief);

@@ -26,7 +26,7 @@ typedef struct gmi_generator {
     const gm_gear *gear;
     int wheel; /**< 0 or 1 */
     const gm_generate_options *options;
-    gmi_random random;
+    uint64_t random;
     double *wave_phase; /**< [2 * wave_count] turns, of both sides */
     double *work;       /**< [3 * teeth], and at least [6 * GMI_MOST_NODES] */
     gm_io_error *error;

@@ -7,24 +7,14 @@
 
 #include "shared.h"
 
-/* splitmix64 (Steele, Lea, Flood 2014). */
-uint64_t gmi_random_bits(gmi_random *from) {
-    from->state += UINT64_C(0x9E3779B97F4A7C15);
-    uint64_t bits = from->state;
-    bits = (bits ^ (bits >> 30)) * UINT64_C(0xBF58476D1CE4E5B9);
-    bits = (bits ^ (bits >> 27)) * UINT64_C(0x94D049BB133111EB);
-    return bits ^ (bits >> 31);
+double gmi_random_uniform(uint64_t *state, double low, double high) {
+    return low + (high - low) * gmi_random_unit(state);
 }
 
-double gmi_random_uniform(gmi_random *from, double low, double high) {
-    const double unit = (double)(gmi_random_bits(from) >> 11) * (1.0 / 9007199254740992.0);
-    return low + (high - low) * unit;
-}
-
-double gmi_random_normal(gmi_random *from, double mean, double deviation) {
+double gmi_random_normal(uint64_t *state, double mean, double deviation) {
     double sum = -6.0;
     for (int i = 0; i < 12; i++) {
-        sum += gmi_random_uniform(from, 0.0, 1.0);
+        sum += gmi_random_unit(state);
     }
     return mean + deviation * sum;
 }

@@ -10,8 +10,8 @@
 #include "files/io_error.h"
 #include "shared.h"
 
-/* Limits of the waves. */
-enum { MOST_WAVES = 100, MOST_ORDER = 1000000 };
+/* Waves per revolution. */
+enum { MOST_ORDER = 1000000 };
 
 /*
  * Turns of the gear at which a point of a flank comes into contact, less a constant and with the opposite
@@ -28,8 +28,8 @@ static double contact_turns(const gmi_generator *make, int tooth, int side, doub
 }
 
 void gmi_waves_draw(const gmi_generator *make) {
-    gmi_random start = make->random;
-    gmi_random own = {gmi_random_bits(&start)};
+    uint64_t start = make->random;
+    uint64_t own = gmi_random_bits(&start);
     for (int i = 0; i < 2 * make->options->wave_count; i++) {
         make->wave_phase[i] = gmi_random_uniform(&own, 0.0, 1.0);
     }
@@ -65,10 +65,10 @@ static int check_resolution(const gmi_generator *make, const char *axis, double 
 
 int gmi_waves_check(const gmi_generator *make) {
     const gm_generate_options *options = make->options;
-    if (options->wave_count < 0 || options->wave_count > MOST_WAVES ||
+    if (options->wave_count < 0 || options->wave_count > GM_FLANK_WAVES_MAX ||
         (options->wave_count > 0 && options->waves == NULL)) {
         return gmi_error_set(make->error, GM_IO_ERR_OPTION, 0, "waves: must be 0 to %d (got %d)",
-                             MOST_WAVES, options->wave_count);
+                             GM_FLANK_WAVES_MAX, options->wave_count);
     }
     int status = GM_IO_OK;
     for (int i = 0; status == GM_IO_OK && i < options->wave_count; i++) {
