@@ -4,7 +4,7 @@
 # The map of scripts/campbell, which sets the variables used here before it loads this file. Lines are marked
 # at the rim only, so that they hide nothing.
 
-load scripts . '/style.gp'
+load 'style.gp'
 set palette @palette_of_steps
 
 set lmargin at screen 0.105
@@ -12,17 +12,17 @@ set rmargin at screen 0.835
 set tmargin at screen 0.855
 set bmargin at screen 0.105
 set xrange [0:frequency_high]
-set yrange [speed_low:speed_high]
+set yrange [row_low:row_high]
 set cbrange [colour_low:colour_high]
 set xlabel 'frequency / Hz'
-set ylabel 'pinion speed / rpm'
+set ylabel (over_time ? 'time / s' : 'pinion speed / rpm')
 set cblabel 'log10 contact force amplitude / N' offset 0.6,0
 set colorbox user origin screen 0.89, screen 0.105 size screen 0.022, screen 0.75
-set cbtics 0.5 format '%.1f'
+set cbtics 0.5 format '%.1f' # exponents of 10
 set mxtics 2
 set mytics 2
-set format x '%.0f'
-set format y '%.0f'
+set format x '%g'
+set format y '%g'
 unset key
 
 set label 1 title_text at graph 0, screen 0.96 left font ',17' noenhanced
@@ -34,18 +34,24 @@ do for [i = 1:words(harmonics)] {
     order = word(harmonics, i) * pinion_teeth
     leaves_rpm = 60.0 * frequency_high / order
     name = sprintf('%d', i)
-    if (leaves_rpm < speed_high) {
-        if (leaves_rpm > speed_low) {
+    if (over_time) {
+        stands_hz = order * constant_rpm / 60.0
+        if (stands_hz < frequency_high) {
+            set arrow from first stands_hz, graph 1 to first stands_hz, graph out nohead lw 2
+            set label name at first stands_hz, graph out center offset 0,0.6 font ',13'
+        }
+    } else { if (leaves_rpm < row_high) {
+        if (leaves_rpm > row_low) {
             set arrow from first frequency_high, first leaves_rpm \
                 to graph out, first leaves_rpm * out nohead lw 2
             set label name at graph out, first leaves_rpm * out left offset 0.4,0 font ',13'
         }
     } else {
-        leaves_hz = order * speed_high / 60.0
-        top = speed_high * out
-        set arrow from first leaves_hz, first speed_high to first leaves_hz * out, first top nohead lw 2
+        leaves_hz = order * row_high / 60.0
+        top = row_high * out
+        set arrow from first leaves_hz, first row_high to first leaves_hz * out, first top nohead lw 2
         set label name at first leaves_hz * out, first top center offset 0,0.6 font ',13'
-    }
+    } }
 }
 
 # Eigenfrequency: dashes above the map, and a few within it at the top and at the bottom.
@@ -59,8 +65,8 @@ if (eigenfrequency > 0 && eigenfrequency < frequency_high) {
 
 do for [format in 'png svg'] {
     eval terminal(format, 'campbell_map', 1400, 1000)
-    set output stem . '.' . format
-    plot stem . '_map.bin' binary array=(columns, rows) format='%float32' endian=little \
-        origin=(0, speed_first) dx=frequency_step dy=speed_step with image
+    set output picture . '.' . format
+    plot 'map.bin' binary array=(columns, rows) format='%float32' endian=little \
+        origin=(0, row_first) dx=frequency_step dy=row_step with image
     unset output
 }

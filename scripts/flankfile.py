@@ -8,6 +8,8 @@ import re
 
 import numpy as np
 
+from program import InputError
+
 FLANK_COLUMNS = ("tooth", "flank", "t1", "t2", "deviation_um")
 PITCH_COLUMNS = ("tooth", "flank", "deviation_um")
 TRACE_COLUMNS = ("tooth", "flank", "trace", "face_mm", "roll_length_mm", "deviation_um")
@@ -32,7 +34,7 @@ RIGHT = {
 }
 
 
-class FlankFileError(Exception):
+class FlankFileError(InputError):
     """A file is not what it should be; the text names file and line, the value, and what would be right."""
 
 

@@ -3,9 +3,9 @@
 #
 # Single and cumulative pitch deviations; scripts/flanks sets the variables used here before it loads this file.
 
-load scripts . '/flanks_style.gp'
+load 'flanks_style.gp'
 
-data = folder . '/pitch.dat'
+data = 'pitch.dat'
 set xrange [-0.7:teeth - 0.3]
 set format x '%.0f'
 if (teeth <= 20) { set xtics 1 }
@@ -20,7 +20,7 @@ set boxwidth 0.36
 
 do for [format in 'png svg'] {
     eval terminal(format, 'flanks_pitch', 1400, 1000)
-    set output folder . '/pitch.' . format
+    set output picture . '.' . format
     set multiplot
     set lmargin at screen 0.085
     set rmargin at screen 0.975

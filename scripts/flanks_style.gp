@@ -3,7 +3,7 @@
 #
 # What the pictures of scripts/flanks share beside style.gp.
 
-load scripts . '/style.gp'
+load 'style.gp'
 
 # From blue (material missing) over grey to red (material added): equal steps of CIELAB lightness, 32 at both ends
 # and 96 in the middle. A grey print loses the sign only, which the contour lines tell (dashed: missing).

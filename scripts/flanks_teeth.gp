@@ -4,9 +4,9 @@
 # All flanks of a gear as small maps, and their numbers tooth by tooth; scripts/flanks sets the variables used here
 # before it loads this file.
 
-load scripts . '/flanks_style.gp'
+load 'flanks_style.gp'
 
-data = folder . '/strip.dat'
+data = 'strip.dat'
 tile = 1235.0 / columns # pixels of the png
 panel = tile_rows * tile * 1.25
 height = 500 + 2 * (panel + 50)
@@ -16,7 +16,7 @@ set style fill solid noborder
 
 do for [format in 'png svg'] {
     eval terminal(format, 'flanks_teeth', 1400, height)
-    set output folder . '/teeth.' . format
+    set output picture . '.' . format
     set multiplot
     set lmargin at screen 0.025
     set rmargin at screen 0.025 + 1235.0 / 1400
@@ -38,9 +38,9 @@ do for [format in 'png svg'] {
         set bmargin at screen from_top(top + panel)
         set label 3 side . ' flanks' at screen 0.025, screen from_top(top - 20) left font ',14' \
             textcolor rgb value(side . '_colour')
-        plot folder . '/tiles_' . side . '.bin' binary array=(image_width, image_height) format='%float32' \
+        plot 'tiles_' . side . '.bin' binary array=(image_width, image_height) format='%float32' \
                 endian=little origin=(0.5, 0.5) dx=1 dy=1 with image, \
-            folder . '/tile_texts.dat' using 1:2:(sprintf('%d', $3)) with labels font (columns > 20 ? ',7' : ',8') \
+            'tile_texts.dat' using 1:2:(sprintf('%d', $3)) with labels font (columns > 20 ? ',7' : ',8') \
                 textcolor rgb grey
         unset label 1
         unset label 2

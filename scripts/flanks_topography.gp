@@ -3,11 +3,11 @@
 #
 # Maps and surfaces of one or two flanks; scripts/flanks sets the variables used here before it loads this file.
 
-load scripts . '/flanks_style.gp'
+load 'flanks_style.gp'
 
 height = 130 + 540 * rows
 from_top(y) = 1.0 - 1.0 * y / height # pixels of the png
-file(kind, i, suffix) = folder . '/' . kind . '_' . i . '.' . suffix
+file(kind, i, suffix) = kind . '_' . i . '.' . suffix
 number_at = 24 # point of a contour line where its number stands
 step = 1.0 / (fine_nodes - 1)
 number(name, i) = value(name . '_' . i) # a variable of one row
@@ -46,7 +46,7 @@ unset key
 
 do for [format in 'png svg'] {
     eval terminal(format, 'flanks_topography', 1400, height)
-    set output folder . '/topography.' . format
+    set output picture . '.' . format
     set multiplot
     set label 1 title_text at screen 0.025, screen from_top(40) left font ',17' noenhanced
     set label 2 subtitle_text . \

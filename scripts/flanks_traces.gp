@@ -4,9 +4,9 @@
 # Profile and helix traces of some teeth, each on its nominal line, material added to the outside: drive (or left)
 # flanks at the left, coast (or right) flanks at the right. scripts/flanks sets the variables used here before it loads this file.
 
-load scripts . '/flanks_style.gp'
+load 'flanks_style.gp'
 
-file(kind, name) = sprintf('%s/%s_%s.dat', folder, kind, name)
+file(kind, name) = sprintf('%s_%s.dat', kind, name)
 width = gap + slots
 left = 0.085
 right = 0.975
@@ -21,7 +21,7 @@ half(side, x) = side eq 'drive' ? -x : x
 
 do for [format in 'png svg'] {
     eval terminal(format, 'flanks_traces', 1400, height)
-    set output folder . '/traces.' . format
+    set output picture . '.' . format
     set multiplot
     set lmargin at screen left
     set rmargin at screen right
@@ -52,7 +52,7 @@ do for [format in 'png svg'] {
                 lw (rim ? 1.0 : 0.5) lc rgb (rim ? '#909090' : '#d8d8d8')
         }
         set label "tooth\nF\nfH\nff" at first 0, screen from_top(top + 448) center font ',11' textcolor rgb grey
-        load folder . '/' . kind . '_texts.gp' # numbers of each trace
+        load kind . '_texts.gp' # numbers of each trace
         plot for [side in 'drive coast'] file(kind, side . '_area') using 1:2 with filledcurves closed \
                 fs transparent solid 0.18 noborder lc rgb value(side . '_colour'), \
             file(kind, 'nominal') using 1:2 with lines lw 0.8 lc rgb '#606060', \

@@ -1,11 +1,24 @@
 # SPDX-FileCopyrightText: The gearmesh authors
 # SPDX-License-Identifier: BSD-3-Clause
-"""Pictures by gnuplot: values are handed to a .gp file of this folder, several files are drawn side by side."""
+"""Pictures by gnuplot: values are handed to a .gp file of this folder, several pictures are drawn side by side.
+
+gnuplot runs whatever follows `|` or `<` at the beginning of a file name, or stands between backquotes. So it sees no
+name that comes from outside: it works in a folder of its own, where all files have names of this project, and texts
+reach it between single quotes, in one line.
+"""
+import glob
+import locale
+import math
 import os
+import shutil
 import subprocess
 import tempfile
 
-SCRIPTS = os.path.dirname(os.path.abspath(__file__))
+import program
+
+SCRIPTS = os.path.dirname(os.path.realpath(__file__))
+FORMATS = ("png", "svg")
+UTF8_LOCALES = ("C.UTF-8", "C.utf8", "en_US.UTF-8", "POSIX.UTF-8")
 
 
 def literal(value):
@@ -13,28 +26,73 @@ def literal(value):
     if isinstance(value, (list, tuple)):
         value = " ".join(f"{item:.10g}" for item in value)
     if isinstance(value, str):
-        return "'" + value.replace("'", "''") + "'"
+        return "'" + program.shown(value).replace("'", "''") + "'"
+    if not math.isfinite(value):
+        raise ValueError("gnuplot has no number for inf and nan")
     return str(value) if isinstance(value, int) else f"{float(value):.10g}"
 
 
-def _start(script, values):
-    lines = [f"{name} = {literal(value)}" for name, value in {**values, "scripts": SCRIPTS}.items()]
-    lines.append(f"load {literal(os.path.join(SCRIPTS, script))}")
+def _utf8_locale():
+    """A locale in which gnuplot can write µ and °, whatever that of the user is; numbers keep their point."""
+    kept = locale.setlocale(locale.LC_CTYPE)
+    try:
+        for candidate in UTF8_LOCALES:
+            try:
+                locale.setlocale(locale.LC_CTYPE, candidate)
+                return candidate
+            except locale.Error:
+                continue
+    finally:
+        locale.setlocale(locale.LC_CTYPE, kept)
+    return "C"
+
+
+def _start(script, values, folder):
+    """gnuplot with variables of these values, in the folder of the data."""
+    lines = [f"{name} = {literal(value)}" for name, value in values.items()]
+    lines.append(f"load {literal(script)}")
+    environment = {**os.environ, "LC_ALL": _utf8_locale()}
     with tempfile.TemporaryFile("w+", encoding="utf-8") as commands:
         commands.write("\n".join(lines) + "\n")
         commands.seek(0)
         try:
             return subprocess.Popen(
-                ["gnuplot"], stdin=commands, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True
+                ["gnuplot", "--default-settings"],  # without the start-up files of the user
+                stdin=commands,
+                stdout=subprocess.DEVNULL,
+                stderr=subprocess.PIPE,
+                cwd=folder,
+                env=environment,
             )
         except FileNotFoundError as error:
-            raise OSError("gnuplot is not installed (Debian: gnuplot-nox)") from error
+            raise program.RunFailed("gnuplot is not installed (Debian: gnuplot-nox)") from error
 
 
-def draw(pictures):
-    """Draw {script: values}, all at once; raises OSError if a gnuplot failed or complained, when all have ended."""
-    running = {script: _start(script, values) for script, values in pictures.items()}
-    complaints = {script: process.communicate()[1].strip() for script, process in running.items()}
+def _run(pictures, folder):
+    """Draw all at once; raises RunFailed if a gnuplot failed or complained, when all have ended."""
+    for path in glob.glob(os.path.join(glob.escape(SCRIPTS), "*.gp")):
+        shutil.copy(path, folder)
+    running = {script: _start(script, values, folder) for script, values in pictures.items()}
+    complaints = {}
+    for script, process in running.items():
+        complaints[script] = process.communicate()[1].decode("utf-8", errors="replace").strip()
     for script, process in running.items():
         if process.returncode != 0 or complaints[script]:
-            raise OSError(f"gnuplot {script}: {complaints[script] or process.returncode}")
+            raise program.RunFailed(f"gnuplot {script}: {complaints[script] or process.returncode}")
+
+
+def draw(stem, prepare):
+    """Draw pictures in a folder beside their place and move them there when all are done; returns their names.
+
+    `prepare(folder)` writes the data and returns {name: (script, values)}; the picture becomes STEM + name. The script
+    writes it as `picture . '.png'` and `.svg`.
+    """
+    with tempfile.TemporaryDirectory(prefix=".gearmesh_", dir=os.path.dirname(stem) or ".") as folder:
+        folder = os.path.abspath(folder)
+        pictures = prepare(folder)
+        named = {script: {"picture": f"picture{name}", **values} for name, (script, values) in pictures.items()}
+        _run(named, folder)
+        for name in pictures:
+            for suffix in FORMATS:
+                os.replace(os.path.join(folder, f"picture{name}.{suffix}"), f"{stem}{name}.{suffix}")
+    return [f"{stem}{name}" for name in pictures]

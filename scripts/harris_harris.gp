@@ -4,7 +4,7 @@
 # Peak-to-peak transmission error over torque, one curve for each relief; scripts/harris sets the variables used
 # here before it loads this file.
 
-load scripts . '/style.gp'
+load 'style.gp'
 set palette @palette_of_steps
 
 shade(i) = curves > 1 ? 0.08 + 0.7 * i / (curves - 1.0) : 0.08 # along the palette, without its lightest end
@@ -42,8 +42,8 @@ do for [i = 0:curves - 1] {
 
 do for [format in 'png svg'] {
     eval terminal(format, 'harris_harris', 1400, 1000)
-    set output folder . '/harris.' . format
-    plot for [i = 0:curves - 1] folder . '/curves.dat' index i using 1:2 with lines lw width(i) \
+    set output picture . '.' . format
+    plot for [i = 0:curves - 1] 'curves.dat' index i using 1:2 with lines lw width(i) \
         lc palette frac shade(i)
     unset output
 }

@@ -4,7 +4,7 @@
 # Peak-to-peak transmission error over torque and relief; scripts/harris sets the variables used here before it
 # loads this file.
 
-load scripts . '/style.gp'
+load 'style.gp'
 
 set lmargin at screen 0.105
 set rmargin at screen 0.835
@@ -15,14 +15,14 @@ set yrange [number_low:number_high]
 set cbrange [0:step * steps]
 dx = (torque_high - torque_low) / (fine - 1.0)
 dy = (number_high - number_low) / (fine - 1.0)
-contours = folder . '/contours.dat'
+contours = 'contours.dat'
 
 # Contour lines, once for both formats.
 set contour base
 unset surface
 set cntrparam levels incremental step, step, step * steps
 set table contours
-splot folder . '/map.bin' binary array=(fine, fine) format='%float32' endian=little \
+splot 'map.bin' binary array=(fine, fine) format='%float32' endian=little \
     origin=(torque_low, number_low, 0) dx=dx dy=dy
 unset table
 unset contour
@@ -59,10 +59,10 @@ if (has_chosen && chosen >= number_low && chosen <= number_high) {
 
 do for [format in 'png svg'] {
     eval terminal(format, 'harris_map', 1400, 1000)
-    set output folder . '/map.' . format
-    plot folder . '/map.bin' binary array=(fine, fine) format='%float32' endian=little \
+    set output picture . '.' . format
+    plot 'map.bin' binary array=(fine, fine) format='%float32' endian=little \
             origin=(torque_low, number_low) dx=dx dy=dy with image, \
         contours using 1:2 with lines lw 1.4 lc rgb '#202020', \
-        folder . '/labels.dat' using 1:2:(sprintf('%g', $3)) with labels boxed font ',10'
+        'labels.dat' using 1:2:(sprintf('%g', $3)) with labels boxed font ',10'
     unset output
 }

@@ -4,7 +4,7 @@
 # Transmission error over the mesh cycle at several loads; scripts/harris sets the variables used here before it
 # loads this file.
 
-load scripts . '/style.gp'
+load 'style.gp'
 
 colours = "#767676 #009e73 #d55e00 #0072b2"
 set lmargin at screen 0.105
@@ -35,7 +35,7 @@ do for [i = 0:curves - 1] {
 
 do for [format in 'png svg'] {
     eval terminal(format, 'harris_te', 1400, 1000)
-    set output folder . '/te.' . format
-    plot for [i = 0:curves - 1] folder . '/te.dat' index i using 1:2 with lines lw 2.6 lc rgb word(colours, i + 1)
+    set output picture . '.' . format
+    plot for [i = 0:curves - 1] 'te.dat' index i using 1:2 with lines lw 2.6 lc rgb word(colours, i + 1)
     unset output
 }

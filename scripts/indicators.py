@@ -12,7 +12,8 @@ Their meaning, in the order of INDICATORS:
     L1 .. L4_dB   tooth order k over the noise floor
     A1 .. A4_N    amplitude of tooth order k
     car1 .. car4  share of tooth order k in the power of itself and its sidebands, if it stands out at all
-    S_N           all sidebands of the tooth orders 1..4, 10 of each gear on each side
+    S_N           all sidebands of the tooth orders 1..4, each line once: 10 of each gear on each side, or up to
+                  half-way to the next tooth order where a gear has fewer than 20 teeth
     O_N           orders of pinion and wheel from 3 up to the sidebands of tooth order 1
     EO            share of the energy in these orders
     B             share of the map below 2 kHz that is 6 dB louder than a reference run
@@ -21,6 +22,9 @@ Their meaning, in the order of INDICATORS:
 Amplitudes are peak values, rms over the speed, with the noise floor taken off. Lines over the eigenfrequency
 (V from 1.25 f0; L, A from 1.2 f0) are looked at only, as below it a displacement excites little force.
 """
+import math
+from fractions import Fraction
+
 import numpy as np
 
 TOOTH_ORDERS = (1, 2, 3, 4)
@@ -32,6 +36,7 @@ CELL_HZ, CELL_RPM = 100.0, 250.0  # cells of B, up to:
 CELL_TOP_HZ = 2000.0
 LOUDER = 10.0 ** (6.0 / 10.0)  # 6 dB in power
 LINES_ABOVE = 1.2  # times the eigenfrequency, for L and A
+UNRESOLVED, RESOLVED = 2, 12  # distances of a sideband from a smeared tooth order, in widths of the smear
 OUTSTANDING = 10.0  # 10 dB in power: seen in a single frame
 STANDS_OUT = 10.0 ** (2.0 / 10.0)  # 2 dB: more than noise, in the mean
 
@@ -89,35 +94,63 @@ def visibility(spectra, gears, k):
     return np.mean(seen) if seen else np.nan
 
 
-def power_of_lines(blocks, orders, above_Hz=0.0):
+def power_of_lines(lines):
     """Squared amplitude of all lines together, floor taken off, mean over the blocks (N^2).
 
     Noise leaves a remainder of either sign, so it is not cut off at zero before the end.
     """
-    total = 0.0
-    for order in orders:
-        line, floor = blocks.line(order, above_Hz)
-        if len(line):
-            total += (line - floor).mean()
-    return total
+    return sum((line - floor).mean() for line, floor in lines if len(line))
+
+
+def sidebands_of(teeth):
+    """How many sidebands by the turns of a gear stand on either side: up to half-way to the next tooth order."""
+    return min(SIDEBANDS, teeth // 2)
 
 
 def sideband_orders(gears, k):
-    """Orders of the first sidebands of tooth order k by the turns of pinion and wheel."""
+    """Orders of the first sidebands of tooth order k by the turns of pinion and wheel, each once.
+
+    Both gears may have a sideband at the same order. What is a tooth order is no sideband.
+    """
     carrier = k * gears.pinion_teeth
-    return [
-        carrier + side * n * rotation
-        for rotation in (1.0, gears.wheel_order)
+    orders = {
+        carrier + side * n * Fraction(gears.pinion_teeth, teeth)
+        for teeth in (gears.pinion_teeth, gears.wheel_teeth)
         for side in (-1, 1)
-        for n in range(1, SIDEBANDS + 1)
-    ]
+        for n in range(1, sidebands_of(teeth) + 1)
+    }
+    return sorted(order for order in orders if order > 0 and order % gears.pinion_teeth != 0)
+
+
+def highest_order(gears):
+    """Up to which order blocks are needed: tooth order 4 and its sidebands, with some bins beside them."""
+    reach = max(sidebands_of(teeth) * gears.pinion_teeth / teeth for teeth in (gears.pinion_teeth, gears.wheel_teeth))
+    return max(TOOTH_ORDERS) * gears.pinion_teeth + max(15, math.ceil(reach) + 2)
+
+
+def sideband_line(blocks, gears, k, order):
+    """(line, floor) of a sideband of tooth order k: as blocks.line(), but where a run hurries through the resonance.
+
+    A resonance of 5 % damping is as wide as 10 % of the speed. A tooth order that passes it within N turns is smeared
+    over some 1 / N orders. A sideband nearer than that cannot be told from it; one not far from it stands on its slope.
+    """
+    f0, tooth_order = gears.eigenfrequency_Hz, k * gears.pinion_teeth
+    resonance_rpm = 60.0 * f0 / tooth_order
+    turns = 0.1 * resonance_rpm**2 / (60.0 * max(blocks.sweep_rpm_per_s, 1e-9))
+    smears = turns * abs(float(order) - tooth_order)
+    return blocks.line(
+        float(order),
+        left_out=(smears < UNRESOLVED) & blocks.passes(tooth_order, f0 / LINES_ABOVE, f0 * LINES_ABOVE),
+        on_slope=(smears < RESOLVED) & blocks.passes(tooth_order, f0 / 2.0, f0 * 2.0),
+    )
 
 
 def rotation_orders(gears):
-    """Orders of pinion and wheel from 3 up to the first sideband of tooth order 1."""
-    pinion = range(3, gears.pinion_teeth - SIDEBANDS + 1)
-    wheel = range(3, gears.wheel_teeth - SIDEBANDS + 2)
-    return [float(n) for n in pinion] + [n * gears.wheel_order for n in wheel]
+    """Orders of pinion and wheel from 3 up to the first sideband of tooth order 1, each once."""
+    pinion = range(3, gears.pinion_teeth - sidebands_of(gears.pinion_teeth) + 1)
+    wheel = range(3, gears.wheel_teeth - sidebands_of(gears.wheel_teeth) + 2)
+    orders = {Fraction(n) for n in pinion} | {n * Fraction(gears.pinion_teeth, gears.wheel_teeth) for n in wheel}
+    return sorted(order for order in orders if order % gears.pinion_teeth != 0)
 
 
 def amplitude(power):
@@ -126,19 +159,21 @@ def amplitude(power):
 
 def order_indicators(blocks, gears):
     above_Hz = LINES_ABOVE * gears.eigenfrequency_Hz
-    values, sidebands = {}, 0.0
+    values, sidebands, counted = {}, 0.0, set()
     for k in TOOTH_ORDERS:
         line, floor = blocks.line(k * gears.pinion_teeth, above_Hz)
         carrier = max(0.0, (line - floor).mean()) if len(line) else np.nan
         over_floor = (line / floor).mean() if len(line) else np.nan
-        beside = power_of_lines(blocks, sideband_orders(gears, k))
-        sidebands += beside
+        own = {order: sideband_line(blocks, gears, k, order) for order in sideband_orders(gears, k)}
+        beside = power_of_lines(own.values())
+        sidebands += power_of_lines(line for order, line in own.items() if order not in counted)
+        counted.update(own)
         values[f"L{k}_dB"] = 10.0 * np.log10(over_floor)
         values[f"A{k}_N"] = np.sqrt(carrier)
         if over_floor > STANDS_OUT:
             values[f"car{k}"] = carrier / (carrier + max(0.0, beside))
     values["S_N"] = amplitude(sidebands)
-    values["O_N"] = amplitude(power_of_lines(blocks, rotation_orders(gears)))
+    values["O_N"] = amplitude(power_of_lines(blocks.line(float(order)) for order in rotation_orders(gears)))
     return values
 
 
@@ -171,6 +206,11 @@ def high_frequency_rms(spectra, gears):
 
 def all_indicators(run, spectra, blocks, gears, reference=None):
     """Dictionary of INDICATORS; NaN for what the run cannot tell (too short, no reference)."""
+    with np.errstate(divide="ignore", invalid="ignore"):  # a force of 0 has no shares, which are NaN then
+        return _all_indicators(run, spectra, blocks, gears, reference)
+
+
+def _all_indicators(run, spectra, blocks, gears, reference):
     values = dict.fromkeys(INDICATORS, np.nan)
     values["rms_N"] = np.sqrt(spectra.mean_square(spectra.band(LOW_HZ, HIGH_HZ)))
     values["loss_percent"] = 100.0 * loss_of_contact(run)

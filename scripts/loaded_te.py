@@ -14,7 +14,9 @@ import threading
 
 import numpy as np
 
+import program
 import results
+from program import InputError, RunFailed
 
 ROOT = os.path.join(os.path.dirname(os.path.abspath(__file__)), os.pardir)
 GEARS = ("pinion", "wheel")
@@ -26,16 +28,8 @@ NO_SHAPE_UM = 1e-3  # what is flatter has none
 FLANK_FILES = ("pinion", "wheel", "pinion_pitch", "wheel_pitch")
 
 
-class InputError(Exception):
-    """What the user asked for cannot be done; the text says why."""
-
-
 class NoEquilibrium(InputError):
     """The gears cannot carry the torque."""
-
-
-class RunFailed(Exception):
-    """gearsim could not finish a run; the text says why."""
 
 
 def span(text, default_count=None):
@@ -364,24 +358,6 @@ def write_params(gears, path, values):
         file.write(with_values(text, {**gears.settings, **moved, **values}))
 
 
-def stem_of(options):
-    stem = options.output or os.path.splitext(os.path.basename(options.params))[0]
-    folder = os.path.dirname(stem)
-    if folder and not os.path.isdir(folder):
-        raise InputError(f"{folder}: there is no such folder (--output)")
-    return stem
-
-
-def title_of(options):
-    return options.title or options.params.removesuffix(".ini")
-
-
-def progress(text):
-    """A line that the next one replaces, on a terminal only."""
-    if sys.stderr.isatty():
-        print(f"\r\033[K{text}", end="", file=sys.stderr, flush=True)
-
-
 def round_step(range_, steps):
     """The next of 1, 2, 5, 10, 20 .. that divides a range into at most so many steps."""
     raw = max(range_, 1e-9) / steps
@@ -430,20 +406,3 @@ def write_blocks(path, blocks):
         for columns in blocks:
             np.savetxt(file, np.column_stack(columns), "%.9g")
             file.write("\n\n")
-
-
-def run_script(name, work, parse):
-    """main() of a script: its errors as messages, and the exit status."""
-    options = parse()
-    try:
-        work(options)
-    except InputError as error:
-        print(f"{name}: {error}", file=sys.stderr)
-        return 2
-    except (RunFailed, OSError) as error:
-        print(f"{name}: {error}", file=sys.stderr)
-        return 1
-    except KeyboardInterrupt:
-        print(f"\n{name}: interrupted", file=sys.stderr)
-        return 130
-    return 0

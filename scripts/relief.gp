@@ -4,12 +4,12 @@
 # Peak-to-peak transmission error over torque, before and after; scripts/relief sets the variables used here before
 # it loads this file.
 
-load scripts . '/style.gp'
+load 'style.gp'
 
 array colours[2] = [grey, '#0072b2']
 array names[2] = ['before', 'after']
 array widths[2] = [2.4, 4]
-curves = folder . '/curves.dat'
+curves = 'curves.dat'
 set lmargin at screen 0.105
 set rmargin at screen 0.885
 set tmargin at screen 0.825
@@ -43,7 +43,7 @@ do for [i = 1:2] {
 
 do for [format in 'png svg'] {
     eval terminal(format, 'relief', 1400, 1000)
-    set output folder . '/relief.' . format
+    set output picture . '.' . format
     plot for [n in (has_band ? 'band' : '')] curves index 2 using 1:2:3 with filledcurves \
             fs transparent solid 0.22 noborder lc rgb colours[2], \
         for [n in (has_band && range_low == range_high ? 'bar' : '')] curves index 2 using 1:2:2:3 with yerrorbars \

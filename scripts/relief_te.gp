@@ -4,7 +4,7 @@
 # Transmission error over the mesh cycle at some torques, before and after; scripts/relief sets the variables used
 # here before it loads this file.
 
-load scripts . '/style.gp'
+load 'style.gp'
 
 colours = '#009e73 #d55e00 #0072b2'
 names = 'before after'
@@ -19,7 +19,7 @@ unset key
 
 do for [format in 'png svg'] {
     eval terminal(format, 'relief_te', 1600, 900)
-    set output folder . '/relief_te.' . format
+    set output picture . '.' . format
     set multiplot
     do for [panel = 0:1] {
         unset label
@@ -48,7 +48,7 @@ do for [format in 'png svg'] {
             set label value(sprintf('number_%d_%d', panel, i)) at graph 1.035, first at left offset 0,-0.45 font ',10' \
                 textcolor rgb word(colours, i + 1)
         }
-        plot for [i = 0:curves - 1] sprintf('%s/te_%d.dat', folder, panel) index i using 1:2 with lines lw 2.4 \
+        plot for [i = 0:curves - 1] sprintf('te_%d.dat', panel) index i using 1:2 with lines lw 2.4 \
             lc rgb word(colours, i + 1)
     }
     unset multiplot

@@ -1,10 +1,168 @@
 # SPDX-FileCopyrightText: The gearmesh authors
 # SPDX-License-Identifier: BSD-3-Clause
-"""The head of what gearsim writes as CSV."""
+"""What gearsim writes, CSV or HDF5, as columns of numbers and what the file says of its origin."""
+import itertools
+import os
+
+import numpy as np
+
+import program
+
+COLUMNS = ("time_s", "pinion_speed_rpm", "pinion_angle_rad", "contact_force_N")
+PAIRS_COLUMN = "pairs_in_contact"
+HDF5_SIGNATURE = b"\x89HDF\r\n\x1a\n"
+
+# A sampled signal is trusted up to this share of its rate: the low-pass of gearsim passes it unchanged.
+TRUSTED_SHARE_OF_RATE = 0.4
+# From this share of the highest speed on, the pinion angle has to go on with every row.
+TURNING_SHARE_OF_SPEED = 0.1
+# A speed that changes less than this, in shares of the highest one, is constant.
+CONSTANT_SHARE_OF_SPEED = 0.005
 
 
-class RunError(Exception):
+class RunError(program.InputError):
     """A run cannot be read or cannot be analysed; the text says why."""
+
+
+# ----------------------------------------------------------------------------------------------------
+# Runs
+# ----------------------------------------------------------------------------------------------------
+
+
+class Run:
+    """Columns of a result of gearsim, and what it says of its origin.
+
+    speed_rpm and angle_rad are those of the pinion without their direction: the amount of its speed, and the angle it
+    has turned through, whichever way. Orders do not depend on the direction.
+    """
+
+    def __init__(self, time_s, speed_rpm, angle_rad, force_N, pairs=None, provenance=None):
+        self.time_s = time_s
+        self.start_rpm, self.end_rpm = float(speed_rpm[0]), float(speed_rpm[-1])
+        self.reverses = bool(speed_rpm.min() < 0 < speed_rpm.max())
+        self.speed_rpm = np.abs(speed_rpm)
+        self.angle_rad = turned_angle(angle_rad)
+        self.force_N = force_N
+        self.pairs = pairs  # None if the column is missing
+        self.provenance = provenance or {}
+        self.incomplete = None  # the reason if the run ended early
+        self.rate_Hz = (len(time_s) - 1) / (time_s[-1] - time_s[0])
+
+    @property
+    def trusted_Hz(self):
+        return TRUSTED_SHARE_OF_RATE * self.rate_Hz
+
+    @property
+    def is_constant(self):
+        """Whether there is one speed only: then time takes its place in the pictures."""
+        return np.ptp(self.speed_rpm) <= CONSTANT_SHARE_OF_SPEED * self.speed_rpm.max()
+
+    def sweep_rpm_per_s(self):
+        """How fast the speed changes: of pieces of the run, the rate that all but one in twenty stay below."""
+        pieces = int(min(200, max(2, len(self.time_s) // 16)))
+        edges = np.linspace(0, len(self.time_s), pieces + 1).astype(int)
+        middle_s, middle_rpm = (
+            np.array([values[first:last].mean() for first, last in zip(edges[:-1], edges[1:])])
+            for values in (self.time_s, self.speed_rpm)
+        )
+        return float(np.percentile(np.abs(np.diff(middle_rpm) / np.diff(middle_s)), 95))
+
+
+def turned_angle(angle_rad):
+    """The angle turned through, which grows whichever way the pinion turns."""
+    steps_rad = np.diff(angle_rad)
+    if (steps_rad >= 0).all():
+        return angle_rad
+    return np.concatenate([[0.0], np.cumsum(np.abs(steps_rad))])
+
+
+def read_run(path):
+    """Read a result of gearsim, CSV or HDF5; raises RunError with a message for people."""
+    try:
+        with open(path, "rb") as file:
+            is_hdf5 = file.read(len(HDF5_SIGNATURE)) == HDF5_SIGNATURE
+        columns, provenance, incomplete = _read_hdf5(path) if is_hdf5 else _read_csv(path)
+    except OSError as error:
+        raise RunError(f"{path}: cannot be read: {error.strerror or program.first_line_of(error)}") from error
+    if len(columns[0]) < 2:
+        raise RunError(f"{path}: must have two rows or more (got {len(columns[0])})")
+    _check_columns(path, columns)
+    run = Run(*columns, provenance=provenance)
+    run.incomplete = incomplete
+    return run
+
+
+def _wanted(path, names):
+    """Those of the names that an analysis reads, in the order of Run."""
+    missing = [name for name in COLUMNS if name not in names]
+    if missing:
+        raise RunError(f"{path}: no column {', '.join(missing)}; add it to output.columns of the run")
+    return [name for name in COLUMNS + (PAIRS_COLUMN,) if name in names]
+
+
+def _check_columns(path, columns):
+    """Numbers all of them, rows at an even distance in time, and an angle that goes with the speed."""
+    time_s, speed_rpm, angle_rad = columns[:3]
+    for name, column in zip(COLUMNS + (PAIRS_COLUMN,), columns):
+        bad = np.flatnonzero(~np.isfinite(column))
+        if len(bad):
+            raise RunError(f"{path}: {name}: must be a finite number (got {column[bad[0]]} in row {bad[0] + 1})")
+        if np.abs(column).max() > 1e150:
+            raise RunError(f"{path}: {name}: must be a number whose square can be told (got more than 1e150)")
+
+    steps_s = np.diff(time_s)
+    mean_s = (time_s[-1] - time_s[0]) / len(steps_s)
+    if mean_s <= 0 or np.abs(steps_s - mean_s).max() > 0.1 * mean_s:
+        raise RunError(f"{path}: time_s is not evenly spaced (more output.digits may help)")
+
+    if not speed_rpm.any():
+        raise RunError(f"{path}: pinion_speed_rpm is 0 throughout: there are no orders of a pinion that stands still")
+    turning = np.abs(speed_rpm[1:]) > TURNING_SHARE_OF_SPEED * np.abs(speed_rpm).max()
+    bad = np.flatnonzero(turning & (np.diff(angle_rad) * np.sign(speed_rpm[1:]) <= 0))
+    if len(bad):
+        raise RunError(
+            f"{path}: pinion_angle_rad does not grow (or fall) from row {bad[0] + 1} to the next as the pinion turns "
+            "(more output.digits may help)"
+        )
+
+
+# ----------------------------------------------------------------------------------------------------
+# HDF5
+# ----------------------------------------------------------------------------------------------------
+
+
+def _read_hdf5(path):
+    """Columns, provenance, and why the run ended early (None: it did not)."""
+    try:
+        import h5py
+    except ImportError as error:
+        raise RunError(f"{path}: HDF5 is read by h5py, which is not installed (Debian: python3-h5py)") from error
+    try:
+        with h5py.File(path, "r") as file:
+            provenance = {name: _text(value) for name, value in file.attrs.items()}
+            columns = [_column(path, name, file[name], h5py.Dataset) for name in _wanted(path, file)]
+    except (OSError, RuntimeError, ValueError, TypeError, KeyError) as error:
+        raise RunError(f"{path}: cannot be read as HDF5: {program.first_line_of(error)}") from error
+    lengths = {len(column) for column in columns}
+    if len(lengths) > 1:
+        raise RunError(f"{path}: its columns must have the same length (got {sorted(lengths)})")
+    return columns, provenance, provenance.pop("incomplete", None)
+
+
+def _column(path, name, item, dataset):
+    """A data set as a column of numbers."""
+    if not isinstance(item, dataset) or len(item.shape) != 1 or item.dtype.kind not in "fiu":
+        raise RunError(f"{path}: {name}: must be a column of numbers")
+    return item[:].astype(float)
+
+
+def _text(value):
+    return value.decode("utf-8", errors="replace") if isinstance(value, bytes) else str(value)
+
+
+# ----------------------------------------------------------------------------------------------------
+# CSV
+# ----------------------------------------------------------------------------------------------------
 
 
 def read_head(path):
@@ -19,3 +177,56 @@ def read_head(path):
             if equals:
                 provenance[key.strip()] = value.strip()
     raise RunError(f"{path}: no header line")
+
+
+def _read_csv(path):
+    """The same of a CSV."""
+    provenance, names, head_lines = read_head(path)
+    used = [names.index(name) for name in _wanted(path, names)]
+    if _is_empty_below(path, head_lines):
+        return [[]], provenance, None
+    if _is_cut_off(path):
+        raise RunError(f"{path}: its last line must have an end (the file is cut off)")
+    try:
+        table = np.loadtxt(path, delimiter=",", comments="#", skiprows=head_lines, usecols=used, ndmin=2, encoding="utf-8")
+    except ValueError as error:
+        raise RunError(_bad_row(path, names, used, head_lines) or f"{path}: {program.first_line_of(error)}") from error
+    return [np.ascontiguousarray(column) for column in table.T], provenance, _incomplete_reason(path)
+
+
+def _is_empty_below(path, head_lines):
+    """Whether there is no row, of which numpy would warn."""
+    with open(path, encoding="utf-8", errors="replace") as file:
+        return not any(line.strip() and not line.startswith("#") for line in itertools.islice(file, head_lines, None))
+
+
+def _is_cut_off(path):
+    """Whether the last line has no end, so that its last number may be a part of one."""
+    with open(path, "rb") as file:
+        file.seek(-1, os.SEEK_END)
+        return file.read() != b"\n"
+
+
+def _bad_row(path, names, used, head_lines):
+    """A message about the first row that is not one, with its line; None if all are."""
+    with open(path, encoding="utf-8", errors="replace") as file:
+        for number, line in enumerate(file, start=1):
+            fields = line.partition("#")[0].strip().split(",")
+            if number <= head_lines or fields == [""]:
+                continue
+            if len(fields) != len(names):
+                return f"{path}:{number}: must have {len(names)} columns, as the header has (got {len(fields)})"
+            for column in used:
+                try:
+                    float(fields[column])
+                except ValueError:
+                    return f"{path}:{number}: {names[column]}: must be a number (got '{program.shown(fields[column][:40])}')"
+    return None
+
+
+def _incomplete_reason(path):
+    """What the last line says if it is `# incomplete: why`, else None."""
+    with open(path, "rb") as file:
+        file.seek(max(0, os.path.getsize(path) - 4096))
+        last = file.read().decode("utf-8", errors="replace").rstrip().rpartition("\n")[2]
+    return last.partition(":")[2].strip() or "no reason given" if last.startswith("# incomplete") else None

@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: The gearmesh authors
 # SPDX-License-Identifier: BSD-3-Clause
-"""What a run-up says: spectra over speed, order lines, and numbers that stand for what a map shows.
+"""What a run-up says: spectra over speed, order lines, and how far both can be trusted.
 
 Amplitudes are peak values: a sine of 1 N is 1 N in a map, in an order cut and in an order spectrum.
 Frequencies are in Hz, speeds in rpm of the pinion, orders in events per turn of the pinion.
@@ -9,124 +9,34 @@ estimation by the Discrete Fourier transform", 2002 (amplitude scaling by the su
 scaling by its equivalent noise bandwidth).
 """
 import math
-import os
 
 import numpy as np
 from scipy import interpolate, signal
 
-from results import RunError, read_head
+from results import Run, RunError, read_run  # noqa: F401  (a run-up is read and analysed by one module)
 
-COLUMNS = ("time_s", "pinion_speed_rpm", "pinion_angle_rad", "contact_force_N")
-PAIRS_COLUMN = "pairs_in_contact"
-HDF5_SIGNATURE = b"\x89HDF\r\n\x1a\n"
+# Standard window, with which the indicators are defined.
+STANDARD_LENGTH, STANDARD_HOP = 2048, 512
+# A window in which an order sweeps by this many of its own resolutions (1 / window) shows it 0.2 % too low.
+SWEEP_OF_WINDOW = 0.5
+LONGEST_WINDOW_S = 0.2
+FEWEST_WINDOWS = 20  # in a run, so that a short one has a map as well
+SHORTEST_WINDOW = 32  # rows
+PADDING = 8  # of the windows of a map: between two bins a Hann window then loses 0.3 % at most, not 15 %
 
-# A sampled signal is trusted up to this share of its rate: the low-pass of gearsim passes it unchanged.
-TRUSTED_SHARE_OF_RATE = 0.4
+# The speed may change by SWEEP_OF_CUT within a window of an order cut: a resonance of RESOLVED_DAMPING is then shown to
+# 1 %. The window is never longer than CUT_WINDOW_S, and holds at least so many teeth as tell tooth orders apart.
+SWEEP_OF_CUT, RESOLVED_DAMPING = 0.035, 0.02
+CUT_WINDOW_S, CUT_LEAST_WINDOW_S, CUT_TEETH = 0.5, 0.25, 4
+CUT_TURNS = 2.5  # tell an order from those beside it
+CUT_HOP_S, CUT_POINTS = 0.05, 800  # from window to window; at least so many in a run
+
 # Order blocks begin at this share of the highest speed: slower ones last so long that the speed changes.
 BLOCK_MIN_SHARE_OF_SPEED = 0.1
 BLOCK_TURNS = 82  # about so many turns of the pinion: 1/82 order from bin to bin
+LINE_BINS = 4  # between lines of pinion and wheel, so that a Hann window keeps them apart
 # Bins around an order line that tell its floor: nearer ones hold the line, farther ones other lines.
 FLOOR_NEAR, FLOOR_FAR = 4, 24
-
-
-# ----------------------------------------------------------------------------------------------------
-# Reading
-# ----------------------------------------------------------------------------------------------------
-
-
-class Run:
-    """Columns of a result of gearsim, and what it says of its origin."""
-
-    def __init__(self, time_s, speed_rpm, angle_rad, force_N, pairs=None, provenance=None):
-        self.time_s = time_s
-        self.speed_rpm = speed_rpm
-        self.angle_rad = angle_rad
-        self.force_N = force_N
-        self.pairs = pairs  # None if the column is missing
-        self.provenance = provenance or {}
-        self.incomplete = None  # the reason if the run ended early
-        self.rate_Hz = (len(time_s) - 1) / (time_s[-1] - time_s[0])
-
-    @property
-    def trusted_Hz(self):
-        return TRUSTED_SHARE_OF_RATE * self.rate_Hz
-
-
-def read_run(path):
-    """Read a result of gearsim, CSV or HDF5; raises RunError or OSError with a message for people."""
-    with open(path, "rb") as file:
-        is_hdf5 = file.read(len(HDF5_SIGNATURE)) == HDF5_SIGNATURE
-    columns, provenance, incomplete = _read_hdf5(path) if is_hdf5 else _read_csv(path)
-    if len(columns[0]) < 2:
-        raise RunError(f"{path}: fewer than two rows")
-    _check_columns(path, columns)
-    run = Run(*columns, provenance=provenance)
-    run.incomplete = incomplete
-    return run
-
-
-def _wanted(path, names):
-    """Those of the names that an analysis reads, in the order of Run."""
-    missing = [name for name in COLUMNS if name not in names]
-    if missing:
-        raise RunError(f"{path}: no column {', '.join(missing)}; add it to output.columns of the run")
-    return [name for name in COLUMNS + (PAIRS_COLUMN,) if name in names]
-
-
-def _read_hdf5(path):
-    """Columns, provenance, and why the run ended early (None: it did not)."""
-    try:
-        import h5py
-    except ImportError as error:
-        raise RunError(f"{path}: HDF5 is read by h5py, which is not installed (Debian: python3-h5py)") from error
-    try:
-        with h5py.File(path, "r") as file:
-            provenance = {name: _text(value) for name, value in file.attrs.items()}
-            columns = [file[name][:] for name in _wanted(path, file)]
-    except OSError as error:
-        raise RunError(f"{path}: {error}") from error
-    return columns, provenance, provenance.pop("incomplete", None)
-
-
-def _text(value):
-    return value.decode("utf-8", errors="replace") if isinstance(value, bytes) else str(value)
-
-
-def _read_csv(path):
-    """The same of a CSV."""
-    provenance, names, head_lines = read_head(path)
-    try:
-        table = np.loadtxt(
-            path,
-            delimiter=",",
-            comments="#",
-            skiprows=head_lines,
-            usecols=[names.index(name) for name in _wanted(path, names)],
-            ndmin=2,
-        )
-    except ValueError as error:
-        raise RunError(f"{path}: {error}") from error
-    return [np.ascontiguousarray(column) for column in table.T], provenance, _incomplete_reason(path)
-
-
-def _incomplete_reason(path):
-    """What the last line says if it is `# incomplete: why`, else None."""
-    with open(path, "rb") as file:
-        file.seek(max(0, os.path.getsize(path) - 4096))
-        last = file.read().decode("utf-8", errors="replace").rstrip().rpartition("\n")[2]
-    return last.partition(":")[2].strip() or "no reason given" if last.startswith("# incomplete") else None
-
-
-def _check_columns(path, columns):
-    time_s, angle_rad = columns[0], columns[2]
-    if not all(np.isfinite(column).all() for column in columns):
-        raise RunError(f"{path}: a value is not a finite number")
-    steps_s = np.diff(time_s)
-    mean_s = (time_s[-1] - time_s[0]) / len(steps_s)
-    if mean_s <= 0 or np.abs(steps_s - mean_s).max() > 0.1 * mean_s:
-        raise RunError(f"{path}: time_s is not evenly spaced (more output.digits may help)")
-    if np.diff(angle_rad).min() <= 0:
-        raise RunError(f"{path}: pinion_angle_rad does not grow from row to row")
 
 
 class Gears:
@@ -151,10 +61,9 @@ class Gears:
 class Spectra:
     """Short-time spectra: power[frame, bin] is the squared peak amplitude (N^2)."""
 
-    def __init__(self, frequency_Hz, speed_rpm, speed_range_rpm, power, noise_bandwidth_bins):
+    def __init__(self, frequency_Hz, speed_rpm, power, noise_bandwidth_bins):
         self.frequency_Hz = frequency_Hz
         self.speed_rpm = speed_rpm  # at the middle of each frame
-        self.speed_range_rpm = speed_range_rpm  # of the whole run
         self.power = power
         self.noise_bandwidth_bins = noise_bandwidth_bins
 
@@ -167,44 +76,109 @@ class Spectra:
         return total / 2.0 / self.noise_bandwidth_bins
 
 
-def short_time_spectra(run, window="hann", length=2048, hop=512):
-    """Spectra of the contact force without its mean, in frames of `length` rows every `hop` rows."""
+def frames_of(run, window, length, hop, padding=1):
+    """Windowed spectra of the force without its mean: pieces (first frame, squared peak amplitude [frame, bin] in N^2).
+
+    In pieces, as all windowed frames at once would fill the memory.
+    """
     if len(run.force_N) < length:
         raise RunError(f"the run has {len(run.force_N)} rows, a window needs {length}")
     weight = signal.get_window(window, length)
     force_N = run.force_N - run.force_N.mean()
     frames = np.lib.stride_tricks.sliding_window_view(force_N, length)[::hop]
-    power = np.empty((len(frames), length // 2 + 1), dtype=np.float32)
-    for first in range(0, len(frames), 256):  # piecewise, as all windowed frames at once fill the memory
-        spectrum = np.fft.rfft(frames[first : first + 256] * weight, axis=1)
-        power[first : first + 256] = np.abs(2.0 * spectrum / weight.sum()) ** 2
-    middle = np.arange(len(frames)) * hop + length // 2
+    for first in range(0, len(frames), 64):
+        spectrum = np.fft.rfft(frames[first : first + 64] * weight, padding * length, axis=1)
+        yield first, np.abs(2.0 * spectrum / weight.sum()) ** 2
+
+
+def middles_of(values, length, hop):
+    """Values of the rows in the middle of each frame."""
+    frames = (len(values) - length) // hop + 1
+    return values[np.arange(frames) * hop + length // 2]
+
+
+def short_time_spectra(run, window="hann", length=STANDARD_LENGTH, hop=STANDARD_HOP):
+    """Spectra of the contact force without its mean, in frames of `length` rows every `hop` rows."""
+    power = np.concatenate([piece.astype(np.float32) for _, piece in frames_of(run, window, length, hop)])
+    weight = signal.get_window(window, length)
     return Spectra(
         np.fft.rfftfreq(length, 1.0 / run.rate_Hz),
-        run.speed_rpm[middle],
-        (run.speed_rpm.min(), run.speed_rpm.max()),
+        middles_of(run.speed_rpm, length, hop),
         power,
         length * (weight**2).sum() / weight.sum() ** 2,
     )
 
 
-def speed_map(spectra, speed_bins=330):
-    """Rms of the amplitudes over the frames of each speed bin: (bin middles in rpm, [speed, bin] in N).
+def window_length(run, highest_order):
+    """Rows of a window in which the highest order of interest sweeps so slowly that it is shown in full.
 
-    A bin without a frame is NaN. There are never more bins than a third of the frames.
+    The frequency of an order that passes through a window of T seconds at c Hz/s changes by c T, which is c T^2 of the
+    resolution 1 / T. A slower sweep gets a longer window, which tells more lines apart.
     """
-    low, high = spectra.speed_range_rpm
-    if high - low < 1.0:
-        raise RunError("the pinion speed does not change: a map needs a run-up or a run-down")
-    bins = max(1, min(speed_bins, len(spectra.speed_rpm) // 3))
-    edges = np.linspace(low, high, bins + 1)
-    index = np.clip(np.searchsorted(edges, spectra.speed_rpm, side="right") - 1, 0, bins - 1)
-    power = np.full((bins, spectra.power.shape[1]), np.nan)
-    for i in range(bins):
-        frames = index == i
-        if frames.any():
-            power[i] = spectra.power[frames].mean(axis=0)
-    return (edges[:-1] + edges[1:]) / 2.0, np.sqrt(power)
+    sweep_Hz_per_s = highest_order * run.sweep_rpm_per_s() / 60.0
+    length_s = min(LONGEST_WINDOW_S, run.time_s[-1] - run.time_s[0])
+    if sweep_Hz_per_s > 0:
+        length_s = min(length_s, math.sqrt(SWEEP_OF_WINDOW / sweep_Hz_per_s))
+    rows = min(length_s * run.rate_Hz, len(run.time_s) / FEWEST_WINDOWS)
+    return max(min(SHORTEST_WINDOW, len(run.time_s)), 2 * round(rows / 2))
+
+
+def sweep_gain(run, order, window, length):
+    """What share of the amplitude of an order a map shows whose windows have this length.
+
+    The spectrum of a unit wave exp(i pi c t^2) under the window, at its highest point: c is the rate at which the
+    frequency of the order changes. 1 at constant speed.
+    """
+    weight = signal.get_window(window, length)
+    time_s = (np.arange(length) - (length - 1) / 2) / run.rate_Hz
+    sweep_Hz_per_s = order * run.sweep_rpm_per_s() / 60.0
+    wave = weight * np.exp(1j * np.pi * sweep_Hz_per_s * time_s**2)
+    return float(np.abs(np.fft.fft(wave, PADDING * length)).max() / weight.sum())
+
+
+class Map:
+    """Amplitudes over frequency and speed, or over frequency and time if the speed is constant."""
+
+    def __init__(self, frequency_Hz, row, row_range, amplitude_N, over_time):
+        self.frequency_Hz = frequency_Hz
+        self.row = row  # middles of the rows: rpm, or s
+        self.row_range = row_range  # of the whole run
+        self.amplitude_N = amplitude_N  # [row, bin]; a row without a frame is NaN
+        self.over_time = over_time
+
+
+def speed_map(run, window="hann", length=STANDARD_LENGTH, hop=STANDARD_HOP, rows=330):
+    """Rms of the amplitudes over the frames of each row: a Map with never more rows than a third of the frames.
+
+    The frames of a row have slightly different speeds, so an order stands at another frequency in each of them, a
+    resonance does not. Both are read: the mean over the frames at the same frequency, and at the same order. What is
+    shown is the larger one; for noise they are equal, but for some tenths of a dB.
+    """
+    over_time = run.is_constant
+    along = middles_of(run.time_s if over_time else run.speed_rpm, length, hop)
+    speed_rpm = middles_of(run.speed_rpm, length, hop)
+    whole = run.time_s if over_time else run.speed_rpm
+    low, high = float(whole.min()), float(whole.max())
+
+    # Which row each frame belongs to, and the mean speed of each row.
+    rows = max(1, min(rows, len(along) // 3))
+    edges = np.linspace(low, high, rows + 1)
+    row_of = np.clip(np.searchsorted(edges, along, side="right") - 1, 0, rows - 1)
+    count = np.bincount(row_of, minlength=rows)
+    mean_rpm = np.bincount(row_of, speed_rpm, rows) / np.maximum(count, 1)
+
+    # Sums over the frames of each row, at the same frequency and at the same order.
+    frequency_Hz = np.fft.rfftfreq(PADDING * length, 1.0 / run.rate_Hz)
+    fixed, moving = np.zeros((2, rows, len(frequency_Hz)))
+    for first, pieces in frames_of(run, window, length, hop, PADDING):
+        for frame, power in enumerate(pieces, start=first):
+            row = row_of[frame]
+            fixed[row] += power
+            if mean_rpm[row] > 0:
+                moving[row] += np.interp(frequency_Hz * (speed_rpm[frame] / mean_rpm[row]), frequency_Hz, power)
+    with np.errstate(invalid="ignore"):
+        amplitude_N = np.sqrt(np.maximum(fixed, moving) / np.where(count > 0, count, np.nan)[:, None])
+    return Map(frequency_Hz, (edges[:-1] + edges[1:]) / 2.0, (low, high), amplitude_N, over_time)
 
 
 # ----------------------------------------------------------------------------------------------------
@@ -212,51 +186,102 @@ def speed_map(spectra, speed_bins=330):
 # ----------------------------------------------------------------------------------------------------
 
 
-def order_cut(run, order, window_s=0.25, hop_s=0.05):
-    """Amplitude of one order over the speed: (rpm, N), NaN where its frequency is not trusted.
+def cut_weight(length):
+    """Weights of a window of an order cut: sum 1, and no second moment.
 
-    The force is turned back by order times the angle, so that the order stands still, and averaged under
-    a Hann window. That follows the order exactly, however fast it sweeps, with the same bandwidth in Hz
-    (1.5 / window_s) at all speeds.
+    A plain window takes the peak of a resonance down by half its second moment times the curvature of the amplitude.
+    A Hann window times a + b u^2, u from -1/2 to 1/2, has the sum 1 and the second moment 0 with
+    b = -1 / (m4 / m2 - m2), a = 1 - b m2, where m2 and m4 are the moments of the Hann window.
     """
-    length, hop = int(round(window_s * run.rate_Hz)), max(1, int(round(hop_s * run.rate_Hz)))
-    if len(run.force_N) < length:
-        raise RunError(f"the run is shorter than {window_s} s, which an order cut needs")
-    weight = signal.get_window("hann", length)
-    weight /= weight.sum()
+    u = (np.arange(length) + 0.5) / length - 0.5
+    hann = 1.0 + np.cos(2.0 * np.pi * u)
+    hann /= hann.sum()
+    m2, m4 = (hann * u**2).sum(), (hann * u**4).sum()
+    b = -1.0 / (m4 / m2 - m2)
+    return hann * (1.0 - b * m2 + b * u**2)
+
+
+def cut_windows_s(run, speed_rpm, teeth):
+    """Length of the window of an order cut at each of some speeds: as long as the sweep allows."""
+    sweep_rpm_per_s = max(run.sweep_rpm_per_s(), 1e-9)
+    teeth_s = 60.0 * CUT_TEETH / (np.maximum(speed_rpm, 1e-9) * teeth)
+    longest_s = min(CUT_WINDOW_S, (run.time_s[-1] - run.time_s[0]) / 8.0)
+    return np.clip(SWEEP_OF_CUT * speed_rpm / sweep_rpm_per_s, np.minimum(CUT_LEAST_WINDOW_S, teeth_s), longest_s)
+
+
+def least_damping(run, speed_rpm, teeth):
+    """Damping ratio from which on a resonance at this speed is shown to 1 % in an order cut."""
+    window_s = float(cut_windows_s(run, np.array([speed_rpm]), teeth)[0])
+    return window_s * run.sweep_rpm_per_s() / speed_rpm * RESOLVED_DAMPING / SWEEP_OF_CUT
+
+
+def single_order_rpm(run):
+    """Speed from which on the window of an order cut holds CUT_TURNS turns: below it, the orders beside count too."""
+    return math.sqrt(60.0 * CUT_TURNS * run.sweep_rpm_per_s() / SWEEP_OF_CUT)
+
+
+def order_cut(run, order, teeth):
+    """Amplitude of one order: (row in the middle of each window, N), NaN where its frequency is not trusted.
+
+    The force is turned back by order times the angle, so that the order stands still, and averaged under a window. That
+    follows the order exactly, however fast it sweeps. What remains to be lost is what its amplitude changes within
+    the window, see cut_windows_s().
+    """
+    hop_s = min(CUT_HOP_S, (run.time_s[-1] - run.time_s[0]) / CUT_POINTS)
+    hop = max(1, int(round(hop_s * run.rate_Hz)))
     force_N = run.force_N - run.force_N.mean()
     still = force_N * np.exp(-1j * np.remainder(order * run.angle_rad, 2.0 * np.pi))
-    amplitude_N = 2.0 * np.abs(np.lib.stride_tricks.sliding_window_view(still, length)[::hop] @ weight)
-    speed_rpm = run.speed_rpm[np.arange(len(amplitude_N)) * hop + length // 2]
-    amplitude_N[np.abs(order * speed_rpm / 60.0) > run.trusted_Hz] = np.nan
-    return speed_rpm, amplitude_N
+
+    # Windows that lie within the run, each as long as its speed wants it.
+    middle = np.arange(hop // 2, len(force_N), hop)
+    half = np.maximum(4, (cut_windows_s(run, run.speed_rpm[middle], teeth) * run.rate_Hz / 2).astype(int))
+    inside = (middle >= half) & (middle + half <= len(force_N))
+    middle, half = middle[inside], half[inside]
+    if not len(middle):
+        raise RunError(f"the run has {len(force_N)} rows, too few for an order cut")
+
+    weights = {int(h): cut_weight(2 * int(h)) for h in np.unique(half)}
+    amplitude_N = np.array([2.0 * abs(still[m - h : m + h] @ weights[int(h)]) for m, h in zip(middle, half)])
+    amplitude_N[order * run.speed_rpm[middle] / 60.0 > run.trusted_Hz] = np.nan
+    return middle, amplitude_N
 
 
 class OrderBlocks:
     """Spectra over the pinion angle: power[block, bin], squared peak amplitude (N^2)."""
 
-    def __init__(self, turns, speed_rpm, power, trusted_Hz):
+    def __init__(self, turns, lowest_rpm, highest_rpm, power, trusted_Hz, sweep_rpm_per_s):
         self.turns = turns  # of the pinion in a block: bins for each order
         self.order = np.arange(power.shape[1]) / turns
-        self.speed_rpm = speed_rpm  # mean of each block
+        self.lowest_rpm, self.highest_rpm = lowest_rpm, highest_rpm  # of each block
         self.power = power
         self.trusted_Hz = trusted_Hz
+        self.sweep_rpm_per_s = sweep_rpm_per_s
 
-    def line(self, order, above_Hz=0.0):
+    def passes(self, order, low_Hz, high_Hz):
+        """[block]: whether an order is in a band of frequencies at some time of the block."""
+        return (order * self.lowest_rpm / 60.0 < high_Hz) & (order * self.highest_rpm / 60.0 > low_Hz)
+
+    def line(self, order, above_Hz=0.0, left_out=False, on_slope=False):
         """Squared peak amplitude of a line and of the floor under it, one value for each block (N^2).
 
-        Only blocks where the line lies above `above_Hz` and is trusted. The line is the sum of 3 bins
+        Only blocks throughout which the line lies above `above_Hz` and is trusted: one that passes a resonance on its
+        way has an amplitude that changes so fast that it looks like sidebands. `left_out` [block]: others. The line is the sum of 3 bins
         divided by 1.5, as a Hann window spreads it; the floor is what a noise of the median strength of
-        the bins around puts there (median / ln 2 is the mean of its power; 3 bins / 1.5 = 2).
+        the bins around puts there (median / ln 2 is the mean of its power; 3 bins / 1.5 = 2). `on_slope` [block]: the
+        line stands on the slope of a wide peak, which falls exponentially; the geometric mean of the next bins to
+        either side, which the line does not reach, tells the floor as well.
         """
         middle = int(round(order * self.turns))
         beside = np.arange(FLOOR_NEAR, FLOOR_FAR + 1)
         around = np.r_[middle - beside, middle + beside]
         around = around[(around > 0) & (around < self.power.shape[1])]
-        frequency_Hz = order * self.speed_rpm / 60.0
-        power = self.power[(frequency_Hz > above_Hz) & (frequency_Hz < self.trusted_Hz)]
+        counts = (order * self.lowest_rpm / 60.0 > above_Hz) & (order * self.highest_rpm / 60.0 < self.trusted_Hz)
+        counts = counts & ~np.broadcast_to(left_out, counts.shape)
+        power = self.power[counts]
         line = power[:, middle - 1 : middle + 2].sum(axis=1) / 1.5
         floor = np.median(power[:, around], axis=1) / np.log(2.0) * 2.0
+        slope = 2.0 * np.sqrt(power[:, middle - 2] * power[:, middle + 2])
+        floor = np.where(np.broadcast_to(on_slope, len(self.power))[counts], np.maximum(floor, slope), floor)
         return line, floor
 
     def mean_amplitude_N(self, above_Hz=0.0):
@@ -264,8 +289,8 @@ class OrderBlocks:
 
         NaN where there is no such block.
         """
-        frequency_Hz = np.outer(self.speed_rpm / 60.0, self.order)
-        counts = (frequency_Hz >= above_Hz) & (frequency_Hz < self.trusted_Hz)
+        is_above = np.outer(self.lowest_rpm / 60.0, self.order) >= above_Hz
+        counts = is_above & (np.outer(self.highest_rpm / 60.0, self.order) < self.trusted_Hz)
         count = counts.sum(axis=0)
         mean = np.where(counts, self.power, 0.0).sum(axis=0) / np.maximum(count, 1)
         return np.where(count > 0, np.sqrt(mean), np.nan)
@@ -274,38 +299,55 @@ class OrderBlocks:
 def block_turns(pinion_teeth, wheel_teeth):
     """Pinion turns of a block: near BLOCK_TURNS, and such that the wheel makes whole turns as well.
 
-    Then the orders of both gears lie on bins. If that took too many turns, it is given up.
+    Then the orders of both gears lie on bins, LINE_BINS of them or more from each other where the wheel turns slowly. If
+    whole turns of the wheel took too many, they are given up.
     """
+    least = max(BLOCK_TURNS, math.ceil(LINE_BINS * wheel_teeth / pinion_teeth))
     hunting_turns = wheel_teeth // math.gcd(pinion_teeth, wheel_teeth)
-    if hunting_turns > 2 * BLOCK_TURNS:
-        return BLOCK_TURNS
-    return hunting_turns * max(1, round(BLOCK_TURNS / hunting_turns))
+    if hunting_turns > 2 * least:
+        return least
+    turns = hunting_turns * max(1, round(least / hunting_turns))
+    return turns if turns * pinion_teeth >= LINE_BINS * wheel_teeth else turns + hunting_turns
+
+
+def block_starts(run, turn, turns):
+    """Turns at which blocks begin, half a block apart: each lies in a stretch that is fast enough throughout."""
+    fast = run.speed_rpm >= BLOCK_MIN_SHARE_OF_SPEED * run.speed_rpm.max()
+    edges = np.flatnonzero(np.diff(np.concatenate([[False], fast, [False]]).astype(int)))
+    parts = [
+        np.arange(turn[first], turn[last - 1] - turns, turns / 2.0) for first, last in zip(edges[::2], edges[1::2])
+    ]
+    return np.concatenate(parts)
 
 
 def order_blocks(run, turns, highest_order):
     """Spectra of blocks of `turns` pinion turns, Hann, overlapping by half; None if the run has none."""
     lowest_rpm = BLOCK_MIN_SHARE_OF_SPEED * run.speed_rpm.max()
-    fast = np.flatnonzero(run.speed_rpm >= lowest_rpm)
     turn = run.angle_rad / (2.0 * np.pi)
-    starts = np.arange(turn[fast[0]], turn[fast[-1]] - turns, turns / 2.0)
+    starts = block_starts(run, turn, turns)
     if not len(starts):
         return None
+
     # At twice its rate a cubic spline through the signal is exact to 0.1 % up to the trusted frequency.
     force_N = signal.resample_poly(run.force_N - run.force_N.mean(), 2, 1)
     fine_turn = np.interp(np.arange(len(force_N)) / 2.0, np.arange(len(turn)), turn)
+
     # So many samples per turn that the slowest block holds the whole bandwidth: nothing is aliased.
     per_turn = max(2.2 * highest_order, 1.1 * run.rate_Hz * 60.0 / lowest_rpm)
     samples = turns * int(2 ** np.ceil(np.log2(per_turn)))
     at = np.arange(samples) * (turns / samples)
     weight = signal.get_window("hann", samples)
+
+    # Each block over even steps of the angle, and its spectrum up to the highest order.
     bins = int(highest_order * turns) + 1
-    power, speed_rpm = np.empty((len(starts), bins), dtype=np.float32), np.empty(len(starts))
+    power, ends_rpm = np.empty((len(starts), bins), dtype=np.float32), np.empty((2, len(starts)))
     for i, start in enumerate(starts):
         first, last = np.searchsorted(fine_turn, (start, start + turns))
         part = slice(max(0, first - 16), last + 16)
-        spline = interpolate.CubicSpline(fine_turn[part], force_N[part])
+        growing = np.flatnonzero(np.diff(fine_turn[part], prepend=-np.inf) > 0)  # it may stand still beside the block
+        spline = interpolate.CubicSpline(fine_turn[part][growing], force_N[part][growing])
         spectrum = np.fft.rfft(spline(start + at) * weight)[:bins]
         power[i] = np.abs(2.0 * spectrum / weight.sum()) ** 2
         first, last = np.searchsorted(turn, (start, start + turns))
-        speed_rpm[i] = run.speed_rpm[first:last].mean()
-    return OrderBlocks(turns, speed_rpm, power, run.trusted_Hz)
+        ends_rpm[:, i] = run.speed_rpm[first:last].min(), run.speed_rpm[first:last].max()
+    return OrderBlocks(turns, *ends_rpm, power, run.trusted_Hz, run.sweep_rpm_per_s())

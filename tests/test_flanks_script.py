@@ -1,4 +1,4 @@
-#!/usr/bin/python3
+#!/usr/bin/env python3
 # SPDX-FileCopyrightText: The gearmesh authors
 # SPDX-License-Identifier: BSD-3-Clause
 """scripts/flanks and what it reads with, from constructed flanks whose numbers are known."""
@@ -10,13 +10,17 @@ import sys
 import tempfile
 import unittest
 
-import numpy as np
-
 sys.dont_write_bytecode = True
 ROOT = os.path.join(os.path.dirname(os.path.abspath(__file__)), os.pardir)
 SCRIPTS = os.path.join(ROOT, "scripts")
 PAPER = os.path.join(ROOT, "data", "paper")
 sys.path.insert(0, SCRIPTS)
+import program  # noqa: E402
+
+program.require("numpy")
+
+import numpy as np  # noqa: E402
+
 import flankfile  # noqa: E402
 
 HEADER = "tooth,flank,t1,t2,deviation_um\n"
@@ -53,7 +57,7 @@ class Folder(unittest.TestCase):
 
     def flanks(self, *arguments):
         return subprocess.run(
-            [os.path.join(SCRIPTS, "flanks"), *arguments],
+            [sys.executable, os.path.join(SCRIPTS, "flanks"), *arguments],
             cwd=self.folder,
             env={**os.environ, "PYTHONDONTWRITEBYTECODE": "1"},
             capture_output=True,
@@ -349,7 +353,7 @@ class Pictures(Drawn):
         self.write("#!/bin/sh\necho no >&2\nexit 1\n", "gnuplot")
         os.chmod(self.path("gnuplot"), 0o755)
         result = subprocess.run(
-            [os.path.join(SCRIPTS, "flanks"), "gear.csv"], cwd=self.folder, capture_output=True, text=True,
+            [sys.executable, os.path.join(SCRIPTS, "flanks"), "gear.csv"], cwd=self.folder, capture_output=True, text=True,
             env={**os.environ, "PATH": self.folder + ":" + os.environ["PATH"], "PYTHONDONTWRITEBYTECODE": "1"})
         self.assertEqual(result.returncode, 1)
         self.assertIn("flanks: gnuplot flanks_", result.stderr)

@@ -1,4 +1,4 @@
-#!/usr/bin/python3
+#!/usr/bin/env python3
 # SPDX-FileCopyrightText: The gearmesh authors
 # SPDX-License-Identifier: BSD-3-Clause
 """
@@ -14,10 +14,15 @@ import sys
 import time
 import unittest
 
-import h5py
-
 sys.dont_write_bytecode = True
-sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
+HERE = os.path.dirname(os.path.abspath(__file__))
+sys.path[:0] = [HERE, os.path.join(HERE, os.pardir, "scripts")]
+import program  # noqa: E402
+
+program.require("h5py")
+
+import h5py  # noqa: E402
+
 import test_gearsim_runs as runs  # noqa: E402
 
 BLOCK_ROWS = 4096

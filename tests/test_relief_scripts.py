@@ -1,4 +1,4 @@
-#!/usr/bin/python3
+#!/usr/bin/env python3
 # SPDX-FileCopyrightText: The gearmesh authors
 # SPDX-License-Identifier: BSD-3-Clause
 """
@@ -23,8 +23,6 @@ import time
 import unittest
 from unittest import mock
 
-import numpy as np
-
 sys.dont_write_bytecode = True
 ROOT = os.path.join(os.path.dirname(os.path.abspath(__file__)), os.pardir)
 SCRIPTS = os.path.join(ROOT, "scripts")
@@ -32,6 +30,12 @@ SPUR = os.path.join(ROOT, "data", "relief", "params.ini")
 HELICAL = os.path.join(ROOT, "data", "paper", "fig13.ini")
 REAL_FLANKS = os.path.join(ROOT, "data", "paper", "fig15.ini")
 sys.path.insert(0, SCRIPTS)
+import program  # noqa: E402
+
+program.require("numpy", "scipy")
+
+import numpy as np  # noqa: E402
+
 import loaded_te  # noqa: E402
 
 GEARSIM = None
@@ -93,7 +97,7 @@ class Case(unittest.TestCase):
         given = mock.patch.object(sys, "argv", argv)
         with given, contextlib.redirect_stdout(stdout), contextlib.redirect_stderr(stderr):
             try:
-                status = loaded_te.run_script(script, module.work, module.arguments)
+                status = program.run(module.work, module.arguments)
             except SystemExit as end:
                 status = end.code
             finally:
@@ -102,7 +106,7 @@ class Case(unittest.TestCase):
 
     def run_program(self, script, *arguments):
         return subprocess.run(
-            [os.path.join(SCRIPTS, script), *arguments, "--gearsim", GEARSIM],
+            [sys.executable, os.path.join(SCRIPTS, script), *arguments, "--gearsim", GEARSIM],
             cwd=self.folder,
             env={**os.environ, "PYTHONDONTWRITEBYTECODE": "1"},
             capture_output=True,
@@ -150,7 +154,7 @@ class Case(unittest.TestCase):
         counted = self.write("counted", f'#!/bin/sh\necho >>"{self.folder}/count"\nexec "{GEARSIM}" "$@"\n')
         os.chmod(counted, 0o755)
         process = subprocess.Popen(
-            [os.path.join(SCRIPTS, script), *arguments, "--gearsim", counted],
+            [sys.executable, os.path.join(SCRIPTS, script), *arguments, "--gearsim", counted],
             cwd=self.folder, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, start_new_session=True,
             preexec_fn=heed_interrupts,
         )

@@ -1,0 +1,140 @@
+# SPDX-FileCopyrightText: The gearmesh authors
+# SPDX-License-Identifier: BSD-3-Clause
+"""What every script does around its work: Python packages, messages, names of what it writes, exit status.
+
+This module is imported before numpy, so it needs nothing but Python itself.
+"""
+import importlib.util
+import os
+import re
+import shutil
+import subprocess
+import sys
+
+DEBIAN_PACKAGES = {"numpy": "python3-numpy", "scipy": "python3-scipy", "h5py": "python3-h5py"}
+HANDED_ON = "GEARMESH_HANDED_ON"  # set for a Python that a script was handed on to, not for what it starts
+WAS_HANDED_ON = os.environ.pop(HANDED_ON, None) is not None
+
+
+class InputError(Exception):
+    """What the user asked for cannot be done; the text says why. Exit status 2."""
+
+
+class RunFailed(Exception):
+    """A program that the script calls has failed; the text says why. Exit status 1."""
+
+
+# ----------------------------------------------------------------------------------------------------
+# Python packages
+# ----------------------------------------------------------------------------------------------------
+
+
+def require(*packages):
+    """Go on in a Python that has these packages, or end with a message that names what is missing.
+
+    `python3` may be an environment without numpy in front of a Python of the system that has it. The script is then
+    started again with the first python3 of the search path that has all packages.
+    """
+    missing = [package for package in packages if importlib.util.find_spec(package) is None]
+    if not missing:
+        return
+    if not WAS_HANDED_ON:
+        for python in _other_pythons():
+            if _has(python, packages):
+                os.execve(python, [python, *sys.orig_argv[1:]], {**os.environ, HANDED_ON: "1"})
+    names = ", ".join(f"{package} (Debian: {DEBIAN_PACKAGES[package]})" for package in missing)
+    print(f"{name()}: needs Python with {names}, which {sys.executable} does not have", file=sys.stderr)
+    sys.exit(2)
+
+
+def _other_pythons():
+    """Each python3 of the search path and that of the system, but not the one that runs."""
+    folders = [*os.environ.get("PATH", "").split(os.pathsep), *os.defpath.split(os.pathsep)]
+    found = [shutil.which("python3", path=folder) for folder in folders if os.path.isabs(folder)]
+    return [python for python in dict.fromkeys(found) if python and not os.path.samefile(python, sys.executable)]
+
+
+def _has(python, packages):
+    """Whether a Python, the same version or another, finds all packages."""
+    code = f"import importlib.util, sys; sys.exit(any(importlib.util.find_spec(name) is None for name in {packages!r}))"
+    command = [python, "-c", code]
+    result = subprocess.run(command, stdin=subprocess.DEVNULL, capture_output=True, check=False)
+    return result.returncode == 0
+
+
+# ----------------------------------------------------------------------------------------------------
+# Messages
+# ----------------------------------------------------------------------------------------------------
+
+
+def name():
+    """What the script was called as: `campbell`, or `gearmesh-campbell` where it is installed."""
+    return os.path.basename(sys.argv[0])
+
+
+def warn(text):
+    print(f"{name()}: warning: {text}", file=sys.stderr)
+
+
+def progress(text):
+    """A line that the next one replaces, on a terminal only."""
+    if sys.stderr.isatty():
+        print(f"\r\033[K{text}", end="", file=sys.stderr, flush=True)
+
+
+def run(work, parse):
+    """main() of a script: parse the command line, work, say errors as messages, return the exit status."""
+    # A name or a unit that the terminal cannot show must not end the script.
+    for stream in (sys.stdout, sys.stderr):
+        if hasattr(stream, "reconfigure"):
+            stream.reconfigure(errors="backslashreplace")
+
+    try:
+        status = work(parse()) or 0
+        sys.stdout.flush()
+        return status
+    except InputError as error:
+        status, text = 2, error
+    except BrokenPipeError:  # nobody reads what is printed; not to be told again at the end of Python
+        os.dup2(os.open(os.devnull, os.O_WRONLY), 1)
+        return 1
+    except (RunFailed, OSError) as error:
+        status, text = 1, error
+    except MemoryError:
+        status, text = 1, "out of memory"
+    except KeyboardInterrupt:
+        status, text = 130, "interrupted"
+    progress("")
+    print(f"{name()}: {text}", file=sys.stderr)
+    return status
+
+
+def first_line_of(error):
+    """The first line of an error's text, as libraries tell of a mishap in several."""
+    lines = str(error).strip().splitlines()
+    return lines[0] if lines else type(error).__name__
+
+
+# ----------------------------------------------------------------------------------------------------
+# Names
+# ----------------------------------------------------------------------------------------------------
+
+
+def stem_of(output, source):
+    """Beginning of the names to write: as asked for, or the name of the input without its suffix, here."""
+    stem = output or os.path.splitext(os.path.basename(source))[0]
+    folder = os.path.dirname(stem)
+    if folder and not os.path.isdir(folder):
+        raise InputError(f"{folder}: there is no such folder (--output)")
+    return stem
+
+
+def title_of(title, source):
+    """Headline of the pictures: as asked for, or the name of the input without its suffix."""
+    return title or os.path.splitext(os.path.basename(source))[0]
+
+
+def shown(text):
+    """A text as one line that any program can show: without control characters and broken characters."""
+    text = text.encode("utf-8", errors="surrogateescape").decode("utf-8", errors="replace")
+    return re.sub(r"[\x00-\x1f\x7f-\x9f\u2028\u2029]+", " ", text)
