@@ -63,7 +63,7 @@ static int loader_init(loader *load, int teeth, gm_io_error *error) {
 /* Frees all that was not handed on. */
 static void loader_free(loader *load) {
     gmi_rows_free(&load->rows);
-    for (int slot = 0; load->values != NULL && slot < load->slots; slot++) {
+    for (int slot = 0; load->values != NULL && slot < load->slots; ++slot) {
         free(load->values[slot]);
     }
     free(load->values);
@@ -116,8 +116,9 @@ static int read_rows(loader *load, gmi_table *table) {
         if (!gmi_rows_append(&load->rows, &row)) {
             return gmi_error_memory(load->error);
         }
-        load->row_count[row.slot]++;
+        ++load->row_count[row.slot];
     }
+
     if (more == 0 && load->rows.first == NULL) {
         return gmi_error_set(
             load->error, GM_IO_ERR_FORMAT, table->line,
@@ -139,17 +140,19 @@ static int read_file(loader *load, const char *path) {
 /* Hands the tables over in the order of their slots, whatever the order in the file was. */
 static int make_deviations(loader *load, gm_deviations *deviations) {
     int count = 0;
-    for (int slot = 0; slot < load->slots; slot++) {
+    for (int slot = 0; slot < load->slots; ++slot) {
         count += load->values[slot] != NULL ? 1 : 0;
     }
     deviations->sets = malloc((size_t)count * sizeof *deviations->sets);
     if (deviations->sets == NULL) {
         return gmi_error_memory(load->error);
     }
+
     deviations->teeth = load->teeth;
     deviations->face_nodes = load->grid.nodes[GMI_FACE];
     deviations->profile_nodes = load->grid.nodes[GMI_PROFILE];
-    for (int slot = 0; slot < load->slots; slot++) {
+
+    for (int slot = 0; slot < load->slots; ++slot) {
         if (load->values[slot] != NULL) {
             gm_deviation_set *set = &deviations->sets[deviations->set_count++];
             set->tooth = gmi_slot_tooth(slot);
@@ -185,6 +188,7 @@ int gm_deviations_read(gm_deviations *deviations, const char *path, int teeth, g
     if (status != GM_IO_OK) {
         return status;
     }
+
     loader load;
     status = loader_init(&load, teeth, error);
     if (status == GM_IO_OK) {
@@ -198,7 +202,7 @@ void gm_deviations_free(gm_deviations *deviations) {
     if (deviations == NULL) {
         return;
     }
-    for (int i = 0; deviations->sets != NULL && i < deviations->set_count; i++) {
+    for (int i = 0; deviations->sets != NULL && i < deviations->set_count; ++i) {
         free(deviations->sets[i].values);
     }
     free(deviations->sets);
@@ -241,7 +245,7 @@ static int check_set(const gm_deviations *deviations, int index, gm_io_error *er
                              index, deviations->teeth - 1, set->tooth, set->side,
                              set->values ? "" : " without values");
     }
-    for (size_t node = 0; node < node_count(deviations); node++) {
+    for (size_t node = 0; node < node_count(deviations); ++node) {
         if (!isfinite(set->values[node])) {
             return gmi_error_set(
                 error, GM_IO_ERR_OPTION, 0,
@@ -279,12 +283,14 @@ int gmi_deviations_index(const gm_deviations *deviations, int **set_of_slot, gm_
     if (index == NULL) {
         return gmi_error_memory(error);
     }
-    for (int slot = 0; slot < slots; slot++) {
+
+    for (int slot = 0; slot < slots; ++slot) {
         index[slot] = -1;
     }
-    for (int i = 0; i < deviations->set_count && status == GM_IO_OK; i++) {
+    for (int i = 0; i < deviations->set_count && status == GM_IO_OK; ++i) {
         status = index_set(deviations, i, index, error);
     }
+
     if (status != GM_IO_OK) {
         free(index);
         return status;
@@ -300,7 +306,8 @@ int gm_deviations_ideal_teeth(const gm_deviations *deviations, int side) {
     }
     unsigned char covered[GMI_LARGEST_TEETH / 8 + 1] = {0}; /* one bit per tooth */
     int ideal = deviations->teeth;
-    for (int i = 0; i < deviations->set_count; i++) {
+
+    for (int i = 0; i < deviations->set_count; ++i) {
         const gm_deviation_set *set = &deviations->sets[i];
         const int serves_side = set->side == side || set->side == GMI_ALL;
         if (!serves_side || set->tooth < GMI_ALL || set->tooth >= deviations->teeth) {
@@ -309,10 +316,12 @@ int gm_deviations_ideal_teeth(const gm_deviations *deviations, int side) {
         if (set->tooth == GMI_ALL) {
             return 0;
         }
+
+        /* A tooth with two sets counts once. */
         const unsigned bit = 1U << (set->tooth % 8);
         if ((covered[set->tooth / 8] & bit) == 0) {
             covered[set->tooth / 8] = (unsigned char)(covered[set->tooth / 8] | bit);
-            ideal--;
+            --ideal;
         }
     }
     return ideal;

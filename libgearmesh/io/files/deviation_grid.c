@@ -63,7 +63,7 @@ static void count_positions(positions *seen, const gmi_rows *rows, int slot, int
 static size_t next_cluster(const size_t *histogram, int *bucket) {
     int b = *bucket;
     while (b < BUCKETS && histogram[b] == 0) {
-        b++;
+        ++b;
     }
     size_t rows = 0;
     /* Rounding both ways may leave the middle bucket of a cluster empty. */
@@ -187,7 +187,7 @@ static int fail_position(const gmi_grid *grid, const gmi_row *row, int axis, gm_
 /* Index of the node that a row is for. */
 static int find_node(const gmi_grid *grid, const gmi_row *row, size_t *node, gm_io_error *error) {
     int k[2];
-    for (int axis = GMI_FACE; axis <= GMI_PROFILE; axis++) {
+    for (int axis = GMI_FACE; axis <= GMI_PROFILE; ++axis) {
         const double position = row->position[axis];
         k[axis] = nearest_line(grid, axis, position);
         if (fabs(position - line_position(grid, axis, k[axis])) > GMI_POSITION_TOLERANCE) {
@@ -238,6 +238,8 @@ static int explain_set(const gmi_grid *grid, const gmi_rows *rows, size_t row_co
     int status = GM_IO_OK;
     const gmi_row *first_row = NULL;
     gmi_rows_place place;
+
+    /* A row off the grid or a second one for a node comes first, ... */
     for (const gmi_row *row = gmi_rows_first(&place, rows); row && status == GM_IO_OK;
          row = gmi_rows_next(&place)) {
         if (row->slot != slot) {
@@ -250,11 +252,14 @@ static int explain_set(const gmi_grid *grid, const gmi_rows *rows, size_t row_co
             status = fail_repeated(row, error);
         }
     }
-    for (size_t node = 0; status == GM_IO_OK && node < gmi_grid_size(grid); node++) {
+
+    /* ... else a node has none. */
+    for (size_t node = 0; status == GM_IO_OK && node < gmi_grid_size(grid); ++node) {
         if (!seen[node]) {
             status = fail_missing(grid, first_row, row_count, node, error);
         }
     }
+
     free(seen);
     return status;
 }
@@ -266,7 +271,7 @@ static int explain_set(const gmi_grid *grid, const gmi_rows *rows, size_t row_co
 /* Allocates a table with every node marked as not given yet; values in a file are never NaN. */
 static double *new_table(size_t nodes) {
     double *table = malloc(nodes * sizeof *table);
-    for (size_t node = 0; table != NULL && node < nodes; node++) {
+    for (size_t node = 0; table != NULL && node < nodes; ++node) {
         table[node] = (double)NAN;
     }
     return table;
@@ -278,7 +283,7 @@ static double *new_table(size_t nodes) {
  */
 static int check_row_counts(const gmi_grid *grid, const gmi_rows *rows, const size_t *row_count,
                             int slots, gm_io_error *error) {
-    for (int slot = 0; slot < slots; slot++) {
+    for (int slot = 0; slot < slots; ++slot) {
         if (row_count[slot] != 0 && row_count[slot] != gmi_grid_size(grid)) {
             return explain_set(grid, rows, row_count[slot], slot, error);
         }
@@ -302,7 +307,7 @@ static int place_row(const gmi_grid *grid, const gmi_row *row, double *table, gm
 int gmi_grid_fill(const gmi_grid *grid, const gmi_rows *rows, const size_t *row_count,
                   double **values, int slots, gm_io_error *error) {
     int status = check_row_counts(grid, rows, row_count, slots, error);
-    for (int slot = 0; status == GM_IO_OK && slot < slots; slot++) {
+    for (int slot = 0; status == GM_IO_OK && slot < slots; ++slot) {
         if (row_count[slot] != 0) {
             values[slot] = new_table(gmi_grid_size(grid));
             status = values[slot] != NULL ? GM_IO_OK : gmi_error_memory(error);

@@ -66,7 +66,7 @@ const char *gmi_quote(char quoted[GMI_QUOTE_SIZE], const char *text) {
 
     size_t end = 0;
     quoted[end++] = '\'';
-    for (size_t i = 0; i < shown; i++) {
+    for (size_t i = 0; i < shown; ++i) {
         /* Anything that could disturb a terminal or a log is shown as a question mark. */
         const int printable = text[i] >= ' ' && text[i] <= '~';
         quoted[end++] = printable ? text[i] : '?';

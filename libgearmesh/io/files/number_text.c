@@ -35,7 +35,7 @@ static const char *read_sign(const char *text, int *negative) {
 }
 
 static const char *read_digits(const char *text, decimal *number, int *seen) {
-    for (; is_digit(*text); text++) {
+    for (; is_digit(*text); ++text) {
         if (number->count > 0 || *text != '0') {
             number->digits[1 + number->count++] = *text;
         }
@@ -54,8 +54,9 @@ static const char *read_exponent(const char *text, decimal *number) {
     if (!is_digit(*text)) {
         return NULL;
     }
+
     int exponent = 0;
-    for (; is_digit(*text); text++) {
+    for (; is_digit(*text); ++text) {
         if (exponent < largest_exponent) {
             exponent = 10 * exponent + (*text - '0');
         }
@@ -101,7 +102,7 @@ static double short_value(const decimal *number, int exponent) {
         1e0,  1e1,  1e2,  1e3,  1e4,  1e5,  1e6,  1e7,  1e8,  1e9,  1e10, 1e11,
         1e12, 1e13, 1e14, 1e15, 1e16, 1e17, 1e18, 1e19, 1e20, 1e21, 1e22};
     double whole = 0.0;
-    for (int i = 1; i <= number->count; i++) {
+    for (int i = 1; i <= number->count; ++i) {
         whole = 10.0 * whole + (number->digits[i] - '0');
     }
     const double value = whole / powers_of_ten[-exponent];
@@ -132,7 +133,7 @@ int gmi_number_parse(const char *text, int exponent, double *value) {
 
 /* Prints in exponent notation with the fewest digits from 15 on that read back as the same double. */
 static void print_shortest(char text[GMI_NUMBER_SIZE], double value) {
-    for (int digits = 15; digits <= 17; digits++) {
+    for (int digits = 15; digits <= 17; ++digits) {
         snprintf(text, GMI_NUMBER_SIZE, "%.*e", digits - 1, value);
         if (strtod(text, NULL) == value) { /* both in the same locale */
             return;
@@ -152,13 +153,13 @@ typedef struct printed {
 static void split_exponent_notation(const char *text, printed *number) {
     number->negative = *text == '-';
     number->count = 0;
-    for (; *text != 'e'; text++) {
+    for (; *text != 'e'; ++text) {
         if (is_digit(*text) && number->count < 17) {
             number->digits[number->count++] = *text;
         }
     }
     while (number->count > 1 && number->digits[number->count - 1] == '0') {
-        number->count--;
+        --number->count;
     }
     number->digits[number->count] = '\0';
     number->exponent = atoi(text + 1);

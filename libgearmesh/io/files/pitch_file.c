@@ -71,8 +71,9 @@ static int read_rows(gmi_table *table, int teeth, entry *entries) {
         if (status != GM_IO_OK) {
             return status;
         }
-        rows++;
+        ++rows;
     }
+
     if (more == 0 && rows == 0) {
         return gmi_error_set(table->error, GM_IO_ERR_FORMAT, table->line,
                              "there must be at least one row below the header (got none)");
@@ -106,7 +107,7 @@ int gmi_pitch_allocate(gm_pitch *pitch, int teeth, gm_io_error *error) {
 
 /* The most special row that serves a flank gives its deviation. */
 static void resolve_flank(const entry *entries, int tooth, int side, double *deviation, int *set) {
-    for (int k = 0; k < GMI_CANDIDATES; k++) {
+    for (int k = 0; k < GMI_CANDIDATES; ++k) {
         const entry *candidate = &entries[gmi_slot_candidate(tooth, side, k)];
         if (candidate->line != 0) {
             *deviation = candidate->deviation;
@@ -121,7 +122,7 @@ static int make_pitch(gm_pitch *pitch, int teeth, const entry *entries, gm_io_er
     if (status != GM_IO_OK) {
         return status;
     }
-    for (int tooth = 0; tooth < teeth; tooth++) {
+    for (int tooth = 0; tooth < teeth; ++tooth) {
         resolve_flank(entries, tooth, GM_DRIVE, &pitch->drive[tooth], &pitch->drive_set[tooth]);
         resolve_flank(entries, tooth, GM_COAST, &pitch->coast[tooth], &pitch->coast_set[tooth]);
     }
@@ -140,6 +141,8 @@ int gm_pitch_read(gm_pitch *pitch, const char *path, int teeth, gm_io_error *err
     if (status != GM_IO_OK) {
         return status;
     }
+
+    /* Rows may come in any order: they are kept by slot until the last one is read. */
     entry *entries = calloc((size_t)gmi_slot_count(teeth), sizeof *entries);
     if (entries == NULL) {
         return gmi_error_memory(error);
@@ -169,7 +172,7 @@ int gm_pitch_ideal_teeth(const gm_pitch *pitch, int side) {
     }
     const int *set = side == GM_DRIVE ? pitch->drive_set : pitch->coast_set;
     int ideal = 0;
-    for (int tooth = 0; tooth < pitch->teeth; tooth++) {
+    for (int tooth = 0; tooth < pitch->teeth; ++tooth) {
         ideal += set[tooth] == 0 ? 1 : 0;
     }
     return ideal;
@@ -188,7 +191,7 @@ int gmi_pitch_check(const gm_pitch *pitch, gm_io_error *error) {
         return gmi_error_set(error, GM_IO_ERR_NULL, 0,
                              "pitch deviations: no array must be NULL (got one that is)");
     }
-    for (int tooth = 0; tooth < pitch->teeth; tooth++) {
+    for (int tooth = 0; tooth < pitch->teeth; ++tooth) {
         if (!isfinite(pitch->drive[tooth]) || !isfinite(pitch->coast[tooth])) {
             return gmi_error_set(
                 error, GM_IO_ERR_OPTION, 0,

@@ -23,7 +23,7 @@ static int is_blank(char c) {
 
 static char *skip_blanks(char *text) {
     while (is_blank(*text)) {
-        text++;
+        ++text;
     }
     return text;
 }
@@ -70,15 +70,17 @@ static int read_line(gmi_table *table) {
     if (first == EOF) {
         return ferror(table->file) ? gmi_error_file(table->error, 0, "read", errno) : 0;
     }
-    table->line++;
+    ++table->line;
 
     size_t length = 0;
     const int status = read_characters(table, first, &length);
     if (status != 0) {
         return status;
     }
+
+    /* The end of the line goes; a carriage return elsewhere is that of an old Macintosh, or of damage. */
     if (length > 0 && table->text[length - 1] == '\r') {
-        length--;
+        --length;
     }
     table->text[length] = '\0';
     if (strchr(table->text, '\r') != NULL) {
@@ -113,7 +115,7 @@ static char *trim(char *field) {
     field = skip_blanks(field);
     size_t length = strlen(field);
     while (length > 0 && is_blank(field[length - 1])) {
-        length--;
+        --length;
     }
     field[length] = '\0';
     return field;
@@ -122,7 +124,7 @@ static char *trim(char *field) {
 /* Cuts the line at its commas and returns the number of fields, also where they are too many. */
 static int split_fields(gmi_table *table) {
     int count = 0;
-    for (char *field = table->text; field != NULL; count++) {
+    for (char *field = table->text; field != NULL; ++count) {
         char *comma = strchr(field, ',');
         if (comma != NULL) {
             *comma = '\0';
@@ -139,7 +141,7 @@ static int split_fields(gmi_table *table) {
 static const char *columns_text(const gmi_table *table, const char *const *columns,
                                 char text[GMI_LINE_LENGTH]) {
     text[0] = '\0';
-    for (int i = 0; i < table->column_count; i++) {
+    for (int i = 0; i < table->column_count; ++i) {
         strcat(text, i > 0 ? "," : "");
         strcat(text, columns[i]);
     }
@@ -149,7 +151,7 @@ static const char *columns_text(const gmi_table *table, const char *const *colum
 /* Every header that would be right; they are few and short. */
 static const char *header_text(const gmi_table *table, char text[GMI_LINE_LENGTH]) {
     text[0] = '\0';
-    for (int i = 0; i < table->header_count; i++) {
+    for (int i = 0; i < table->header_count; ++i) {
         char header[GMI_LINE_LENGTH];
         strcat(text, i > 0 ? " or " : "");
         strcat(text, columns_text(table, table->headers[i], header));
@@ -219,8 +221,8 @@ static int lacks_unit(const char *field, const char *column) {
 
 /* The column that a field of the header should have been, were it not for the unit; or NULL. */
 static const char *column_with_unit(const gmi_table *table, const char *field) {
-    for (int i = 0; i < table->header_count; i++) {
-        for (int k = 0; k < table->column_count; k++) {
+    for (int i = 0; i < table->header_count; ++i) {
+        for (int k = 0; k < table->column_count; ++k) {
             if (lacks_unit(field, table->headers[i][k])) {
                 return table->headers[i][k];
             }
@@ -232,7 +234,7 @@ static const char *column_with_unit(const gmi_table *table, const char *field) {
 /* Names the first field whose unit is missing or another one; empty if there is none. */
 static const char *unit_hint(const gmi_table *table, int count, char text[GMI_LINE_LENGTH]) {
     text[0] = '\0';
-    for (int i = 0; i < count && i < table->column_count; i++) {
+    for (int i = 0; i < count && i < table->column_count; ++i) {
         const char *column = column_with_unit(table, table->fields[i]);
         if (column != NULL) {
             char quoted[GMI_QUOTE_SIZE];
@@ -262,7 +264,7 @@ static int fail_header(const gmi_table *table, const char *line, int count) {
 }
 
 static int has_columns(const gmi_table *table, const char *const *columns) {
-    for (int i = 0; i < table->column_count; i++) {
+    for (int i = 0; i < table->column_count; ++i) {
         if (strcmp(table->fields[i], columns[i]) != 0) {
             return 0;
         }
@@ -286,7 +288,7 @@ static int read_header(gmi_table *table, int *which) {
     strcpy(line, skip_blanks(table->text));
 
     const int count = split_fields(table);
-    for (int i = 0; count == table->column_count && i < table->header_count; i++) {
+    for (int i = 0; count == table->column_count && i < table->header_count; ++i) {
         if (has_columns(table, table->headers[i])) {
             table->columns = table->headers[i];
             *which = i;
@@ -340,7 +342,7 @@ static int parse_whole_number(const char *text, int *value) {
         return 0;
     }
     *value = 0;
-    for (; *text >= '0' && *text <= '9'; text++) {
+    for (; *text >= '0' && *text <= '9'; ++text) {
         const int digit = *text - '0';
         *value = *value > (INT_MAX - digit) / 10 ? INT_MAX : 10 * *value + digit;
     }
@@ -378,7 +380,7 @@ int gmi_table_whole(const gmi_table *table, int column, int *value) {
 int gmi_table_word(const gmi_table *table, int column, const char *const *words, int word_count,
                    int *which) {
     char right[GMI_LINE_LENGTH] = "";
-    for (int i = 0; i < word_count; i++) {
+    for (int i = 0; i < word_count; ++i) {
         if (strcmp(table->fields[column], words[i]) == 0) {
             *which = i;
             return GM_IO_OK;
@@ -393,7 +395,7 @@ int gmi_table_word(const gmi_table *table, int column, const char *const *words,
 
 int gmi_table_flank(const gmi_table *table, int column, int *side) {
     const char *field = table->fields[column];
-    for (int candidate = GMI_ALL; candidate <= GM_COAST; candidate++) {
+    for (int candidate = GMI_ALL; candidate <= GM_COAST; ++candidate) {
         if (strcmp(field, gmi_side_name(candidate)) == 0) {
             *side = candidate;
             return GM_IO_OK;

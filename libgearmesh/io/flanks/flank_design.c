@@ -52,12 +52,16 @@ int gmi_design_make(gmi_design *design, const gm_modifications *modifications,
     if (modifications == NULL || modifications->count == 0) {
         return GM_IO_OK;
     }
+
+    /* The grid of a file is kept, and refined. */
     const int has_file = deviations != NULL && deviations->set_count > 0;
     design->file_nodes[0] = has_file ? deviations->face_nodes : 2;
     design->file_nodes[1] = has_file ? deviations->profile_nodes : 2;
     if (gm_modifications_check(modifications, NULL, NULL, NULL) != GM_OK) {
         return fail_modification(modifications, error);
     }
+
+    /* Ramps hold what is linear exactly; the table takes the rest. */
     gm_modification list[GM_MODIFICATIONS_MAX];
     gm_modifications rest = *modifications; /* what ramps leave for the table */
     rest.list = list;
@@ -85,7 +89,7 @@ static place place_of(int k, int fine_nodes, int coarse_nodes) {
     const int lines_per_cell = (fine_nodes - 1) / (coarse_nodes - 1);
     place found = {k / lines_per_cell, (double)(k % lines_per_cell) / lines_per_cell};
     if (found.cell == coarse_nodes - 1) { /* the last line ends the last cell */
-        found.cell--;
+        --found.cell;
         found.share = 1.0;
     }
     return found;
@@ -101,10 +105,11 @@ void gmi_design_table(const gmi_design *design, const double *deviation, double 
         return;
     }
     const int coarse_profile = design->file_nodes[1];
-    for (int face = 0; face < design->nodes[0]; face++) {
+
+    for (int face = 0; face < design->nodes[0]; ++face) {
         const place t1 = place_of(face, design->nodes[0], design->file_nodes[0]);
         const double *line = deviation + (size_t)t1.cell * (size_t)coarse_profile;
-        for (int profile = 0; profile < design->nodes[1]; profile++) {
+        for (int profile = 0; profile < design->nodes[1]; ++profile) {
             const place t2 = place_of(profile, design->nodes[1], coarse_profile);
             const double *low = line + t2.cell;
             const double *high = low + coarse_profile;

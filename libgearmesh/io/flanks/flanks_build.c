@@ -87,7 +87,7 @@ static int count_tables(const builder *build, int teeth, int side) {
         return tables;
     }
     tables = tables || shared_set(build, side) >= 0;
-    for (int tooth = 0; tooth < teeth; tooth++) {
+    for (int tooth = 0; tooth < teeth; ++tooth) {
         tables += own_set(build, tooth, side) >= 0 ? 1 : 0;
     }
     return tables;
@@ -111,10 +111,10 @@ static double window_weight(const gm_flanks_options *options, double t2) {
 static void fill_nodes(const builder *build, const double *values) {
     const int face_nodes = build->deviations->face_nodes;
     const int profile_nodes = build->deviations->profile_nodes;
-    for (int profile = 0; profile < profile_nodes; profile++) {
+    for (int profile = 0; profile < profile_nodes; ++profile) {
         const double t2 = (double)profile / (profile_nodes - 1);
         const double factor = build->options->scale * window_weight(build->options, t2);
-        for (int face = 0; face < face_nodes; face++) {
+        for (int face = 0; face < face_nodes; ++face) {
             const size_t node = (size_t)face * (size_t)profile_nodes + (size_t)profile;
             build->nodes[node] = factor * values[node];
         }
@@ -167,7 +167,7 @@ static int set_side(const builder *build, int side) {
     if (status == GM_IO_OK && (shared >= 0 || has_design_table(build, side))) {
         status = set_table(build, side, GM_ALL_TEETH, shared);
     }
-    for (int tooth = 0; has_sets && status == GM_IO_OK && tooth < build->flanks->teeth; tooth++) {
+    for (int tooth = 0; has_sets && status == GM_IO_OK && tooth < build->flanks->teeth; ++tooth) {
         const int own = own_set(build, tooth, side);
         if (own >= 0) {
             status = set_table(build, side, tooth, own);
@@ -177,7 +177,7 @@ static int set_side(const builder *build, int side) {
 }
 
 static int set_pitch(const builder *build, int side, const double *deviation, const int *set) {
-    for (int tooth = 0; tooth < build->flanks->teeth; tooth++) {
+    for (int tooth = 0; tooth < build->flanks->teeth; ++tooth) {
         if (!set[tooth]) {
             continue;
         }
@@ -234,6 +234,7 @@ static int make_ideal(const builder *build, int teeth, void **memory) {
     if (*memory == NULL) {
         return gmi_error_memory(build->error);
     }
+
     const int status = gm_flanks_init(build->flanks, &params, *memory, size);
     return status == GM_OK
                ? GM_IO_OK
@@ -274,12 +275,14 @@ static int fill_flanks(builder *build, const gm_pitch *pitch) {
     if (status == GM_IO_OK) {
         status = set_side(build, GM_COAST);
     }
+
     if (status == GM_IO_OK && pitch != NULL) {
         status = set_pitch(build, GM_DRIVE, pitch->drive, pitch->drive_set);
     }
     if (status == GM_IO_OK && pitch != NULL) {
         status = set_pitch(build, GM_COAST, pitch->coast, pitch->coast_set);
     }
+
     free(build->nodes);
     free(build->table);
     build->nodes = build->table = NULL;
@@ -344,7 +347,9 @@ static int build_flanks(builder *build, int teeth, const gm_pitch *pitch, void *
         status = gmi_deviations_index(build->deviations, &set_of_slot, build->error);
         build->set_of_slot = set_of_slot;
     }
-    for (int side = GM_DRIVE; status == GM_IO_OK && side <= GM_COAST; side++) {
+
+    /* The sizes of the designs have to be known before the memory. */
+    for (int side = GM_DRIVE; status == GM_IO_OK && side <= GM_COAST; ++side) {
         status = make_design(build, side, teeth);
     }
     if (status == GM_IO_OK) {
@@ -357,6 +362,7 @@ static int build_flanks(builder *build, int teeth, const gm_pitch *pitch, void *
         report->drive = report_of(&build->design[GM_DRIVE]);
         report->coast = report_of(&build->design[GM_COAST]);
     }
+
     gmi_design_free(&build->design[GM_DRIVE]);
     gmi_design_free(&build->design[GM_COAST]);
     free(set_of_slot);

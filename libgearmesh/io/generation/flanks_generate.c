@@ -47,12 +47,14 @@ static int allocate_deviations(gmi_generator *make) {
     if (deviations->sets == NULL) {
         return gmi_error_memory(make->error);
     }
-    for (size_t i = 0; i < flanks; i++) {
+
+    /* Tooth by tooth, drive before coast; what is allocated so far is counted, so that it can be freed. */
+    for (size_t i = 0; i < flanks; ++i) {
         gm_deviation_set *set = &deviations->sets[i];
         set->tooth = (int)(i / 2);
         set->side = i % 2 == 0 ? GM_DRIVE : GM_COAST;
         set->values = malloc(nodes * sizeof *set->values);
-        deviations->set_count++;
+        ++deviations->set_count;
         if (set->values == NULL) {
             return gmi_error_memory(make->error);
         }
@@ -117,6 +119,8 @@ int gm_flanks_generate(gm_deviations *deviations, gm_pitch *pitch, const gm_pair
     if (deviations == NULL || pitch == NULL || pair == NULL || options == NULL) {
         return gmi_error_null(error);
     }
+
+    /* The wheel of a seed has nothing in common with its pinion. */
     gmi_generator make = {.deviations = deviations,
                           .pitch = pitch,
                           .pair = pair,
@@ -125,6 +129,7 @@ int gm_flanks_generate(gm_deviations *deviations, gm_pitch *pitch, const gm_pair
                           .options = options,
                           .random = wheel ? ~options->seed : options->seed,
                           .error = error};
+
     int status = check_options(&make);
     if (status == GM_IO_OK) {
         status = allocate(&make);
@@ -132,6 +137,7 @@ int gm_flanks_generate(gm_deviations *deviations, gm_pitch *pitch, const gm_pair
     if (status == GM_IO_OK) {
         status = fill(&make);
     }
+
     free(make.work);
     free(make.wave_phase);
     if (status != GM_IO_OK) {

@@ -69,11 +69,12 @@ typedef struct positions {
 static double largest_factor(const positions *of, double side) {
     const gmi_spaces *spaces = &of->spaces;
     double least = (double)INFINITY;
-    for (int i = 0; i < spaces->teeth; i++) {
+    for (int i = 0; i < spaces->teeth; ++i) {
         const int before = i > 0 ? i - 1 : spaces->teeth - 1;
         const double steady =
             gmi_spaces_first_order(spaces, i, side) - gmi_spaces_first_order(spaces, before, side);
         const double change = spaces->error[i] - spaces->error[before];
+
         const double room = of->single - (change > 0.0 ? steady : -steady);
         if (fabs(steady) > of->single) {
             return -1.0;
@@ -88,7 +89,7 @@ static double largest_factor(const positions *of, double side) {
 static double total_of_side(const gmi_spaces *of, double side) {
     double low = (double)INFINITY;
     double high = -(double)INFINITY;
-    for (int i = 0; i < of->teeth; i++) {
+    for (int i = 0; i < of->teeth; ++i) {
         const double place = gmi_spaces_first_order(of, i, side) + of->factor * of->error[i];
         low = place < low ? place : low;
         high = place > high ? place : high;
@@ -115,7 +116,7 @@ static int solve_positions(positions *of) {
     if (total_with(of, low) > of->total) {
         return 0;
     }
-    for (int i = 0; i < HALVINGS; i++) {
+    for (int i = 0; i < HALVINGS; ++i) {
         const double middle = 0.5 * (low + high);
         if (total_with(of, middle) <= of->total) {
             low = middle;
@@ -130,7 +131,7 @@ static int solve_positions(positions *of) {
 static double range_of(const double *values, int count) {
     double low = values[0];
     double high = values[0];
-    for (int i = 1; i < count; i++) {
+    for (int i = 1; i < count; ++i) {
         low = values[i] < low ? values[i] : low;
         high = values[i] > high ? values[i] : high;
     }
@@ -143,7 +144,8 @@ static positions draw_positions(generator *make) {
     positions of = {.spaces = gmi_spaces_begin(gear->teeth, make->common->work, phase),
                     .single = make->target[GM_QUALITY_SINGLE_PITCH],
                     .total = make->target[GM_QUALITY_TOTAL_PITCH]};
-    for (int i = 0; i < gear->teeth; i++) {
+
+    for (int i = 0; i < gear->teeth; ++i) {
         of.spaces.error[i] = draw(make, -1.0, 1.0);
     }
     /* What a radial shift is to each flank, as an arc. */
@@ -155,7 +157,7 @@ static positions draw_positions(generator *make) {
 }
 
 static int generate_pitch(generator *make) {
-    for (int i = 0; i < MOST_DRAWS; i++) {
+    for (int i = 0; i < MOST_DRAWS; ++i) {
         positions of = draw_positions(make);
         if (solve_positions(&of)) {
             gmi_spaces_to_pitch(&of.spaces, make->common->pitch, make->common->gear,
@@ -190,7 +192,7 @@ typedef struct mixture {
 } mixture;
 
 static gmi_trace_values values_of(const trace *of, mixture amounts) {
-    for (int node = 0; node < of->nodes; node++) {
+    for (int node = 0; node < of->nodes; ++node) {
         const double t = (double)node / (of->nodes - 1);
         of->sum[node] = of->wave[node] + amounts.slope * (t - 0.5) + amounts.form * of->shape[node];
     }
@@ -217,7 +219,7 @@ static mixture as_far_as_fits(const trace *of, mixture from, mixture to) {
     }
     double low = 0.0;
     double high = 1.0;
-    for (int i = 0; i < HALVINGS; i++) {
+    for (int i = 0; i < HALVINGS; ++i) {
         const double middle = 0.5 * (low + high);
         if (fits(of, between(from, to, middle))) {
             low = middle;
@@ -233,20 +235,22 @@ static void draw_shape(generator *make, const trace *of) {
     const double crowning = draw_sign(make) * draw(make, 0.5, 1.0);
     double size[3];
     double phase[3];
-    for (int k = 0; k < 3; k++) {
+    for (int k = 0; k < 3; ++k) {
         size[k] = draw(make, 0.0, 0.4);
         phase[k] = draw(make, 0.0, 1.0);
     }
-    for (int node = 0; node < of->nodes; node++) {
+
+    for (int node = 0; node < of->nodes; ++node) {
         const double t = (double)node / (of->nodes - 1);
         of->shape[node] = crowning * 4.0 * t * (1.0 - t) + draw(make, -0.1, 0.1);
-        for (int k = 0; k < 3; k++) {
+        for (int k = 0; k < 3; ++k) {
             of->shape[node] += size[k] * gmi_sine_of_turns((k + 1) * t + phase[k]);
         }
     }
+
     const gmi_line mean = gmi_trace_mean_line(of->shape, of->nodes, of->range);
     const double form = gmi_trace_evaluate(of->shape, of->nodes, of->range).form;
-    for (int node = 0; node < of->nodes; node++) {
+    for (int node = 0; node < of->nodes; ++node) {
         const double t = (double)node / (of->nodes - 1);
         of->shape[node] = (of->shape[node] - mean.level - mean.gradient * t) / form;
     }
@@ -259,7 +263,7 @@ static double full_form(const trace *of) {
     while (values_of(of, (mixture){0.0, high}).form < of->limit.form) {
         high *= 2.0;
     }
-    for (int i = 0; i < HALVINGS; i++) {
+    for (int i = 0; i < HALVINGS; ++i) {
         const double middle = 0.5 * (low + high);
         if (values_of(of, (mixture){0.0, middle}).form <= of->limit.form) {
             low = middle;
@@ -276,10 +280,14 @@ static int mix(generator *make, const trace *of, enum role role, mixture *result
     const mixture flat = {-wave_slope, 0.0};
     const double sign = draw_sign(make);
     mixture full = {sign * of->limit.slope - wave_slope, full_form(of)};
+
+    /* How much of slope and form an ordinary flank has. */
     const double part = draw(make, 0.3, 0.9);
     const mixture partial = {draw(make, -0.8, 0.8) * of->limit.slope, part * full.form};
     const mixture slope_only = {full.slope, 0.0};
     const mixture form_only = {flat.slope, full.form};
+
+    /* From a mixture that is sure to fit towards one that is too large, as far as the limits allow. */
     switch (role) {
     case WORST_SLOPE:
         *result = as_far_as_fits(of, slope_only, (mixture){full.slope, partial.form});
@@ -306,7 +314,7 @@ static int draw_mixture(generator *make, const trace *of, enum role role, mixtur
     if (values_of(of, none).form > of->limit.form) {
         return 0;
     }
-    for (int i = 0; i < MOST_DRAWS; i++) {
+    for (int i = 0; i < MOST_DRAWS; ++i) {
         draw_shape(make, of);
         if (mix(make, of, role, amounts)) {
             return 1;
@@ -322,7 +330,7 @@ static int make_trace(generator *make, const trace *of, enum role role) {
         return fail_contradiction(make, "the waves use up a tolerance of profile or helix");
     }
     const double middle = amounts.form * middle_of(of->shape, of->nodes);
-    for (int node = 0; node < of->nodes; node++) {
+    for (int node = 0; node < of->nodes; ++node) {
         const double t = (double)node / (of->nodes - 1);
         of->sum[node] = amounts.slope * (t - 0.5) + amounts.form * of->shape[node] - middle;
     }
@@ -340,7 +348,7 @@ typedef struct roles {
 
 static void draw_roles(generator *make, roles *of) {
     const int count = 2 * make->common->gear->teeth;
-    for (int axis = 0; axis < 2; axis++) {
+    for (int axis = 0; axis < 2; ++axis) {
         int *flank = of->flank[axis];
         flank[0] = draw_below(make, count);
         flank[1] = (flank[0] + 1 + draw_below(make, count - 1)) % count;
@@ -352,7 +360,7 @@ static void draw_roles(generator *make, roles *of) {
 
 static enum role role_of(const roles *of, int axis, int flank) {
     static const enum role role[3] = {WORST_SLOPE, WORST_FORM, WORST_TOTAL};
-    for (int i = 0; i < 3; i++) {
+    for (int i = 0; i < 3; ++i) {
         if (of->flank[axis][i] == flank) {
             return role[i];
         }
@@ -387,11 +395,12 @@ static int generate_flank(generator *make, const roles *parts, int flank) {
     gmi_waves_fill(make->common, set);
     gmi_profile_trace(profile.wave, table, face_nodes, profile_nodes, factor);
     gmi_helix_trace(helix.wave, table, face_nodes, profile_nodes, factor);
+
     int status = make_trace(make, &profile, role_of(parts, 0, flank));
     if (status == GM_IO_OK) {
         status = make_trace(make, &helix, role_of(parts, 1, flank));
     }
-    for (int node = 0; status == GM_IO_OK && node < face_nodes * profile_nodes; node++) {
+    for (int node = 0; status == GM_IO_OK && node < face_nodes * profile_nodes; ++node) {
         const double added = helix.sum[node / profile_nodes] + profile.sum[node % profile_nodes];
         table[node] = gmi_rounded(table[node] + added / factor);
     }
@@ -403,7 +412,7 @@ static int generate_flanks(generator *make) {
     draw_roles(make, &of);
     int status = GM_IO_OK;
     for (int flank = 0; status == GM_IO_OK && flank < make->common->deviations->set_count;
-         flank++) {
+         ++flank) {
         status = generate_flank(make, &of, flank);
     }
     return status;
@@ -433,11 +442,14 @@ int gmi_class_fill(gmi_generator *common) {
     gm_quality_options ranges;
     gm_quality_options_default(&ranges);
     int status = gmi_trace_ranges(make.range, common->pair, &ranges, common->error);
-    for (int kind = 0; kind < GM_QUALITY_KINDS; kind++) {
+
+    /* The wanted worst values. */
+    for (int kind = 0; kind < GM_QUALITY_KINDS; ++kind) {
         make.target[kind] =
             common->options->share *
             gm_quality_tolerance(common->pair, common->wheel, kind, common->options->quality_class);
     }
+
     if (status == GM_IO_OK) {
         status = generate_pitch(&make);
     }

@@ -103,6 +103,7 @@ int gmi_scatter_check(const gmi_generator *make) {
             "flanks: must be of a class or have a scatter (got class %d and a scatter)",
             make->options->quality_class);
     }
+
     int status = check_trace(make, "profile", &scatter->profile, make->options->profile_nodes);
     if (status == GM_IO_OK) {
         status = check_trace(make, "helix", &scatter->helix, make->options->face_nodes);
@@ -123,11 +124,11 @@ int gmi_scatter_check(const gmi_generator *make) {
 
 static void draw_errors(uint64_t *random, double *error, int teeth) {
     double mean = 0.0;
-    for (int i = 0; i < teeth; i++) {
+    for (int i = 0; i < teeth; ++i) {
         error[i] = gmi_random_normal(random, 0.0, 1.0);
         mean += error[i] / teeth;
     }
-    for (int i = 0; i < teeth; i++) {
+    for (int i = 0; i < teeth; ++i) {
         error[i] -= mean;
     }
 }
@@ -145,6 +146,8 @@ static void fill_pitch(gmi_generator *make) {
     const double phase = gmi_random_uniform(&make->random, 0.0, 1.0);
     gmi_spaces spaces = gmi_spaces_begin(gear->teeth, make->work, phase);
     draw_errors(&make->random, spaces.error, gear->teeth);
+
+    /* Along the arc; the radial part moves both flanks of a space to the same side of it, the tangential one ahead. */
     spaces.factor = arc * scatter->pitch;
     spaces.radial = arc * scatter->eccentricity * sine;
     spaces.tangential = arc * scatter->eccentricity * sqrt(1.0 - sine * sine);
@@ -170,7 +173,8 @@ static void draw_trace(uint64_t *random, double *trace, int nodes, const gm_trac
     const double wave = draw_uniform(random, &from->wave);
     const double count = draw_uniform(random, &from->wave_count);
     const double phase = gmi_random_uniform(random, 0.0, 1.0);
-    for (int node = 0; node < nodes; node++) {
+
+    for (int node = 0; node < nodes; ++node) {
         const double t = (double)node / (nodes - 1);
         const double v = 2.0 * t - 1.0;
         trace[node] =
@@ -183,7 +187,7 @@ static void add_ends(uint64_t *random, double *profile, int nodes,
                      const gm_flank_scatter *scatter) {
     const double foot = draw_normal(random, &scatter->foot);
     const double relief = draw_normal(random, &scatter->tip_relief);
-    for (int node = 0; node < nodes; node++) {
+    for (int node = 0; node < nodes; ++node) {
         const double t2 = (double)node / (nodes - 1);
         if (t2 < scatter->foot_end) {
             profile[node] += foot * (1.0 - t2 / scatter->foot_end);
@@ -205,7 +209,8 @@ static void fill_flank(gmi_generator *make, const gm_deviation_set *set) {
     draw_trace(&make->random, helix, face_nodes, &scatter->helix);
     add_ends(&make->random, profile, profile_nodes, scatter);
     gmi_waves_fill(make, set);
-    for (int node = 0; node < face_nodes * profile_nodes; node++) {
+
+    for (int node = 0; node < face_nodes * profile_nodes; ++node) {
         const double rough = gmi_random_normal(&make->random, 0.0, scatter->roughness);
         set->values[node] = gmi_rounded(set->values[node] + helix[node / profile_nodes] +
                                         profile[node % profile_nodes] + rough);
@@ -214,7 +219,7 @@ static void fill_flank(gmi_generator *make, const gm_deviation_set *set) {
 
 void gmi_scatter_fill(gmi_generator *make) {
     fill_pitch(make);
-    for (int flank = 0; flank < make->deviations->set_count; flank++) {
+    for (int flank = 0; flank < make->deviations->set_count; ++flank) {
         fill_flank(make, &make->deviations->sets[flank]);
     }
 }

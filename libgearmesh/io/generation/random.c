@@ -13,7 +13,7 @@ double gmi_random_uniform(uint64_t *state, double low, double high) {
 
 double gmi_random_normal(uint64_t *state, double mean, double deviation) {
     double sum = -6.0;
-    for (int i = 0; i < 12; i++) {
+    for (int i = 0; i < 12; ++i) {
         sum += gmi_random_unit(state);
     }
     return mean + deviation * sum;

@@ -7,7 +7,7 @@
 
 gmi_spaces gmi_spaces_begin(int teeth, double *work, double phase) {
     double *sine = work + teeth;
-    for (int i = 0; i < teeth; i++) {
+    for (int i = 0; i < teeth; ++i) {
         const double turns = (double)i / teeth + phase;
         work[i] = gmi_sine_of_turns(turns + 0.25);
         sine[i] = gmi_sine_of_turns(turns);
@@ -23,7 +23,7 @@ void gmi_spaces_to_pitch(const gmi_spaces *of, gm_pitch *pitch, const gm_gear *g
     const int teeth = of->teeth;
     const double ahead = wheel ? -1.0 : 1.0;
     const double cosine_of_angle = gear->base_radius / gear->reference_radius;
-    for (int i = 0; i < teeth; i++) {
+    for (int i = 0; i < teeth; ++i) {
         const int neighbour = (i + (wheel ? teeth - 1 : 1)) % teeth;
         const double error = of->factor * of->error[i];
         const double drive = gmi_spaces_first_order(of, i, ahead) + error;

@@ -30,7 +30,7 @@ static double contact_turns(const gmi_generator *make, int tooth, int side, doub
 void gmi_waves_draw(const gmi_generator *make) {
     uint64_t start = make->random;
     uint64_t own = gmi_random_bits(&start);
-    for (int i = 0; i < 2 * make->options->wave_count; i++) {
+    for (int i = 0; i < 2 * make->options->wave_count; ++i) {
         make->wave_phase[i] = gmi_random_uniform(&own, 0.0, 1.0);
     }
 }
@@ -38,12 +38,13 @@ void gmi_waves_draw(const gmi_generator *make) {
 void gmi_waves_fill(const gmi_generator *make, const gm_deviation_set *set) {
     const int face_nodes = make->options->face_nodes;
     const int profile_nodes = make->options->profile_nodes;
-    for (int node = 0; node < face_nodes * profile_nodes; node++) {
+    for (int node = 0; node < face_nodes * profile_nodes; ++node) {
         const double t1 = (double)(node / profile_nodes) / (face_nodes - 1);
         const double t2 = (double)(node % profile_nodes) / (profile_nodes - 1);
         const double turns = contact_turns(make, set->tooth, set->side, t1, t2);
+
         set->values[node] = 0.0;
-        for (int i = 0; i < make->options->wave_count; i++) {
+        for (int i = 0; i < make->options->wave_count; ++i) {
             const gm_flank_wave *wave = &make->options->waves[i];
             const double phase = make->wave_phase[2 * i + set->side];
             set->values[node] += wave->amplitude * gmi_sine_of_turns(wave->order * turns + phase);
@@ -70,8 +71,10 @@ int gmi_waves_check(const gmi_generator *make) {
         return gmi_error_set(make->error, GM_IO_ERR_OPTION, 0, "waves: must be 0 to %d (got %d)",
                              GM_FLANK_WAVES_MAX, options->wave_count);
     }
+
+    /* Each wave by itself: order, amplitude, and nodes enough along both directions. */
     int status = GM_IO_OK;
-    for (int i = 0; status == GM_IO_OK && i < options->wave_count; i++) {
+    for (int i = 0; status == GM_IO_OK && i < options->wave_count; ++i) {
         const gm_flank_wave *wave = &options->waves[i];
         if (wave->order < 1 || wave->order > MOST_ORDER) {
             return gmi_error_set(make->error, GM_IO_ERR_OPTION, 0,
@@ -82,6 +85,7 @@ int gmi_waves_check(const gmi_generator *make) {
             return gmi_error_set(make->error, GM_IO_ERR_OPTION, 0,
                                  "the amplitude of a wave must be finite and not below 0");
         }
+
         status = check_resolution(make, "t1", make->pair->face_advance, options->face_nodes,
                                   wave->order);
         if (status == GM_IO_OK) {

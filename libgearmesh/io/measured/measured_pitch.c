@@ -47,6 +47,8 @@ static int place_point(builder *build, int row) {
     if (status != GM_IO_OK) {
         return status;
     }
+
+    /* Every flank once, and with a value that can be added up. */
     const int index = point->tooth - build->measurement->first_number;
     const gm_pitch_point *first = point_of(build, side, index);
     if (first != NULL) {
@@ -62,7 +64,7 @@ static int place_point(builder *build, int row) {
                              point->tooth);
     }
     build->row[side * build->gear->teeth + index] = row + 1;
-    build->present[side]++;
+    ++build->present[side];
     return GM_IO_OK;
 }
 
@@ -81,15 +83,18 @@ static int fail_missing(const builder *build, int side) {
     const char *flank = "";
     char list[(SHOWN + 1) * GMI_NUMBER_SIZE] = "";
     int shown = 0;
-    for (int i = 0; i < teeth; i++) {
+
+    /* Name the first few. */
+    for (int i = 0; i < teeth; ++i) {
         const gm_pitch_point *point = point_of(build, side, i);
         if (point != NULL) {
             flank = gmi_flank_word(point->flank);
         } else if (shown < SHOWN) {
             list_number(list, i + build->measurement->first_number);
-            shown++;
+            ++shown;
         }
     }
+
     return gmi_error_set(
         build->error, GM_IO_ERR_FORMAT, 0,
         "flank %s: must have a row for each of the %d teeth (got none for %s %s%s)%s", flank, teeth,
@@ -98,13 +103,13 @@ static int fail_missing(const builder *build, int side) {
 }
 
 static int place_points(builder *build) {
-    for (int i = 0; i < build->measured->count; i++) {
+    for (int i = 0; i < build->measured->count; ++i) {
         const int status = place_point(build, i);
         if (status != GM_IO_OK) {
             return status;
         }
     }
-    for (int side = 0; side < SIDES; side++) {
+    for (int side = 0; side < SIDES; ++side) {
         if (build->present[side] > 0 && build->present[side] < build->gear->teeth) {
             return fail_missing(build, side);
         }
@@ -125,7 +130,7 @@ static const double rounding = 0.5e-6;
 static int add_up(builder *build, int side, double *place) {
     const int teeth = build->gear->teeth;
     double sum = 0.0;
-    for (int i = 0; i < teeth; i++) {
+    for (int i = 0; i < teeth; ++i) {
         sum += place[i];
     }
     if (fabs(sum) > teeth * rounding_per_pitch + rounding) {
@@ -136,9 +141,10 @@ static int add_up(builder *build, int side, double *place) {
                              gmi_flank_word(point_of(build, side, 0)->flank),
                              gmi_number_text(text, sum, 6, 4));
     }
+
     build->report.sum[side] = sum;
     double at = 0.0;
-    for (int i = 0; i < teeth; i++) {
+    for (int i = 0; i < teeth; ++i) {
         at += i > 0 ? place[i] - sum / teeth : 0.0;
         place[i] = at;
     }
@@ -149,7 +155,7 @@ static int check_size(const builder *build, int side, const double *place) {
     const int teeth = build->gear->teeth;
     int lowest = 0;
     int highest = 0;
-    for (int i = 1; i < teeth; i++) {
+    for (int i = 1; i < teeth; ++i) {
         lowest = place[i] < place[lowest] ? i : lowest;
         highest = place[i] > place[highest] ? i : highest;
     }
@@ -161,10 +167,10 @@ static int check_size(const builder *build, int side, const double *place) {
 static void take_out_mean(builder *build, int side, double *place) {
     const int teeth = build->gear->teeth;
     double mean = 0.0;
-    for (int i = 0; i < teeth; i++) {
+    for (int i = 0; i < teeth; ++i) {
         mean += place[i] / teeth;
     }
-    for (int i = 0; i < teeth; i++) {
+    for (int i = 0; i < teeth; ++i) {
         place[i] -= mean;
     }
     build->report.level[side] = mean;
@@ -186,18 +192,22 @@ static int build_side(builder *build, gm_pitch *pitch, int side) {
     if (place == NULL) {
         return gmi_error_memory(build->error);
     }
-    for (int i = 0; i < teeth; i++) {
+
+    /* Places along the arc, one after the other as they were counted. */
+    for (int i = 0; i < teeth; ++i) {
         place[i] = point_of(build, side, i)->value;
     }
     int status = build->measured->single ? add_up(build, side, place) : GM_IO_OK;
     if (status == GM_IO_OK) {
         status = check_size(build, side, place);
     }
+
+    /* As material on the teeth of the model, whose order may be the other one. */
     if (status == GM_IO_OK) {
         take_out_mean(build, side, place);
         double *material = side == GM_DRIVE ? pitch->drive : pitch->coast;
         int *set = side == GM_DRIVE ? pitch->drive_set : pitch->coast_set;
-        for (int i = 0; i < teeth; i++) {
+        for (int i = 0; i < teeth; ++i) {
             const int tooth = gm_measurement_tooth(build->measurement, build->pair, build->wheel,
                                                    i + build->measurement->first_number);
             material[tooth] = material_per_arc(build, side) * place[i];
@@ -234,7 +244,7 @@ static vector first_order(const builder *build, const double *material) {
     /* Teeth follow each other counter-clockwise on the pinion, clockwise on the wheel, seen from face II. */
     const double step = (build->wheel ? -1.0 : 1.0) * build->gear->pitch_angle;
     vector sum = {0.0, 0.0};
-    for (int i = 0; i < teeth; i++) {
+    for (int i = 0; i < teeth; ++i) {
         sum.x += 2.0 / teeth * material[i] * cos(step * i);
         sum.y += 2.0 / teeth * material[i] * sin(step * i);
     }
@@ -293,12 +303,16 @@ static int build_pitch(builder *build, gm_pitch *pitch) {
         build->row = calloc(SIDES * (size_t)build->gear->teeth, sizeof *build->row);
         status = build->row != NULL ? GM_IO_OK : gmi_error_memory(build->error);
     }
+
+    /* Sort the points by flank, then one side after the other. */
     if (status == GM_IO_OK) {
         status = place_points(build);
     }
-    for (int side = 0; side < SIDES && status == GM_IO_OK; side++) {
+    for (int side = 0; side < SIDES && status == GM_IO_OK; ++side) {
         status = build_side(build, pitch, side);
     }
+
+    /* Both sides together show whether the gear ran off its axis. */
     if (status == GM_IO_OK) {
         fit_displacement(build, pitch);
     }
@@ -323,6 +337,7 @@ int gm_measured_pitch_build(gm_pitch *pitch, gm_measured_pitch_report *report,
     build.gear = gmi_gear_of(pair, wheel);
     build.wheel = wheel;
     build.error = error;
+
     const int status = build_pitch(&build, pitch);
     free(build.row);
     if (status != GM_IO_OK) {

@@ -41,6 +41,7 @@ static int read_pitch_rows(gm_measured_pitch *pitch, gmi_table *table) {
         if (status != GM_IO_OK) {
             return status;
         }
+
         gm_pitch_point *grown =
             gmi_array_grow(pitch->points, sizeof *grown, pitch->count, &capacity);
         if (grown == NULL) {
@@ -60,6 +61,7 @@ int gm_measured_pitch_read(gm_measured_pitch *pitch, const char *path, gm_io_err
     if (pitch == NULL || path == NULL) {
         return gmi_error_null(error);
     }
+
     gmi_table table;
     int status = gmi_table_open_any(&table, path, pitch_headers, PITCH_HEADERS, PITCH_COLUMNS,
                                     &pitch->single, error);

@@ -61,6 +61,8 @@ int gm_measurement_tooth(const gm_measurement *measurement, const gm_pair *pair,
     if (first < 0 || number < first || number - first >= teeth || zero < 0 || zero >= teeth) {
         return -1;
     }
+
+    /* Numbers grow with or against the direction in which the teeth of gearmesh follow each other. */
     const int steps = gmi_measurement_sense(measurement, wheel) * (number - first);
     return (zero + steps + teeth) % teeth;
 }
@@ -72,6 +74,8 @@ int gmi_measurement_check(const gm_measurement *measurement, const gm_pair *pair
     if (status != GM_IO_OK) {
         return status;
     }
+
+    /* What has no default: a guess would mirror the gear. */
     if (measurement->datum_face != GM_FACE_I && measurement->datum_face != GM_FACE_II) {
         return gmi_error_set(error, GM_IO_ERR_OPTION, 0,
                              "the datum face: must be said, I or II (got none)");
@@ -81,6 +85,8 @@ int gmi_measurement_check(const gm_measurement *measurement, const gm_pair *pair
                              "the direction of counting: must be said, clockwise or "
                              "counter-clockwise as seen from the datum face (got none)");
     }
+
+    /* How the teeth are numbered. */
     if (measurement->first_number < 0 || measurement->first_number > 1) {
         return gmi_error_set(error, GM_IO_ERR_OPTION, 0,
                              "the number of the first tooth: must be 0 or 1 (got %d)",
@@ -92,6 +98,8 @@ int gmi_measurement_check(const gm_measurement *measurement, const gm_pair *pair
                              "the first tooth measured: must be from 0 to %d (got %d)", teeth - 1,
                              measurement->first_tooth);
     }
+
+    /* The measuring circle has to cut the flanks; NaN stands for that of reference. */
     const double diameter = measurement->pitch_diameter;
     const gm_gear *gear = gmi_gear_of(pair, wheel);
     if (!isnan(diameter) &&
@@ -120,6 +128,8 @@ int gmi_measurement_place(const gm_measurement *measurement, const gm_pair *pair
         return gmi_error_set(error, GM_IO_ERR_FORMAT, line,
                              "flank: must be drive, coast, left or right (got number %d)", flank);
     }
+
+    /* A wrong number is often that of the mate, or counted from 0. */
     *tooth = gm_measurement_tooth(measurement, pair, wheel, number);
     if (*tooth < 0) {
         const int mate = gmi_gear_of(pair, !wheel)->teeth;
@@ -154,7 +164,9 @@ const char *gmi_length_hint(double length, double expected) {
                  {1000.0, " (it looks like metres)"},
                  {1e-3, " (it looks like micrometres)"},
                  {2.0, " (it looks like a radius)"}};
-    for (size_t i = 0; i < sizeof units / sizeof units[0]; i++) {
+
+    /* With which unit would it reach about as far as it should? */
+    for (size_t i = 0; i < sizeof units / sizeof units[0]; ++i) {
         const double share = length * units[i].factor / expected;
         if (share > 0.8 && share < 1.02) {
             return units[i].text;
@@ -192,6 +204,8 @@ void *gmi_array_grow(void *array, size_t size, int count, int *capacity) {
     if (*capacity > INT_MAX / 2) {
         return NULL;
     }
+
+    /* Not realloc(): the old array has to stay if there is no memory. */
     const int larger = *capacity > 0 ? 2 * *capacity : 64;
     void *grown = malloc((size_t)larger * size);
     if (grown == NULL) {

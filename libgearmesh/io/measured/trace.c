@@ -20,6 +20,8 @@ double gmi_measured_at(const gmi_measured *trace, double t) {
     if (t >= place[high]) {
         return value[high];
     }
+
+    /* Halve the interval until it is one piece of the polygon. */
     while (high - low > 1) {
         const int middle = low + (high - low) / 2;
         if (place[middle] <= t) {
@@ -28,6 +30,7 @@ double gmi_measured_at(const gmi_measured *trace, double t) {
             high = middle;
         }
     }
+
     const double share = (t - place[low]) / (place[high] - place[low]);
     return value[low] + share * (value[high] - value[low]);
 }

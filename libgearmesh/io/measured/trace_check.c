@@ -54,13 +54,14 @@ static void mark_spikes(const gmi_measured *trace, int stride, double *marks, do
     if (count <= 2 * stride) {
         return;
     }
-    for (int k = 0; k < count; k++) {
+    for (int k = 0; k < count; ++k) {
         off[k] = stand_off(trace, k + stride, stride);
     }
     /* A few points do not say well how rough the trace is. */
     double limit = spike_deviations * (1.0 + 10.0 / count) * gmi_spread(off, count, work + count);
     limit = limit > spike_floor ? limit : spike_floor;
-    for (int k = stride; k < count - stride; k++) {
+
+    for (int k = stride; k < count - stride; ++k) {
         const double height = spike_height(off[k - stride], off[k], off[k + stride]);
         if (height > limit && height > marks[k + stride]) {
             marks[k + stride] = height;
@@ -83,19 +84,23 @@ static int fail_spike(const gmi_measured *trace, int k, double height, gm_io_err
 int gmi_remove_spikes(gmi_measured *trace, const gm_traces_options *options, double *work,
                       gm_traces_report *report, gm_io_error *error) {
     double *marks = work;
-    for (int k = 0; k < trace->count; k++) {
+    for (int k = 0; k < trace->count; ++k) {
         marks[k] = 0.0;
     }
-    for (int stride = 1; stride <= SPIKE_WIDTH; stride++) {
+
+    /* Spikes of one, two and three points. */
+    for (int stride = 1; stride <= SPIKE_WIDTH; ++stride) {
         mark_spikes(trace, stride, marks, work + trace->count);
     }
+
+    /* Leave them out, or make the first one an error. */
     int kept = 0;
-    for (int k = 0; k < trace->count; k++) {
+    for (int k = 0; k < trace->count; ++k) {
         if (marks[k] > 0.0 && !options->remove_spikes) {
             return fail_spike(trace, k, marks[k], error);
         }
         if (marks[k] > 0.0) {
-            report->spikes++;
+            ++report->spikes;
             continue;
         }
         trace->t[kept] = trace->t[k];
@@ -112,7 +117,7 @@ int gmi_remove_spikes(gmi_measured *trace, const gm_traces_options *options, dou
 static double range_of(const gmi_measured *trace) {
     double low = trace->value[0];
     double high = trace->value[0];
-    for (int k = 1; k < trace->count; k++) {
+    for (int k = 1; k < trace->count; ++k) {
         low = trace->value[k] < low ? trace->value[k] : low;
         high = trace->value[k] > high ? trace->value[k] : high;
     }
@@ -123,7 +128,7 @@ static int check_units(const gmi_measured *traces, int count, const gm_pair *pai
                        gm_io_error *error) {
     int worst = 0;
     double range = 0.0;
-    for (int i = 0; i < count; i++) {
+    for (int i = 0; i < count; ++i) {
         const double of_trace = range_of(&traces[i]);
         if (of_trace > range) {
             range = of_trace;
@@ -145,7 +150,7 @@ static double end_height(const gmi_measured *trace) {
     const double from = trace->t[0] > 0.0 ? trace->t[0] : 0.0;
     const double to = last < 1.0 ? last : 1.0;
     double value[9];
-    for (int i = 0; i < 9; i++) {
+    for (int i = 0; i < 9; ++i) {
         value[i] = gmi_measured_at(trace, from + (to - from) * i / 8.0);
     }
     return 0.25 * (value[0] + value[1] + value[7] + value[8]) -
@@ -156,10 +161,10 @@ static double end_height(const gmi_measured *trace) {
 static double mean_end_height(const gmi_measured *traces, int count, int kind) {
     double sum = 0.0;
     int found = 0;
-    for (int i = 0; i < count; i++) {
+    for (int i = 0; i < count; ++i) {
         if (traces[i].kind == kind) {
             sum += end_height(&traces[i]);
-            found++;
+            ++found;
         }
     }
     return found > 0 ? sum / found : 0.0;
@@ -180,17 +185,20 @@ static double hollow_limit(int count) {
 static int check_sign(const gmi_measured *traces, int count, const gm_traces_options *options,
                       gm_traces_report *report, gm_io_error *error) {
     int hollow = 0;
-    for (int i = 0; i < count; i++) {
+    for (int i = 0; i < count; ++i) {
         hollow += end_height(&traces[i]) > 0.0 ? 1 : 0;
     }
     report->hollow_traces = hollow;
     report->judged_traces = count;
+
+    /* A wrong sign shows in both kinds of traces, and beyond chance. */
     const double profile = mean_end_height(traces, count, GM_TRACE_PROFILE);
     const double helix = mean_end_height(traces, count, GM_TRACE_HELIX);
     if (options->hollow || profile < 0.0 || helix < 0.0 ||
         (profile < least_end_height && helix < least_end_height) || hollow <= hollow_limit(count)) {
         return GM_IO_OK;
     }
+
     char profile_text[GMI_NUMBER_SIZE];
     char helix_text[GMI_NUMBER_SIZE];
     gmi_error_option(error, "hollow");

@@ -110,12 +110,15 @@ static int read_trace_row(const loader *load, const gmi_table *table, trace_row 
         status = gmi_table_number(table, ROLL, MILLI, &length);
         roll = length;
     }
+
     if (status == GM_IO_OK && load->by_diameter) {
         status = roll_of_diameter(load, table, length, &roll);
     }
     if (status == GM_IO_OK) {
         status = gmi_table_number(table, DEVIATION, MICRO, &row->deviation);
     }
+
+    /* A profile lies at a distance from the datum face and runs along the roll length, a helix the other way round. */
     trace->at = trace->kind == GM_TRACE_PROFILE ? face : roll;
     row->place = trace->kind == GM_TRACE_PROFILE ? face : length;
     row->position = trace->kind == GM_TRACE_PROFILE ? roll : face;
@@ -172,7 +175,7 @@ static int append_point(loader *load, const trace_row *row) {
     const point added = {row->position, row->deviation, row->line};
     load->points = grown;
     load->points[load->point_count++] = added;
-    load->traces[load->trace_count - 1].count++;
+    ++load->traces[load->trace_count - 1].count;
     return GM_IO_OK;
 }
 
@@ -211,7 +214,8 @@ static int fill_trace(gm_trace *trace, const point *points) {
     if (!trace->position || !trace->deviation || !trace->line) {
         return 0;
     }
-    for (size_t i = 0; i < count; i++) {
+
+    for (size_t i = 0; i < count; ++i) {
         const point *from = &points[falls ? count - 1 - i : i];
         trace->position[i] = from->position;
         trace->deviation[i] = from->deviation;
@@ -225,7 +229,7 @@ static int make_traces(loader *load, gm_traces *traces) {
     traces->traces = load->traces;
     traces->count = load->trace_count;
     load->traces = NULL;
-    for (int i = 0; i < traces->count; i++) {
+    for (int i = 0; i < traces->count; ++i) {
         if (!fill_trace(&traces->traces[i], points)) {
             gm_traces_free(traces);
             return gmi_error_memory(load->error);
@@ -255,6 +259,7 @@ int gm_traces_read(gm_traces *traces, const char *path, const gm_pair *pair, int
     if (traces == NULL || path == NULL || pair == NULL) {
         return gmi_error_null(error);
     }
+
     loader load;
     memset(&load, 0, sizeof load);
     load.gear = gmi_gear_of(pair, wheel);
@@ -272,7 +277,7 @@ void gm_traces_free(gm_traces *traces) {
     if (traces == NULL) {
         return;
     }
-    for (int i = 0; traces->traces != NULL && i < traces->count; i++) {
+    for (int i = 0; traces->traces != NULL && i < traces->count; ++i) {
         free(traces->traces[i].position);
         free(traces->traces[i].deviation);
         free(traces->traces[i].line);

@@ -87,6 +87,8 @@ static int check_structure(const gmi_mapping *map, const gm_trace *trace) {
             "a trace: must be a profile or helix, with points (got kind %d with %d points)",
             trace->kind, trace->count);
     }
+
+    /* One point is no polygon: neighbouring rows do not agree where the trace lies. */
     if (trace->count < 2) {
         char name[GMI_TRACE_NAME_SIZE];
         return gmi_error_set(
@@ -96,7 +98,9 @@ static int check_structure(const gmi_mapping *map, const gm_trace *trace) {
             trace->kind == GM_TRACE_PROFILE ? "distance from the datum face"
                                             : "roll length or diameter");
     }
-    for (int i = 0; i < trace->count; i++) {
+
+    /* Positions must rise, so that t can be searched. */
+    for (int i = 0; i < trace->count; ++i) {
         const int rises = i == 0 || trace->position[i] > trace->position[i - 1];
         if (!is_sane(trace->deviation[i]) || !is_sane(trace->position[i]) || !is_sane(trace->at) ||
             !rises) {
@@ -116,6 +120,8 @@ static int map_place(const gmi_mapping *map, const gm_trace *trace, double *at) 
         *at = face_place(map, trace->at);
         return is_on_face(*at) ? GM_IO_OK : fail_face(map, trace, 0, trace->at, trace->at);
     }
+
+    /* A helix must lie on the active profile. */
     *at = gmi_profile_place(map->gear, trace->at);
     if (*at >= -overrun && *at <= 1.0 + overrun) {
         return GM_IO_OK;
@@ -139,7 +145,8 @@ static int map_place(const gmi_mapping *map, const gm_trace *trace, double *at) 
 static int map_points(const gmi_mapping *map, const gm_trace *trace, gmi_measured *to) {
     const double scale = map->measurement->transverse ? 1.0 / map->pair->normal_to_transverse : 1.0;
     const double reach = trace->position[trace->count - 1];
-    for (int i = 0; i < trace->count; i++) {
+
+    for (int i = 0; i < trace->count; ++i) {
         const double position = trace->position[i];
         const int place = to->turned ? trace->count - 1 - i : i;
         if (trace->kind == GM_TRACE_PROFILE) {
@@ -153,6 +160,7 @@ static int map_points(const gmi_mapping *map, const gm_trace *trace, gmi_measure
                 return fail_face(map, trace, i, position, reach);
             }
         }
+
         to->value[place] = scale * trace->deviation[i];
     }
     return GM_IO_OK;
@@ -166,6 +174,8 @@ static int check_cover(const gmi_mapping *map, const gmi_measured *trace) {
     if (from <= limit && to >= 1.0 - limit) {
         return GM_IO_OK;
     }
+
+    /* The message gives the lengths as they stand in the file. */
     const gm_trace *raw = trace->from;
     const int profile = raw->kind == GM_TRACE_PROFILE;
     const double full = profile ? map->gear->tip_roll_length : map->pair->face_width;
@@ -218,7 +228,7 @@ static int map_trace(const gmi_mapping *map, const gm_trace *trace, gmi_measured
 static int allocate(gmi_mapping *map, const gm_traces *traces) {
     size_t all = 0;
     size_t longest = 0;
-    for (int i = 0; i < traces->count; i++) {
+    for (int i = 0; i < traces->count; ++i) {
         const size_t count = (size_t)traces->traces[i].count;
         all += count;
         longest = count > longest ? count : longest;
@@ -231,14 +241,15 @@ static int allocate(gmi_mapping *map, const gm_traces *traces) {
 
 int gmi_traces_map(gmi_mapping *map, const gm_traces *traces) {
     int status = GM_IO_OK;
-    for (int i = 0; i < traces->count && status == GM_IO_OK; i++) {
+    for (int i = 0; i < traces->count && status == GM_IO_OK; ++i) {
         status = check_structure(map, &traces->traces[i]);
     }
     if (status == GM_IO_OK) {
         status = allocate(map, traces);
     }
+
     double *points = map->points;
-    for (int i = 0; i < traces->count && status == GM_IO_OK; i++) {
+    for (int i = 0; i < traces->count && status == GM_IO_OK; ++i) {
         const gm_trace *trace = &traces->traces[i];
         map->measured[i].t = points;
         map->measured[i].value = points + trace->count;

@@ -52,19 +52,23 @@ static double gap(const surface *of, int i, int k) {
 /* The levels that make profiles and helices agree best where they cross (least squares): means of the gaps. */
 static void find_levels(surface *of) {
     double mean = 0.0;
-    for (int k = 0; k < of->helix.count; k++) {
+    for (int k = 0; k < of->helix.count; ++k) {
         of->helix.level[k] = 0.0;
     }
-    for (int i = 0; i < of->profile.count; i++) {
+
+    /* A profile is moved by the mean of its differences from the helices, a helix against its mean from the profiles. */
+    for (int i = 0; i < of->profile.count; ++i) {
         double sum = 0.0;
-        for (int k = 0; k < of->helix.count; k++) {
+        for (int k = 0; k < of->helix.count; ++k) {
             sum += gap(of, i, k);
             of->helix.level[k] -= gap(of, i, k) / of->profile.count;
         }
         of->profile.level[i] = sum / of->helix.count;
         mean += of->profile.level[i] / of->profile.count;
     }
-    for (int k = 0; k < of->helix.count; k++) {
+
+    /* What is common to all is counted once. */
+    for (int k = 0; k < of->helix.count; ++k) {
         of->helix.level[k] += mean;
     }
 }
@@ -72,8 +76,8 @@ static void find_levels(surface *of) {
 /* Halfway between profile and helix where they cross; returns the largest distance of the two. */
 static double find_crossings(surface *of) {
     double worst = 0.0;
-    for (int i = 0; i < of->profile.count; i++) {
-        for (int k = 0; k < of->helix.count; k++) {
+    for (int i = 0; i < of->profile.count; ++i) {
+        for (int k = 0; k < of->helix.count; ++k) {
             const double profile =
                 value_at(&of->profile, i, place_of(&of->helix, k)) + of->profile.level[i];
             const double rest = gap(of, i, k) - of->profile.level[i] + of->helix.level[k];
@@ -85,8 +89,8 @@ static double find_crossings(surface *of) {
 }
 
 static void find_lines(family *of) {
-    for (int i = 0; i < of->count; i++) {
-        for (int node = 0; node < of->nodes; node++) {
+    for (int i = 0; i < of->count; ++i) {
+        for (int node = 0; node < of->nodes; ++node) {
             of->lines[i * of->nodes + node] =
                 value_at(of, i, (double)node / (of->nodes - 1)) + of->level[i];
         }
@@ -99,10 +103,10 @@ static const double least_contradiction = 3e-6;
 
 static double largest_range(const family *of) {
     double range = 0.0;
-    for (int i = 0; i < of->count; i++) {
+    for (int i = 0; i < of->count; ++i) {
         double low = (double)INFINITY;
         double high = -(double)INFINITY;
-        for (int node = 0; node < of->nodes; node++) {
+        for (int node = 0; node < of->nodes; ++node) {
             const double value = of->lines[i * of->nodes + node];
             low = value < low ? value : low;
             high = value > high ? value : high;
@@ -117,6 +121,7 @@ static int check_contradiction(const surface *of, double worst, gm_io_error *err
     if (worst <= fmax(least_contradiction, 0.1 * range)) {
         return GM_IO_OK;
     }
+
     char name[GMI_TRACE_NAME_SIZE];
     char text[GMI_NUMBER_SIZE];
     return gmi_error_set(
@@ -142,7 +147,7 @@ static between find_between(const family *of, double t) {
     between found = {0, 0, 0.0};
     if (of->count > 1) {
         while (found.first < of->count - 2 && t > place_of(of, found.first + 1)) {
-            found.first++;
+            ++found.first;
         }
         found.second = found.first + 1;
         const double from = place_of(of, found.first);
@@ -166,6 +171,8 @@ static double node_value(const surface *of, int face, const between *along_face,
     const int i1 = along_face->second;
     const int k0 = along_profile->first;
     const int k1 = along_profile->second;
+
+    /* Between two profiles, between two helices, and the bilinear surface that both contain. */
     const double profiles = mix(lines[i0 * nodes], lines[i1 * nodes], along_face->share);
     const double helices = mix(of->helix.lines[k0 * of->helix.nodes + face],
                                of->helix.lines[k1 * of->helix.nodes + face], along_profile->share);
@@ -179,9 +186,9 @@ static double node_value(const surface *of, int face, const between *along_face,
 static void fill_table(const surface *of, double *table) {
     const int face_nodes = of->helix.nodes;
     const int profile_nodes = of->profile.nodes;
-    for (int face = 0; face < face_nodes; face++) {
+    for (int face = 0; face < face_nodes; ++face) {
         const between along_face = find_between(&of->profile, (double)face / (face_nodes - 1));
-        for (int node = 0; node < profile_nodes; node++) {
+        for (int node = 0; node < profile_nodes; ++node) {
             const between along_profile =
                 find_between(&of->helix, (double)node / (profile_nodes - 1));
             *table++ = node_value(of, face, &along_face, node, &along_profile);
@@ -235,17 +242,22 @@ int gmi_surface_make(double *table, const gm_traces_options *options, const gmi_
     if (memory == NULL) {
         return gmi_error_memory(error);
     }
+
+    /* Levels first: the crossings and the lines contain them. */
     find_levels(&of);
     const double worst = find_crossings(&of);
     find_lines(&of.profile);
     find_lines(&of.helix);
+
     const int status = check_contradiction(&of, worst, error);
     if (status == GM_IO_OK) {
         report->crossing_error = fmax(report->crossing_error, worst);
         fill_table(&of, table);
+
+        /* Zero where the pitch is measured. */
         const double level =
             gmi_table_at(table, options->face_nodes, options->profile_nodes, 0.5, t2_zero);
-        for (int node = 0; node < options->face_nodes * options->profile_nodes; node++) {
+        for (int node = 0; node < options->face_nodes * options->profile_nodes; ++node) {
             table[node] -= level;
         }
     }

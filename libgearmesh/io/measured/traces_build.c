@@ -110,7 +110,7 @@ static int check_double(const builder *build, const gmi_measured *a, const gmi_m
 static int sort_traces(builder *build) {
     const int count = build->traces->count;
     qsort(build->measured, (size_t)count, sizeof *build->measured, compare_traces);
-    for (int i = 1; i < count; i++) {
+    for (int i = 1; i < count; ++i) {
         const int status = check_double(build, &build->measured[i - 1], &build->measured[i]);
         if (status != GM_IO_OK) {
             return status;
@@ -128,10 +128,12 @@ static double resampling_error(const builder *build, const gmi_measured *trace) 
     const int profile = trace->kind == GM_TRACE_PROFILE;
     const int cells = (profile ? build->options.profile_nodes : build->options.face_nodes) - 1;
     double worst = 0.0;
-    for (int i = 0; i < trace->count; i++) {
+    for (int i = 0; i < trace->count; ++i) {
         if (trace->t[i] < 0.0 || trace->t[i] > 1.0) {
             continue;
         }
+
+        /* The polygon of the table between the two nodes around the point. */
         const double place = trace->t[i] * cells;
         const double before = floor(place < cells ? place : cells - 1.0);
         const double low = gmi_measured_at(trace, before / cells);
@@ -172,6 +174,7 @@ static void report_constant(builder *build, int kind) {
         ++constant;
         first = index < first ? index : first;
     }
+
     if (constant == 0 || varying == 0) {
         return;
     }
@@ -183,22 +186,25 @@ static void report_constant(builder *build, int kind) {
 
 static void report_traces(builder *build) {
     gm_traces_report *report = &build->report;
-    for (int i = 0; i < build->traces->count; i++) {
+    for (int i = 0; i < build->traces->count; ++i) {
         const gmi_measured *trace = &build->measured[i];
         const int begins =
             i == 0 || !is_same_flank(trace, trace - 1) || trace->kind != trace[-1].kind;
         const double last = trace->t[trace->count - 1];
+
+        /* Traces and teeth of either kind, and how far all of them reach. */
         if (trace->kind == GM_TRACE_PROFILE) {
-            report->profile_traces[trace->side]++;
+            ++report->profile_traces[trace->side];
             report->profile_teeth[trace->side] += begins;
             narrow(report->profile_range, trace->t[0], last);
         } else {
-            report->helix_traces[trace->side]++;
+            ++report->helix_traces[trace->side];
             report->helix_teeth[trace->side] += begins;
             narrow(report->face_range, trace->t[0], last);
         }
         report->resampling_error = fmax(report->resampling_error, resampling_error(build, trace));
     }
+
     report_constant(build, GM_TRACE_PROFILE);
     report_constant(build, GM_TRACE_HELIX);
 }
@@ -228,7 +234,7 @@ static int add_set(const builder *build, gm_deviations *deviations, int tooth, i
     if (set->values == NULL) {
         return gmi_error_memory(build->error);
     }
-    deviations->set_count++;
+    ++deviations->set_count;
     return GM_IO_OK;
 }
 
@@ -240,8 +246,10 @@ static int make_sets(const builder *build, gm_deviations *deviations) {
     deviations->profile_nodes = build->options.profile_nodes;
     deviations->sets = calloc(SIDES * (size_t)teeth, sizeof *deviations->sets);
     int status = deviations->sets != NULL ? GM_IO_OK : gmi_error_memory(build->error);
-    for (int tooth = GMI_ALL; tooth < teeth; tooth++) {
-        for (int side = 0; side < SIDES && status == GM_IO_OK; side++) {
+
+    /* In the order of the file format: `*` first, then by tooth. */
+    for (int tooth = GMI_ALL; tooth < teeth; ++tooth) {
+        for (int side = 0; side < SIDES && status == GM_IO_OK; ++side) {
             if (is_measured(build, side) && is_for_all(build, side) == (tooth == GMI_ALL)) {
                 status = add_set(build, deviations, tooth, side);
             }
@@ -282,15 +290,16 @@ static void interpolate(const builder *build, const gm_deviations *deviations, i
                         const parts *of, int repeat) {
     const int teeth = build->gear->teeth;
     const int shown = is_for_all(build, side) ? 1 : teeth;
-    for (int k = 0; k < of->count; k++) {
+    for (int k = 0; k < of->count; ++k) {
         const part *low = &of->list[k];
         const part *high = &of->list[(k + 1) % of->count];
         const int turn = (high->tooth - low->tooth + teeth) % teeth;
         const int steps = turn > 0 ? turn : shown;
-        for (int step = 0; step < steps; step++) {
+        for (int step = 0; step < steps; ++step) {
             double *table = table_of(build, deviations, side, (low->tooth + step) % teeth);
             const double share = (double)step / steps;
-            for (size_t node = 0; node < node_count(build); node++) {
+
+            for (size_t node = 0; node < node_count(build); ++node) {
                 const double from = low->values[node / (size_t)repeat];
                 table[node] += from + share * (high->values[node / (size_t)repeat] - from);
             }
@@ -301,11 +310,11 @@ static void interpolate(const builder *build, const gm_deviations *deviations, i
 /* Splits a surface: along t1 alone at the place of the pitch, and the rest. */
 static void split_surface(const builder *build, double *table, double *helix) {
     const int nodes = build->options.profile_nodes;
-    for (int face = 0; face < build->options.face_nodes; face++) {
+    for (int face = 0; face < build->options.face_nodes; ++face) {
         const double t1 = (double)face / (build->options.face_nodes - 1);
         helix[face] = gmi_table_at(table, build->options.face_nodes, nodes, t1, build->t2_zero);
     }
-    for (size_t node = 0; node < node_count(build); node++) {
+    for (size_t node = 0; node < node_count(build); ++node) {
         table[node] -= helix[node / (size_t)nodes];
     }
 }
@@ -317,7 +326,7 @@ static int flank_end(const builder *build, int begin, int *profiles) {
     while (end < build->traces->count &&
            is_same_flank(&build->measured[begin], &build->measured[end])) {
         *profiles += build->measured[end].kind == GM_TRACE_PROFILE ? 1 : 0;
-        end++;
+        ++end;
     }
     return end;
 }
@@ -348,6 +357,8 @@ static int build_parts(builder *build, int side, parts *profile, parts *helix, d
         int profiles = 0;
         const int end = flank_end(build, begin, &profiles);
         const int helices = end - begin - profiles;
+
+        /* What the traces of one flank span. */
         if (traces->side == side) {
             int status = check_flank(build, begin, profiles, helices);
             if (status == GM_IO_OK) {
@@ -357,6 +368,8 @@ static int build_parts(builder *build, int side, parts *profile, parts *helix, d
             if (status != GM_IO_OK) {
                 return status;
             }
+
+            /* Helix and rest apart: teeth that lack one of them get it from others. */
             split_surface(build, tables, lines);
             const part surface = {traces->tooth, tables};
             const part line = {traces->tooth, lines};
@@ -366,6 +379,7 @@ static int build_parts(builder *build, int side, parts *profile, parts *helix, d
             if (helices > 0) {
                 helix->list[helix->count++] = line;
             }
+
             tables += node_count(build);
             lines += build->options.face_nodes;
         }
@@ -381,8 +395,11 @@ static int build_side(builder *build, gm_deviations *deviations, int side) {
     if (flanks == 0) {
         return GM_IO_OK;
     }
+
+    /* A surface and a helix for every flank that was measured. */
     double *values = malloc(flanks * nodes * sizeof *values);
     part *list = malloc(2 * flanks * sizeof *list);
+
     int status = values != NULL && list != NULL ? GM_IO_OK : gmi_error_memory(build->error);
     if (status == GM_IO_OK) {
         parts profile = {0, list};
@@ -431,6 +448,8 @@ static int build_deviations(builder *build, gm_deviations *deviations) {
         status = gmi_traces_map(&build->map, build->traces);
         build->measured = build->map.measured;
     }
+
+    /* Traces that look as if in other units, or with the other sign, go no further. */
     if (status == GM_IO_OK) {
         status = gmi_judge_deviations(build->measured, build->traces->count, build->pair,
                                       &build->options, &build->report, build->error);
@@ -438,11 +457,13 @@ static int build_deviations(builder *build, gm_deviations *deviations) {
     if (status == GM_IO_OK) {
         status = sort_traces(build);
     }
+
+    /* One side after the other: surfaces of measured flanks, and the teeth in between. */
     if (status == GM_IO_OK) {
         report_traces(build);
         status = make_sets(build, deviations);
     }
-    for (int side = 0; side < SIDES && status == GM_IO_OK; side++) {
+    for (int side = 0; side < SIDES && status == GM_IO_OK; ++side) {
         status = build_side(build, deviations, side);
     }
     return status;
@@ -477,6 +498,7 @@ int gm_traces_build(gm_deviations *deviations, gm_traces_report *report, const g
                               .options = &build.options,
                               .report = &build.report,
                               .error = error};
+
     const int status = build_deviations(&build, deviations);
     gmi_mapping_free(&build.map);
     if (status != GM_IO_OK) {

@@ -43,7 +43,7 @@ static gm_flank_quality *flank_of(const evaluation *of, int tooth, int side) {
 
 static void clear_quality(gm_quality *quality) {
     const gm_quality_value none = {(double)NAN, -1, -1, 0};
-    for (int kind = 0; kind < GM_QUALITY_KINDS; kind++) {
+    for (int kind = 0; kind < GM_QUALITY_KINDS; ++kind) {
         quality->worst[kind] = none;
     }
     quality->quality_class = 0;
@@ -52,7 +52,7 @@ static void clear_quality(gm_quality *quality) {
 static void clear_flanks(const evaluation *of) {
     const double no = (double)NAN;
     const gm_flank_quality none = {no, no, no, no, no, no, no, no};
-    for (int i = 0; i < 2 * of->gear->teeth; i++) {
+    for (int i = 0; i < 2 * of->gear->teeth; ++i) {
         of->flanks[i] = none;
     }
 }
@@ -83,10 +83,11 @@ static void evaluate_pitch(const evaluation *of, const double *material, int sid
     const double arc = arc_per_material(of, side);
     double low = (double)INFINITY;
     double high = -(double)INFINITY;
-    for (int tooth = 0; tooth < teeth; tooth++) {
+    for (int tooth = 0; tooth < teeth; ++tooth) {
         const double place = arc * material[tooth];
         const double before = arc * material[(tooth + teeth - 1) % teeth];
         gm_flank_quality *flank = flank_of(of, tooth, side);
+
         flank->single_pitch = place - before;
         flank->cumulative_pitch = place - arc * material[0];
         low = place < low ? place : low;
@@ -108,7 +109,7 @@ static void evaluate_run_out(const evaluation *of, const gm_pitch *pitch) {
     double low = (double)INFINITY;
     double high = -(double)INFINITY;
     int outermost = -1;
-    for (int tooth = 0; tooth < of->gear->teeth; tooth++) {
+    for (int tooth = 0; tooth < of->gear->teeth; ++tooth) {
         const double shift = ball_shift(of, pitch, tooth);
         low = shift < low ? shift : low;
         if (shift > high) {
@@ -141,7 +142,7 @@ static void evaluate_positions(const evaluation *of, const gm_pitch *pitch) {
 /* The set that serves a flank, -1 = none. */
 static int set_of_flank(const int *set_of_slot, int tooth, int side) {
     int set = -1;
-    for (int k = 0; k < GMI_CANDIDATES && set < 0; k++) {
+    for (int k = 0; k < GMI_CANDIDATES && set < 0; ++k) {
         set = set_of_slot[gmi_slot_candidate(tooth, side, k)];
     }
     return set;
@@ -178,7 +179,7 @@ static void note_flank(const evaluation *of, int tooth, int side) {
 
 static void evaluate_all_flanks(const evaluation *of, const gm_deviations *deviations,
                                 const int *set_of_slot, double *trace) {
-    for (int i = 0; i < 2 * of->gear->teeth; i++) {
+    for (int i = 0; i < 2 * of->gear->teeth; ++i) {
         const int side = i / of->gear->teeth;
         const int tooth = i % of->gear->teeth;
         const int set = set_of_flank(set_of_slot, tooth, side);
@@ -196,6 +197,8 @@ static int evaluate_deviations(const evaluation *of, const gm_deviations *deviat
     if (status != GM_IO_OK) {
         return status;
     }
+
+    /* One trace at a time, along the longer direction at the most. */
     const int nodes = deviations->face_nodes > deviations->profile_nodes
                           ? deviations->face_nodes
                           : deviations->profile_nodes;
@@ -203,6 +206,7 @@ static int evaluate_deviations(const evaluation *of, const gm_deviations *deviat
     if (trace != NULL) {
         evaluate_all_flanks(of, deviations, set_of_slot, trace);
     }
+
     free(set_of_slot);
     const int has_memory = trace != NULL;
     free(trace);
@@ -220,14 +224,14 @@ static int class_of(const gm_pair *pair, int wheel, int kind, double value) {
     int quality_class = GM_QUALITY_BEST_CLASS;
     while (quality_class < BEYOND_CLASSES &&
            value > gm_quality_tolerance(pair, wheel, kind, quality_class)) {
-        quality_class++;
+        ++quality_class;
     }
     return quality_class;
 }
 
 static void find_classes(const evaluation *of) {
     gm_quality *quality = of->quality;
-    for (int kind = 0; kind < GM_QUALITY_KINDS; kind++) {
+    for (int kind = 0; kind < GM_QUALITY_KINDS; ++kind) {
         gm_quality_value *worst = &quality->worst[kind];
         if (!isnan(worst->value)) {
             worst->quality_class = class_of(of->pair, of->wheel, kind, worst->value);
@@ -267,6 +271,8 @@ static int evaluate(evaluation *of, const gm_deviations *deviations, const gm_pi
     if (status != GM_IO_OK) {
         return status;
     }
+
+    /* Room for the values of every flank, unless the caller wants them. */
     gm_flank_quality *own = NULL;
     if (of->flanks == NULL) {
         own = malloc(2 * (size_t)of->gear->teeth * sizeof *own);
@@ -275,6 +281,7 @@ static int evaluate(evaluation *of, const gm_deviations *deviations, const gm_pi
     if (of->flanks == NULL) {
         return gmi_error_memory(error);
     }
+
     clear_flanks(of);
     if (deviations != NULL) {
         status = evaluate_deviations(of, deviations, error);
@@ -298,6 +305,7 @@ int gm_quality_evaluate(gm_quality *quality, gm_flank_quality *flanks, const gm_
     }
     gm_quality_options defaults;
     gm_quality_options_default(&defaults);
+
     evaluation of = {.quality = quality,
                      .flanks = flanks,
                      .pair = pair,

@@ -81,7 +81,7 @@ int gm_quality_is_in_scope(const gm_pair *pair, int wheel) {
                             pair->face_width, fabs(pair->helix_angle)};
     static const double low[] = {5.0, 5e-3, 0.5e-3, 4e-3, 0.0};
     const double high[] = {1000.0, 15.0, 70e-3, 1.2, GMI_PI / 4.0};
-    for (int i = 0; i < 5; i++) {
+    for (int i = 0; i < 5; ++i) {
         if (!(value[i] >= low[i] - slack && value[i] <= high[i] + slack)) {
             return 0;
         }

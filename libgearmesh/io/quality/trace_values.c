@@ -45,7 +45,7 @@ gmi_line gmi_trace_mean_line(const double *trace, int nodes, const gmi_range *ra
     moments of = {0.0, 0.0};
     double t0 = range->from;
     double f0 = trace_at(trace, nodes, t0);
-    for (int node = 1; node < nodes && node_at(node, nodes) < range->to; node++) {
+    for (int node = 1; node < nodes && node_at(node, nodes) < range->to; ++node) {
         const double t1 = node_at(node, nodes);
         if (t1 > t0) {
             add_piece(&of, t0, f0, t1, trace[node], middle);
@@ -82,11 +82,13 @@ static void add_both(extremes *of, double value) {
 static double range_from(const double *trace, int nodes, const gmi_range *range, gmi_line line) {
     extremes of = {(double)INFINITY, -(double)INFINITY};
     const double ends[2] = {range->from, range->to};
-    for (int end = 0; end < 2; end++) {
+    for (int end = 0; end < 2; ++end) {
         const double t = ends[end];
         add_both(&of, trace_at(trace, nodes, t) - (line.level + line.gradient * t));
     }
-    for (int node = 0; node < nodes; node++) {
+
+    /* Corners within the range count both ways; behind it only material that sticks out, if at all. */
+    for (int node = 0; node < nodes; ++node) {
         const double t = node_at(node, nodes);
         const double value = trace[node] - (line.level + line.gradient * t);
         if (t >= range->from && t <= range->to) {
@@ -133,6 +135,8 @@ int gmi_trace_ranges(gmi_range ranges[2], const gm_pair *pair, const gm_quality_
         return gmi_error_set(error, GM_IO_ERR_OPTION, 0,
                              "the face margin must be from 0 to 0.45 of the face width");
     }
+
+    /* What sticks out below the profile range is the fillet: it does not count. */
     const gmi_range profile = {options->profile_from, options->profile_to, 0, options->end_material,
                                options->extrapolate};
     const gmi_range helix = {margin, 1.0 - margin, options->end_material, options->end_material,
@@ -147,14 +151,14 @@ void gmi_profile_trace(double *trace, const double *table, int face_nodes, int p
     /* An even number of grid lines has none in the middle: halfway between two. */
     const double *low = table + (size_t)((face_nodes - 1) / 2) * (size_t)profile_nodes;
     const double *high = table + (size_t)(face_nodes / 2) * (size_t)profile_nodes;
-    for (int node = 0; node < profile_nodes; node++) {
+    for (int node = 0; node < profile_nodes; ++node) {
         trace[node] = factor * 0.5 * (low[node] + high[node]);
     }
 }
 
 void gmi_helix_trace(double *trace, const double *table, int face_nodes, int profile_nodes,
                      double factor) {
-    for (int node = 0; node < face_nodes; node++) {
+    for (int node = 0; node < face_nodes; ++node) {
         const double *row = table + (size_t)node * (size_t)profile_nodes;
         trace[node] = factor * 0.5 * (row[(profile_nodes - 1) / 2] + row[profile_nodes / 2]);
     }
