@@ -12,6 +12,7 @@
 #include "keys.h"
 #include "memory.h"
 #include "modification_keys.h"
+#include "slips.h"
 
 #include <stdarg.h>
 #include <stdlib.h>
@@ -278,6 +279,7 @@ int config_load(config *conf, const config_request *request) {
 
     if (status == 0) {
         message_begin(request->messages, MOST_MESSAGES);
+        slips_warn(conf);
         if (conf->purpose != CONFIG_FOR_FLANKS) {
             config_warn_of_unused(conf);
         }

@@ -126,6 +126,7 @@ static const struct {
     double divisor, factor;
 } units[] = {
     [UNIT_SI] = {1, 1},
+    [UNIT_SHARE] = {1, 1},
     [UNIT_MM] = {1e3, 1},
     [UNIT_MM_DIAMETER] = {2e3, 1},
     [UNIT_UM] = {1e6, 1},
@@ -201,23 +202,37 @@ static void describe_range(const key_range *range, char *text, size_t size) {
     }
 }
 
-static int check_range(const key_range *range, double value, const char *text, char *fault) {
+/* What a number beyond its range was perhaps meant to be, as the end of a message. */
+static void describe_slip(const key_spec *key, double value, char *text, size_t size) {
+    *text = '\0';
+    if ((key->unit == UNIT_MM || key->unit == UNIT_MM_DIAMETER) && value > 0 &&
+        value < key->range.low && 1e3 * value >= key->range.low) {
+        snprintf(text, size, "; was it meant in metres? write %.6g", 1e3 * value);
+    } else if (key->unit == UNIT_SHARE && value > 1 && value <= 100) {
+        snprintf(text, size, "; was it meant in percent? write %.6g", value / 100);
+    }
+}
+
+static int check_range(const key_spec *key, double value, const char *text, char *fault) {
+    const key_range *range = &key->range;
     const int low = range->open_low ? value <= range->low : value < range->low;
     const int high = range->open_high ? value >= range->high : value > range->high;
     char requirement[80];
+    char slip[80];
 
     if (!low && !high) {
         return 0;
     }
     describe_range(range, requirement, sizeof requirement);
-    snprintf(fault, KEY_FAULT_SIZE, "must be %s (got %.80s)", requirement, text);
+    describe_slip(key, value, slip, sizeof slip);
+    snprintf(fault, KEY_FAULT_SIZE, "must be %s (got %.80s)%s", requirement, text, slip);
     return 1;
 }
 
 static int assign_number(const key_spec *key, double *target, const char *text, char *fault) {
     double value;
 
-    if (read_number(text, &value, fault) || check_range(&key->range, value, text, fault)) {
+    if (read_number(text, &value, fault) || check_range(key, value, text, fault)) {
         return 1;
     }
     *target = value / units[key->unit].divisor * units[key->unit].factor;
@@ -230,7 +245,7 @@ static int assign_count(const key_spec *key, int *target, const char *text, char
     if (read_number(text, &value, fault)) {
         return 1;
     }
-    if (check_range(&key->range, value, text, fault)) {
+    if (check_range(key, value, text, fault)) {
         return 1;
     }
     if (value != floor(value)) {

@@ -70,16 +70,16 @@ static const key_spec keys[] = {
      .used = FOR_3D, .help = "multiplies deviations and pitch"},
     {NAME("flanks", "deviation_direction"), CHOICE("normal transverse"), INTO(deviation_direction),
      .standard = "normal", .used = FOR_3D, .help = "in which deviations are measured"},
-    {NAME("flanks", "profile_from"), NUMBER(UNIT_SI, BETWEEN(0, 1)), INTO(profile_from),
+    {NAME("flanks", "profile_from"), NUMBER(UNIT_SHARE, BETWEEN(0, 1)), INTO(profile_from),
      .standard = "0", .used = FOR_3D, .help = "deviations (not pitch) count from here (start 0, tip 1)"},
-    {NAME("flanks", "profile_to"), NUMBER(UNIT_SI, BETWEEN(0, 1)), INTO(profile_to),
+    {NAME("flanks", "profile_to"), NUMBER(UNIT_SHARE, BETWEEN(0, 1)), INTO(profile_to),
      .standard = "1", .used = FOR_3D, .help = "to here"},
     {NAME("flanks", "profile_blend"), NUMBER(UNIT_SI, BETWEEN(0, 1000)), INTO(profile_blend),
      .standard = "0.1", .used = FOR_3D, .help = "width of the ramps to zero outside that range"},
 
     {NAME("modifications", "tolerance_um"), NUMBER(UNIT_UM, BETWEEN(1e-5, 1e4)), INTO(modification_tolerance),
      .standard = "0.01", .used = FOR_3D, .help = "how far the table of a design may be off; linear reliefs have none"},
-    MODIFICATION_ROWS,
+    MODIFICATION_ROWS
 
     {NAME("mesh", "model"), CHOICE("simple 3d"), INTO(model), .standard = "3d",
      .help = "simple: a spring with backlash"},

@@ -2,37 +2,36 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 
 #include "modification_keys.h"
+#include "modification_kinds.h"
 
 #include <math.h>
 #include <string.h>
 
 /* Places in config.modifications[gear]: a flank with GM_DRIVE or GM_COAST stands at 1 + side. */
-enum { BOTH_FLANKS = 0, PLACES = 3, KEY_SIZE = 80 };
+enum { BOTH_FLANKS = 0, PLACES = MODIFICATION_PLACES, KEY_SIZE = MODIFICATION_KEY_SIZE };
 
 static const char *const place_names[2][PLACES] = {{"pinion", "pinion_drive", "pinion_coast"},
                                                    {"wheel", "wheel_drive", "wheel_coast"}};
 
-/* What keys a modification has; crownings have no linear shape. */
+/* What the keys of a kind are called, and which of them there are: see modification_kinds.h. */
+#define NO_FACE_SIZE_SUFFIX     NULL
+#define FACE_LENGTH_SUFFIX      "_length_mm"
+#define FACE_WIDTH_SUFFIX       "_width_mm"
+#define NO_PROFILE_RANGE_EXISTS 0
+#define PROFILE_RANGE_EXISTS    1
+#define NO_SHAPE_FIRST          GM_SHAPE_LINEAR
+#define CURVED_SHAPES_FIRST     GM_SHAPE_PARABOLIC
+#define ALL_SHAPES_FIRST        GM_SHAPE_LINEAR
+
+#define KIND_TRAITS(unused, kind, name, shown, which, range_of_amount, size, range, shapes, text)  \
+    [kind] = {(name), size##_SUFFIX, range##_EXISTS, shapes##_FIRST},
+
 static const struct {
     const char *name;
     const char *width; /* suffix of its length along the face, NULL = none */
     int has_range;     /* along the profile */
-    int first_shape;
-} kinds[GM_MODIFICATION_KINDS] = {
-    [GM_MOD_HELIX_SLOPE] = {"helix_slope", NULL, 0, GM_SHAPE_LINEAR},
-    [GM_MOD_CROWNING] = {"crowning", NULL, 0, GM_SHAPE_PARABOLIC},
-    [GM_MOD_END_RELIEF_I] = {"end_relief_I", "_length_mm", 0, GM_SHAPE_LINEAR},
-    [GM_MOD_END_RELIEF_II] = {"end_relief_II", "_length_mm", 0, GM_SHAPE_LINEAR},
-    [GM_MOD_PROFILE_SLOPE] = {"profile_slope", NULL, 0, GM_SHAPE_LINEAR},
-    [GM_MOD_PROFILE_CROWNING] = {"profile_crowning", NULL, 0, GM_SHAPE_PARABOLIC},
-    [GM_MOD_TIP_RELIEF] = {"tip_relief", NULL, 1, GM_SHAPE_LINEAR},
-    [GM_MOD_ROOT_RELIEF] = {"root_relief", NULL, 1, GM_SHAPE_LINEAR},
-    [GM_MOD_TWIST] = {"twist", NULL, 0, GM_SHAPE_LINEAR},
-    [GM_MOD_TIP_CORNER_I] = {"tip_corner_I", "_width_mm", 1, GM_SHAPE_LINEAR},
-    [GM_MOD_TIP_CORNER_II] = {"tip_corner_II", "_width_mm", 1, GM_SHAPE_LINEAR},
-    [GM_MOD_ROOT_CORNER_I] = {"root_corner_I", "_width_mm", 1, GM_SHAPE_LINEAR},
-    [GM_MOD_ROOT_CORNER_II] = {"root_corner_II", "_width_mm", 1, GM_SHAPE_LINEAR},
-};
+    int first_shape;   /* of those to choose from */
+} kinds[GM_MODIFICATION_KINDS] = {MODIFICATION_KINDS(KIND_TRAITS, )};
 
 /* The keys of one modification in one place. */
 typedef struct key_place {
@@ -61,6 +60,13 @@ static const char *key_name(char name[KEY_SIZE], const key_place *at, int field)
     snprintf(name, KEY_SIZE, "modifications.%s_%s%s", place_names[at->gear][at->place],
              kinds[at->kind].name, suffix != NULL ? suffix : "");
     return name;
+}
+
+const char *modification_key_name(char name[MODIFICATION_KEY_SIZE], int gear, int place, int kind,
+                                  int field) {
+    const key_place at = {NULL, gear, place, kind};
+
+    return key_name(name, &at, field);
 }
 
 void modification_keys_clear(config *conf) {

@@ -16,6 +16,13 @@ typedef struct gear_design {
     gm_modifications of[2]; /* GM_DRIVE, GM_COAST; count 0 = none */
 } gear_design;
 
+/* Places of keys in config.modifications[gear]: both flanks, drive, coast. */
+enum { MODIFICATION_PLACES = 3, MODIFICATION_KEY_SIZE = 80 };
+
+/* "modifications.pinion_drive_tip_relief_um" */
+const char *modification_key_name(char name[MODIFICATION_KEY_SIZE], int gear, int place, int kind,
+                                  int field);
+
 /* Marks all keys as not given, those included that a modification does not have. */
 void modification_keys_clear(config *config);
 

@@ -61,7 +61,7 @@ static double pairs_in_contact(const dynamic_sample *sample) {
 }
 
 /* Angles, time and the pinion's speed grow steadily, pairs are counts: a filter has nothing to do there. */
-const dynamic_column dynamic_columns[DYNAMIC_COLUMNS] = {
+const dynamic_column dynamic_columns[] = {
     {"time_s", 0, NEEDS_NOTHING, time_of},
     {"pinion_speed_rpm", 0, NEEDS_NOTHING, pinion_speed},
     {"wheel_speed_rpm", 1, NEEDS_NOTHING, wheel_speed},
@@ -75,10 +75,12 @@ const dynamic_column dynamic_columns[DYNAMIC_COLUMNS] = {
     {"pairs_in_contact", 0, NEEDS_PAIRS, pairs_in_contact},
 };
 
-column_names dynamic_column_names(void) {
-    column_names names = {.count = DYNAMIC_COLUMNS};
+const int dynamic_column_count = sizeof dynamic_columns / sizeof dynamic_columns[0];
 
-    for (int i = 0; i < DYNAMIC_COLUMNS; ++i) {
+column_names dynamic_column_names(void) {
+    column_names names = {.count = dynamic_column_count};
+
+    for (int i = 0; i < dynamic_column_count; ++i) {
         names.name[i] = dynamic_columns[i].name;
     }
     return names;

@@ -32,9 +32,8 @@ typedef struct dynamic_column {
     double (*value)(const dynamic_sample *sample);
 } dynamic_column;
 
-enum { DYNAMIC_COLUMNS = 11 };
-
-extern const dynamic_column dynamic_columns[DYNAMIC_COLUMNS];
+extern const dynamic_column dynamic_columns[];
+extern const int dynamic_column_count; /* at most COLUMNS_MAX */
 
 column_names dynamic_column_names(void);
 

@@ -26,13 +26,13 @@ typedef struct dynamic_run {
     output_file *output;
     progress progress;
     int factor; /* samples per row */
-    int is_wanted[DYNAMIC_COLUMNS];
+    int is_wanted[COLUMNS_MAX];
     enum column_need row_need;    /* the most that a column asked for needs of the mesh, */
     enum column_need sample_need; /* and of the mesh between the rows, as it is filtered */
     double rows;                  /* number of rows, a whole number */
     dynamic_sample sample;
-    double values[DYNAMIC_COLUMNS]; /* of the sample */
-    char why[640];                  /* the run ended early */
+    double values[COLUMNS_MAX]; /* of the sample */
+    char why[640];              /* the run ended early */
 } dynamic_run;
 
 /* ---------------------------------------------------------------------------------------------
@@ -80,7 +80,7 @@ static int take_sample(dynamic_run *run, double time, int of_row) {
         }
     }
 
-    for (int i = 0; i < DYNAMIC_COLUMNS; ++i) {
+    for (int i = 0; i < dynamic_column_count; ++i) {
         if (run->is_wanted[i] && (of_row || dynamic_columns[i].is_filtered)) {
             run->values[i] = dynamic_columns[i].value(&run->sample);
         }
@@ -119,7 +119,7 @@ static int take_row_period(dynamic_run *run, double row) {
         /* The rows that lag behind by the filter's delay are complete with their period's first sample. */
         const double complete = row - (double)(decimator_delay(run->filter) / run->factor);
         if (i == 0 && complete >= 0.0) {
-            double values[DYNAMIC_COLUMNS];
+            double values[COLUMNS_MAX];
             decimator_values(run->filter, values);
             if (output_row(run->output, values) != 0) {
                 snprintf(run->why, sizeof run->why, "the disk took no more at t = %.9g s", time);
@@ -175,10 +175,10 @@ static enum column_need larger(enum column_need a, enum column_need b) {
 
 /* What is asked for decides what has to be computed, and whether there is anything to filter. */
 static int start_filter(dynamic_run *run) {
-    int filtered[DYNAMIC_COLUMNS];
+    int filtered[COLUMNS_MAX];
     int any = 0;
 
-    for (int i = 0; i < DYNAMIC_COLUMNS; ++i) {
+    for (int i = 0; i < dynamic_column_count; ++i) {
         const dynamic_column *column = &dynamic_columns[i];
         run->is_wanted[i] = output_wants(run->output, i);
         filtered[i] = run->is_wanted[i] && column->is_filtered;
@@ -192,7 +192,7 @@ static int start_filter(dynamic_run *run) {
         }
     }
     run->factor = any ? run->conf->oversampling : 1;
-    run->filter = decimator_create(run->factor, DYNAMIC_COLUMNS, filtered);
+    run->filter = decimator_create(run->factor, dynamic_column_count, filtered);
     return run->filter != NULL ? 0 : message_no_memory(run->conf->messages);
 }
 

@@ -42,16 +42,18 @@ static double load_torque(const static_position *position) {
 }
 
 /* Those of several loads come last. The load tells rows apart only where there are several. */
-const static_column static_columns[STATIC_COLUMNS] = {
+const static_column static_columns[] = {
     {"pinion_angle_rad", 0, pinion_angle},          {"te_um", 0, transmission_error},
     {"mesh_stiffness_N_per_um", 0, mesh_stiffness}, {"contact_length_mm", 0, contact_length},
     {"pairs_in_contact", 0, pairs_in_contact},      {"load_torque_Nm", 1, load_torque},
 };
 
+const int static_column_count = sizeof static_columns / sizeof static_columns[0];
+
 column_names static_column_names(const config *conf) {
     column_names names = {.count = 0};
 
-    for (int i = 0; i < STATIC_COLUMNS; ++i) {
+    for (int i = 0; i < static_column_count; ++i) {
         if (!static_columns[i].of_several_loads || conf->loads > 1) {
             names.name[names.count++] = static_columns[i].name;
         }

@@ -26,9 +26,8 @@ typedef struct static_column {
     double (*value)(const static_position *position);
 } static_column;
 
-enum { STATIC_COLUMNS = 6 };
-
-extern const static_column static_columns[STATIC_COLUMNS];
+extern const static_column static_columns[];
+extern const int static_column_count; /* at most COLUMNS_MAX */
 
 /* Those of the analysis: the first of static_columns. */
 column_names static_column_names(const config *conf);

@@ -80,8 +80,8 @@ static int write_position(const config *conf, const gear_mesh *gears, double ang
     before->slope = pair->pinion.base_radius +
                     pair->wheel.base_radius * mesh->d_pinion_angle / mesh->d_wheel_angle;
 
-    double values[STATIC_COLUMNS];
-    for (int i = 0; i < STATIC_COLUMNS; ++i) {
+    double values[COLUMNS_MAX];
+    for (int i = 0; i < static_column_count; ++i) {
         values[i] = static_columns[i].value(&position);
     }
     return output_row(output, values);

@@ -1,0 +1,454 @@
+/* SPDX-FileCopyrightText: The gearmesh authors */
+/* SPDX-License-Identifier: BSD-3-Clause */
+
+#include "slips.h"
+#include "modification_keys.h"
+
+#include <math.h>
+#include <stddef.h>
+
+static const double pi = 3.14159265358979323846;
+
+/* What gears are like, in mm, as far as the drawing can be made sense of: slips found so far are put right. */
+typedef struct usual_gear {
+    double module;    /* normal */
+    double cos_helix; /* of the reference helix */
+    double face_width;
+    double diameter[2]; /* reference, pinion and wheel */
+} usual_gear;
+
+static int is_within(double value, double low, double high) {
+    return value >= low && value <= high;
+}
+
+static int is_given(const config *conf, const char *key) {
+    return config_text(conf, key) != NULL;
+}
+
+/* The number is as it was written. `why` says what is odd about it. */
+static void tell(const config *conf, const char *key, const char *unit, const char *why,
+                 const char *meant, double right) {
+    config_warn(conf, key, "is %.40s%s, %s; was it meant %s? write %.6g", config_text(conf, key),
+                unit, why, meant, right);
+}
+
+/* ---------------------------------------------------------------------------------------------
+ * Another unit
+ * ------------------------------------------------------------------------------------------- */
+
+/* A unit that a value may have been written in: its size in the unit of the key. */
+typedef struct other_unit {
+    const char *meant;
+    double size;
+} other_unit;
+
+static const other_unit lengths[] = {
+    {"in metres", 1e3}, {"in inches", 25.4}, {"in micrometres", 1e-3}, {NULL, 0}};
+
+/* The first unit that makes a value usual, NULL = none. */
+static const other_unit *unit_for(const other_unit *units, double value, double low, double high) {
+    for (; units->meant != NULL; ++units) {
+        if (is_within(value * units->size, low, high)) {
+            return units;
+        }
+    }
+    return NULL;
+}
+
+/*
+ * Tells a value that is outside of what is `possible` (low, high) and would be usual in another unit. `scale` is what
+ * values are compared with, such as the module. Returns the value that is probably meant.
+ */
+static double judge(const config *conf, const char *key, double value, const char *unit,
+                    double scale, const double possible[2], const double usual[2],
+                    const other_unit *units, const char *why) {
+    const double share = value / scale;
+
+    if (isnan(share) || is_within(share, possible[0], possible[1]) || !is_given(conf, key)) {
+        return value;
+    }
+    const other_unit *other = unit_for(units, share, usual[0], usual[1]);
+    if (other == NULL) {
+        return value;
+    }
+    tell(conf, key, unit, why, other->meant, value * other->size);
+    return value * other->size;
+}
+
+/* ---------------------------------------------------------------------------------------------
+ * Angles
+ * ------------------------------------------------------------------------------------------- */
+
+static double judge_pressure_angle(const config *conf) {
+    static const double possible[] = {5, 45}, usual[] = {8, 40};
+    static const other_unit radians[] = {{"in radians", 180 / 3.14159265358979323846}, {NULL, 0}};
+    const double degrees = conf->gears.normal_pressure_angle * 180 / pi;
+
+    return judge(conf, "gears.normal_pressure_angle_deg", degrees, " deg", 1, possible, usual,
+                 radians, "smaller than that of any tooth");
+}
+
+/* Helix angles begin at some degrees: less has no overlap to speak of. */
+static double judge_helix_angle(const config *conf) {
+    static const double possible[] = {1.06, 60}, usual[] = {2.5, 60};
+    static const other_unit radians[] = {{"in radians", 180 / 3.14159265358979323846}, {NULL, 0}};
+    const double degrees = conf->gears.helix_angle * 180 / pi;
+
+    if (degrees == 0) {
+        return degrees;
+    }
+    /* The sign is the hand. */
+    return judge(conf, "gears.helix_angle_deg", degrees, " deg", degrees > 0 ? 1 : -1, possible,
+                 usual, radians, "less than helical gears have");
+}
+
+/* ---------------------------------------------------------------------------------------------
+ * Module and centre distance
+ * ------------------------------------------------------------------------------------------- */
+
+/* Sum of the profile shifts that gives no backlash at a centre distance (mm); NaN: the gears do not reach or overlap. */
+static double shift_sum(const config *conf, double module, double pressure_angle, double cos_helix,
+                        double center_distance) {
+    const double teeth = conf->gears.pinion_teeth + conf->gears.wheel_teeth;
+    const double tan_normal = tan(pressure_angle * pi / 180);
+    const double transverse = atan(tan_normal / cos_helix);
+    const double reference = module * teeth / (2 * cos_helix);
+    const double working = acos(reference * cos(transverse) / center_distance);
+
+    return teeth * ((tan(working) - working) - (tan(transverse) - transverse)) / (2 * tan_normal);
+}
+
+/*
+ * Does a module fit the centre distance? Sums of profile shifts beyond these are not made; where both shifts are
+ * given, the sum is known but for the backlash.
+ */
+static int fits(const config *conf, double sum) {
+    const double given = conf->gears.pinion_profile_shift + conf->gears.wheel_profile_shift;
+
+    return isnan(given) ? is_within(sum, -0.6, 3) : fabs(sum - given) <= 0.15;
+}
+
+/* A transverse module in place of the normal one is too large by 1 / cos(beta), and the shifts become negative. */
+static int is_transverse_module(const config *conf, double as_given, double as_transverse) {
+    const double given = conf->gears.pinion_profile_shift + conf->gears.wheel_profile_shift;
+
+    if (!isnan(given)) {
+        return !fits(conf, as_given) && fabs(as_transverse - given) <= 0.03;
+    }
+    /* Gears without profile shift give themselves away sooner. */
+    return (!fits(conf, as_given) && is_within(as_transverse, -0.3, 1.6)) ||
+           (!(as_given >= -0.25) && fabs(as_transverse) <= 0.02);
+}
+
+/* Module that is probably meant, where it does not fit the centre distance. */
+static double judge_against_distance(const config *conf, double module, double distance,
+                                     double pressure_angle, double cos_helix) {
+    static const char key[] = "gears.normal_module_mm";
+    static const char why[] = "which does not fit the centre distance";
+    const double sum = shift_sum(conf, module, pressure_angle, cos_helix, distance);
+
+    const double transverse = module * cos_helix;
+    const double transverse_sum = shift_sum(conf, transverse, pressure_angle, cos_helix, distance);
+    if (cos_helix < 0.995 && is_transverse_module(conf, sum, transverse_sum)) {
+        tell(conf, key, " mm", why, "as the transverse module", transverse);
+        return transverse;
+    }
+
+    /* Teeth per inch of the reference diameter, in the normal section. */
+    const double of_pitch = 25.4 / module;
+    const double of_pitch_sum = shift_sum(conf, of_pitch, pressure_angle, cos_helix, distance);
+    if (!fits(conf, sum) && fits(conf, of_pitch_sum)) {
+        tell(conf, key, " mm", why, "as the diametral pitch", of_pitch);
+        return of_pitch;
+    }
+    return module;
+}
+
+/* A drawing in inches: the diametral pitch P in place of the module, and a = sum(z) / (2 P cos(beta)) in inches. */
+static int is_inch_drawing(const config *conf, double cos_helix) {
+    const double teeth = conf->gears.pinion_teeth + conf->gears.wheel_teeth;
+    const double pitch = 1e3 * conf->gears.normal_module;
+    const double inches = 1e3 * conf->gears.center_distance;
+
+    return is_within(inches * 2 * pitch * cos_helix / teeth, 0.9, 1.1);
+}
+
+static double judge_inch_drawing(const config *conf) {
+    static const char why[] = "which does not fit the other";
+    const double module = 25.4 / (1e3 * conf->gears.normal_module);
+
+    tell(conf, "gears.normal_module_mm", " mm", why, "as the diametral pitch", module);
+    tell(conf, "gears.center_distance_mm", " mm", why, "in inches",
+         25.4e3 * conf->gears.center_distance);
+    return module;
+}
+
+/* ---------------------------------------------------------------------------------------------
+ * Lengths of the drawing
+ * ------------------------------------------------------------------------------------------- */
+
+/* Diameters in terms of the reference diameter. Half of one is a radius. */
+static void judge_diameter(const config *conf, const char *key, double radius, double reference) {
+    static const double possible[] = {0.75, 2}, usual[] = {0.85, 1.8};
+    static const other_unit units[] = {{"as the radius", 2},
+                                       {"in metres", 1e3},
+                                       {"in inches", 25.4},
+                                       {"in micrometres", 1e-3},
+                                       {NULL, 0}};
+
+    (void)judge(conf, key, 2e3 * radius, " mm", reference, possible, usual, units,
+                "far from the reference diameter");
+}
+
+/* Coefficients are below 2, but for shifts in mm. */
+static void judge_shift(const config *conf, const char *key, double shift, double module) {
+    static const double possible[] = {-2, 2}, usual[] = {-1.2, 1.6};
+    const other_unit units[] = {{"in mm, not in modules", 1 / module}, {NULL, 0}};
+
+    (void)judge(conf, key, shift, "", 1, possible, usual, units, "more than teeth allow");
+}
+
+/* In terms of the module. Narrower backlash presses, wider is none. */
+static void judge_backlash(const config *conf, double module) {
+    static const double possible[] = {0.003, INFINITY}, usual[] = {0.003, 0.3};
+    static const other_unit units[] = {{"in mm", 1e3}, {"in metres", 1e6}, {NULL, 0}};
+
+    if (conf->gears.backlash > 0) {
+        (void)judge(conf, "gears.backlash_um", 1e6 * conf->gears.backlash, " um", 1e3 * module,
+                    possible, usual, units, "next to none for this module");
+    }
+}
+
+/* The drawing, from what the other values are compared with to these. */
+static usual_gear judge_drawing(const config *conf) {
+    static const double module_possible[] = {0.05, 120}, module_usual[] = {0.1, 100};
+    static const double distance_possible[] = {0.5, 2}, distance_usual[] = {0.8, 1.25};
+    static const double width_possible[] = {0.2, 300}, width_usual[] = {1, 100};
+    static const other_unit metric[] = {{"in metres", 1e3}, {"in micrometres", 1e-3}, {NULL, 0}};
+    const gm_pair_params *gears = &conf->gears;
+    usual_gear usual = {.module = 1e3 * gears->normal_module};
+
+    const double pressure_angle = judge_pressure_angle(conf);
+    usual.cos_helix = cos(judge_helix_angle(conf) * pi / 180);
+
+    /* The module by itself, then against the centre distance: the one or the other may be at fault. */
+    usual.module = judge(conf, "gears.normal_module_mm", usual.module, " mm", 1, module_possible,
+                         module_usual, metric, "which no gear has");
+    const double teeth = gears->pinion_teeth + gears->wheel_teeth;
+    const double reference = usual.module * teeth / (2 * usual.cos_helix);
+    const double distance = 1e3 * gears->center_distance;
+    if (!is_within(distance / reference, distance_possible[0], distance_possible[1]) &&
+        is_inch_drawing(conf, usual.cos_helix)) {
+        usual.module = judge_inch_drawing(conf);
+    } else {
+        const double meant =
+            judge(conf, "gears.center_distance_mm", distance, " mm", reference, distance_possible,
+                  distance_usual, lengths, "far from half the sum of the reference diameters");
+        usual.module =
+            judge_against_distance(conf, usual.module, meant, pressure_angle, usual.cos_helix);
+    }
+    usual.diameter[0] = usual.module * gears->pinion_teeth / usual.cos_helix;
+    usual.diameter[1] = usual.module * gears->wheel_teeth / usual.cos_helix;
+
+    /* The rest in terms of module and reference diameters. */
+    usual.face_width =
+        judge(conf, "gears.face_width_mm", 1e3 * gears->face_width, " mm", usual.module,
+              width_possible, width_usual, lengths, "out of proportion to the module");
+    judge_diameter(conf, "gears.pinion_tip_diameter_mm", gears->pinion_tip_radius,
+                   usual.diameter[0]);
+    judge_diameter(conf, "gears.wheel_tip_diameter_mm", gears->wheel_tip_radius, usual.diameter[1]);
+    judge_diameter(conf, "gears.pinion_start_diameter_mm", gears->pinion_start_radius,
+                   usual.diameter[0]);
+    judge_diameter(conf, "gears.wheel_start_diameter_mm", gears->wheel_start_radius,
+                   usual.diameter[1]);
+    judge_shift(conf, "gears.pinion_profile_shift", gears->pinion_profile_shift, usual.module);
+    judge_shift(conf, "gears.wheel_profile_shift", gears->wheel_profile_shift, usual.module);
+    judge_backlash(conf, usual.module);
+    return usual;
+}
+
+/* ---------------------------------------------------------------------------------------------
+ * Mesh, bodies and loads
+ * ------------------------------------------------------------------------------------------- */
+
+/*
+ * In terms of the face width, N/(mm um): steel has about 14 (ISO 6336-1, c'), plastics some tenths. A number far below
+ * was meant for another unit; several may fit.
+ */
+static void judge_stiffness(const config *conf, const char *key, double stiffness,
+                            const usual_gear *usual) {
+    static const double possible = 0.05, usual_range[] = {3, 40};
+    const other_unit units[] = {{"in N/um", 1e6},
+                                {"in N/(mm um)", 1e6 * usual->face_width},
+                                {"in N/mm", 1e3},
+                                {"in GN/m", 1e9},
+                                {NULL, 0}};
+    const double scale = 1e6 * usual->face_width;
+
+    if (!is_given(conf, key) || stiffness / scale >= possible) {
+        return;
+    }
+    for (const other_unit *unit = units; unit->meant != NULL; ++unit) {
+        if (is_within(stiffness * unit->size / scale, usual_range[0], usual_range[1])) {
+            tell(conf, key, " N/m", "much softer than any tooth", unit->meant,
+                 stiffness * unit->size);
+        }
+    }
+}
+
+/* In terms of a steel disc with the reference diameter and the face width; shafts and machines have more. */
+static double judge_inertia(const config *conf, const char *key, double inertia,
+                            const usual_gear *usual, int gear) {
+    static const double steel = 7850; /* kg/m3 */
+    static const double possible[] = {1e-3, 1e4}, usual_range[] = {0.2, 60};
+    static const other_unit units[] = {
+        {"in kg cm2", 1e-4}, {"in kg mm2", 1e-6}, {"in g mm2", 1e-9}, {NULL, 0}};
+    const double disc =
+        pi / 32 * steel * 1e-3 * usual->face_width * pow(1e-3 * usual->diameter[gear], 4);
+
+    return judge(conf, key, inertia, " kg m2", disc, possible, usual_range, units,
+                 "out of proportion to the gear");
+}
+
+/* Mass of the bodies against each other along the line of action, at about the reference radii (kg). */
+static double mesh_mass(const config *conf, const usual_gear *usual, double pinion_inertia,
+                        double wheel_inertia) {
+    const double pinion_radius = 0.5e-3 * usual->diameter[0];
+    const double wheel_radius = 0.5e-3 * usual->diameter[1];
+    double mobility = wheel_radius * wheel_radius / wheel_inertia;
+
+    /* A prescribed speed is an infinite inertia. */
+    if (conf->drive == DRIVE_TORQUE) {
+        mobility += pinion_radius * pinion_radius / pinion_inertia;
+    }
+    return 1 / mobility;
+}
+
+/* In terms of the critical damping of the mesh, of which it has some 0.01 to 0.2. NaN without inertia: nothing is told. */
+static void judge_damping(const config *conf, double mass) {
+    static const double possible[] = {1e-4, INFINITY}, usual_range[] = {5e-3, 0.5};
+    const double critical = 2 * sqrt(conf->stiffness * mass);
+    const other_unit units[] = {{"as the damping ratio", critical}, {"in N s/mm", 1e3}, {NULL, 0}};
+
+    if (conf->damping > 0 && critical > 0) {
+        (void)judge(conf, "mesh.damping_Ns_per_m", conf->damping, " N s/m", critical, possible,
+                    usual_range, units, "next to none for these bodies");
+    }
+}
+
+/* In terms of the tangential force over face width and module (N/mm2): steel bears some hundred. */
+static void judge_torque(const config *conf, const char *key, double torque,
+                         const usual_gear *usual, int gear) {
+    static const double possible[] = {0, 3000}, usual_range[] = {0.05, 500};
+    static const other_unit units[] = {{"in N mm", 1e-3}, {NULL, 0}};
+    const double of_one = usual->face_width * usual->module * 0.5e-3 * usual->diameter[gear];
+
+    (void)judge(conf, key, torque, " N m", torque < 0 ? -of_one : of_one, possible, usual_range,
+                units, "more than the teeth bear");
+}
+
+/* A noise that changes less than once in a run is none. */
+static void judge_noise_interval(const config *conf) {
+    static const double usual[] = {1e-7, 1e-3};
+    static const other_unit units[] = {{"in us", 1e-6}, {"in ms", 1e-3}, {NULL, 0}};
+    const double possible[] = {0, conf->duration};
+
+    if (conf->noise_amplitude > 0) {
+        (void)judge(conf, "load.noise_interval_s", conf->noise_interval, " s", 1, possible, usual,
+                    units, "longer than the run");
+    }
+}
+
+/* Deviations are in um already. */
+static void judge_flank_scale(const config *conf) {
+    if (conf->flank_scale != 0 && fabs(conf->flank_scale) <= 1e-3) {
+        tell(conf, "flanks.scale", "", "which leaves nothing of deviations, whose unit is um",
+             "as a change of unit", 1);
+    }
+}
+
+/* ---------------------------------------------------------------------------------------------
+ * Modifications
+ * ------------------------------------------------------------------------------------------- */
+
+/* An amount in um: less than a tenth is lost in the roughness. */
+static void judge_amount(const config *conf, const char *key, double amount) {
+    static const double possible[] = {0.1, INFINITY}, usual[] = {1, 300};
+    static const other_unit units[] = {{"in mm", 1e3}, {"in metres", 1e6}, {NULL, 0}};
+
+    if (amount != 0) {
+        (void)judge(conf, key, 1e6 * amount, " um", amount < 0 ? -1 : 1, possible, usual, units,
+                    "less than the roughness of flanks");
+    }
+}
+
+/* The keys of one kind in one place: lengths in terms of face width, module and reference diameter. */
+static void judge_modification(const config *conf, const usual_gear *usual, int gear, int place,
+                               int kind) {
+    static const double width_possible[] = {3e-3, INFINITY}, width_usual[] = {0.01, 1};
+    static const double length_possible[] = {0.02, INFINITY}, length_usual[] = {0.1, 20};
+    const modification_values *given = &conf->modifications[gear][place][kind];
+    char key[MODIFICATION_KEY_SIZE];
+
+    modification_key_name(key, gear, place, kind, MODIFICATION_AMOUNT);
+    judge_amount(conf, key, given->value[MODIFICATION_AMOUNT]);
+
+    modification_key_name(key, gear, place, kind, MODIFICATION_WIDTH);
+    (void)judge(conf, key, 1e3 * given->value[MODIFICATION_WIDTH], " mm", usual->face_width,
+                width_possible, width_usual, lengths, "next to nothing of the face width");
+
+    modification_key_name(key, gear, place, kind, MODIFICATION_LENGTH);
+    (void)judge(conf, key, 1e3 * given->value[MODIFICATION_LENGTH], " mm", usual->module,
+                length_possible, length_usual, lengths, "next to nothing of the profile");
+
+    modification_key_name(key, gear, place, kind, MODIFICATION_RADIUS);
+    judge_diameter(conf, key, given->value[MODIFICATION_RADIUS], usual->diameter[gear]);
+
+    modification_key_name(key, gear, place, kind, MODIFICATION_SHARE);
+    if (is_within(given->value[MODIFICATION_SHARE], 1 + 1e-9, 100)) {
+        tell(conf, key, "", "more than the profile", "in percent",
+             given->value[MODIFICATION_SHARE] / 100);
+    }
+}
+
+static void judge_modifications(const config *conf, const usual_gear *usual) {
+    for (int gear = 0; gear < 2; ++gear) {
+        for (int place = 0; place < MODIFICATION_PLACES; ++place) {
+            for (int kind = 0; kind < GM_MODIFICATION_KINDS; ++kind) {
+                judge_modification(conf, usual, gear, place, kind);
+            }
+        }
+    }
+}
+
+/* ---------------------------------------------------------------------------------------------
+ * The whole
+ * ------------------------------------------------------------------------------------------- */
+
+static void judge_run(const config *conf, const usual_gear *usual) {
+    judge_stiffness(conf, "mesh.stiffness_N_per_m", conf->stiffness, usual);
+    judge_stiffness(conf, "mesh.simple_stiffness_N_per_m", conf->simple_stiffness, usual);
+    const double pinion =
+        judge_inertia(conf, "bodies.pinion_inertia_kg_m2", conf->pinion_inertia, usual, 0);
+    const double wheel =
+        judge_inertia(conf, "bodies.wheel_inertia_kg_m2", conf->wheel_inertia, usual, 1);
+    judge_damping(conf, mesh_mass(conf, usual, pinion, wheel));
+
+    judge_torque(conf, "drive.torque_Nm", conf->drive_torque, usual, 0);
+    judge_torque(conf, "load.mean_Nm", conf->mean_load, usual, 1);
+    judge_torque(conf, "load.end_Nm", conf->end_load, usual, 1);
+    judge_torque(conf, "load.noise_amplitude_Nm", conf->noise_amplitude, usual, 1);
+    judge_noise_interval(conf);
+    if (conf->model == MODEL_3D) {
+        judge_flank_scale(conf);
+        judge_modifications(conf, usual);
+    }
+}
+
+void slips_warn(const config *conf) {
+    const usual_gear usual = judge_drawing(conf);
+
+    if (conf->purpose == CONFIG_FOR_RUN) {
+        judge_run(conf, &usual);
+    }
+}

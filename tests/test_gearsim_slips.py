@@ -1,0 +1,221 @@
+#!/usr/bin/env python3
+# SPDX-FileCopyrightText: The gearmesh authors
+# SPDX-License-Identifier: BSD-3-Clause
+
+"""Values in a unit that was hardly meant: told with the number to write; usual gears are passed in silence."""
+
+import math
+import os
+import subprocess
+import sys
+import tempfile
+import unittest
+
+ROOT = os.path.join(os.path.dirname(os.path.abspath(__file__)), "..")
+GEARSIM = GEARFLANKS = None
+
+# Transverse module of 1.65 mm at 33 deg, and damping of 5 % of 2 sqrt(K I / r^2): written out here, not taken from gearsim.
+TRANSVERSE = 1.9674  # 1.65 / cos 33 deg = 1.967400
+PITCH = 15.393939  # 25.4 / 1.65
+
+# Keys of a run, what is told of the last of them, and the number to write.
+SLIPS = [
+    ("gears.normal_module_mm=0.00165", "in metres", "1.65"),
+    ("gears.normal_module_mm=1650", "in micrometres", "1.65"),
+    (f"gears.normal_module_mm={PITCH}", "as the diametral pitch", "1.65"),
+    (f"gears.normal_module_mm={TRANSVERSE}", "as the transverse module", "1.65"),
+    ("gears.normal_pressure_angle_deg=0.27925268", "in radians", "16"),
+    ("gears.helix_angle_deg=0.57595865", "in radians", "33"),
+    ("gears.helix_angle_deg=-0.57595865", "in radians", "-33"),
+    ("gears.center_distance_mm=0.085", "in metres", "85"),
+    ("gears.center_distance_mm=3.3464567", "in inches", "85"),
+    ("gears.center_distance_mm=85e3", "in micrometres", "85"),
+    ("gears.face_width_mm=0.0175", "in metres", "17.5"),
+    ("gears.pinion_tip_diameter_mm=0.09387678", "in metres", "93.8768"),
+    ("gears.pinion_tip_diameter_mm=46.93839", "as the radius", "93.8768"),
+    ("gears.wheel_tip_diameter_mm=0.086007182", "in metres", "86.0072"),
+    ("gears.wheel_tip_diameter_mm=3.3861095", "in inches", "86.0072"),
+    ("gears.pinion_start_diameter_mm=0.086", "in metres", "86"),
+    ("gears.wheel_start_diameter_mm=39", "as the radius", "78"),
+    ("gears.backlash_um=0.1", "in mm", "100"),
+    ("gears.backlash_um=1e-4", "in metres", "100"),
+    ("mesh.stiffness_N_per_m=300", "in N/um", "3e+08"),
+    ("mesh.stiffness_N_per_m=14", "in N/(mm um)", "2.45e+08"),
+    ("mesh.stiffness_N_per_m=3e5", "in N/mm", "3e+08"),
+    ("mesh.stiffness_N_per_m=0.3", "in GN/m", "3e+08"),
+    ("mesh.damping_Ns_per_m=0.844", "in N s/mm", "844"),
+    ("bodies.wheel_inertia_kg_m2=21", "in kg cm2", "0.0021"),
+    ("bodies.wheel_inertia_kg_m2=2100", "in kg mm2", "0.0021"),
+    ("drive.kind=torque drive.torque_Nm=21 bodies.pinion_inertia_kg_m2=2100", "in kg mm2", "0.0021"),
+    ("load.mean_Nm=20000", "in N mm", "20"),
+    ("load.mean_Nm=-20000", "in N mm", "-20"),
+    ("load.noise_amplitude_Nm=10000", "in N mm", "10"),
+    ("load.noise_amplitude_Nm=10 load.noise_interval_s=100", "in us", "0.0001"),
+    ("flanks.scale=1e-6", "as a change of unit", "1"),
+    ("modifications.pinion_crowning_um=0.005", "in mm", "5"),
+    ("modifications.wheel_coast_helix_slope_um=-0.01", "in mm", "-10"),
+    ("modifications.wheel_twist_um=8e-6", "in metres", "8"),
+    ("modifications.pinion_tip_relief_um=10 modifications.pinion_tip_relief_share=0.3 "
+     "modifications.wheel_end_relief_I_um=4 modifications.wheel_end_relief_I_length_mm=0.004", "in metres", "4"),
+    ("modifications.pinion_tip_relief_um=10 modifications.pinion_tip_relief_length_mm=0.003", "in metres", "3"),
+    ("modifications.pinion_tip_relief_um=10 modifications.pinion_tip_relief_share=30", "in percent", "0.3"),
+    ("modifications.pinion_tip_relief_um=10 modifications.pinion_tip_relief_diameter_mm=46", "as the radius", "92"),
+]
+
+# Refused, and the message says what was perhaps meant.
+REFUSED = [
+    ("gears.face_width_mm=0.0005", "; was it meant in metres? write 0.5"),
+    ("gears.pinion_start_diameter_mm=0.0015", "; was it meant in metres? write 1.5"),
+    ("flanks.profile_from=20", "; was it meant in percent? write 0.2"),
+]
+
+# Gears as they are published or in use, each in its key = value pairs of [gears].
+USUAL = {
+    "reduction gear of a wind turbine": "24 95 14 20 10 861 360 gears.pinion_profile_shift=0.48 gears.wheel_profile_shift=0.6691",
+    "tests of planet carriers": "12 24 3 20 0 56.5 30 gears.pinion_profile_shift=0.6 gears.wheel_profile_shift=0.36",
+    "a hobbed watch wheel": "8 60 0.12 20 0 4.1 0.4",
+    "a ship's bull gear": "41 430 12 20 30 3263 900",
+    "a pinion of 8 teeth": "8 42 2 20 20 54.0088886237956 20",
+    "a thin spur pair": "20 20 1 20 0 20 0.5",
+    "high shifts": "15 17 4 20 0 69 40",
+}
+
+
+def center_distance(module, helix, teeth, shifts):
+    """Without backlash, for 20 deg (mm): inv alpha_wt = inv alpha_t + 2 tan(alpha_n) sum(x) / sum(z), ISO 21771-1."""
+    def involute(angle):
+        return math.tan(angle) - angle
+
+    transverse = math.atan(math.tan(math.radians(20)) / math.cos(math.radians(helix)))
+    wanted = involute(transverse) + 2 * math.tan(math.radians(20)) * shifts / teeth
+    low, high = 0, 1
+    for _ in range(60):
+        middle = (low + high) / 2
+        low, high = (middle, high) if involute(middle) < wanted else (low, middle)
+    return module * teeth / (2 * math.cos(math.radians(helix))) * math.cos(transverse) / math.cos(low)
+
+
+class Slips(unittest.TestCase):
+    def setUp(self):
+        self.paper = os.path.join(ROOT, "data", "paper", "fig12.ini")
+        self.folder = tempfile.TemporaryDirectory()
+        self.addCleanup(self.folder.cleanup)
+
+    def check(self, settings, *options, path=None):
+        arguments = [text for setting in settings.split() for text in ("--set", setting)]
+        return subprocess.run([GEARSIM, path or self.paper, "--check", "--set", "mesh.model=3d", *arguments, *options],
+                              cwd=self.folder.name, capture_output=True, text=True, check=False)
+
+    def test_slips_are_told_with_the_number_to_write(self):
+        for settings, meant, right in SLIPS:
+            with self.subTest(settings):
+                key, _, value = settings.split()[-1].partition("=")
+                result = self.check(settings)
+                self.assertRegex(result.stderr, f"(?m)^--set {key}: warning: is {value.replace('+', '.')}[ ,].*; was it meant ")
+                self.assertIn(f"; was it meant {meant}? write {right}\n", result.stderr)
+                self.assertEqual(result.stderr.count("was it meant"), 1)  # and of no other key
+
+    def test_right_values_are_passed_in_silence(self):
+        """The number to write is told nothing of, whatever it is written for."""
+        for settings, _, right in SLIPS:
+            key = settings.split()[-1].partition("=")[0]
+            if key.endswith("_share") or key == "flanks.scale":
+                continue
+            with self.subTest(key):
+                others = " ".join(settings.split()[:-1])
+                self.assertNotIn("was it meant", self.check(f"{others} {key}={right}").stderr)
+
+    def test_all_lengths_in_metres_are_told_at_once(self):
+        result = self.check("gears.normal_module_mm=0.00165 gears.center_distance_mm=0.085 gears.face_width_mm=0.0175 "
+                            "gears.pinion_tip_diameter_mm=0.09387678 gears.wheel_tip_diameter_mm=0.086007182")
+        self.assertEqual(result.stderr.count("was it meant in metres? write "), 5)
+
+    def test_a_drawing_in_inches(self):
+        result = self.check(f"gears.normal_module_mm={PITCH} gears.center_distance_mm=3.3464567 gears.face_width_mm=0.2")
+        self.assertIn("was it meant as the diametral pitch? write 1.65\n", result.stderr)
+        self.assertIn("center_distance_mm: warning: is 3.3464567 mm, which does not fit the other; was it meant in inches? "
+                      "write 85\n", result.stderr)
+        self.assertIn("was it meant in inches? write 5.08\n", result.stderr)
+
+    def test_transverse_module_of_small_helix_angles(self):
+        """Where the shifts are given, or where there are none and the sum of the pitch circles gives it away."""
+        helix, teeth = 10, 50
+        transverse = 3 / math.cos(math.radians(helix))
+        for shifts in (0.4, 0):
+            distance = center_distance(3, helix, teeth, shifts)
+            settings = (f"gears.pinion_teeth=20 gears.wheel_teeth={teeth - 20} gears.helix_angle_deg={helix} "
+                        f"gears.normal_pressure_angle_deg=20 gears.center_distance_mm={distance:.9g} "
+                        "gears.pinion_tip_diameter_mm= gears.wheel_tip_diameter_mm= ")
+            given = f"gears.pinion_profile_shift={shifts} gears.wheel_profile_shift=0 " if shifts else ""
+            with self.subTest(shifts):
+                result = self.check(settings + given + f"gears.normal_module_mm={transverse:.9g}")
+                self.assertIn("was it meant as the transverse module? write 3\n", result.stderr)
+                self.assertNotIn("was it meant", self.check(settings + given + "gears.normal_module_mm=3").stderr)
+
+    def test_a_stiffness_that_two_units_explain_names_both(self):
+        result = self.check("gears.face_width_mm=5 mesh.stiffness_N_per_m=20")
+        self.assertIn("was it meant in N/um? write 2e+07\n", result.stderr)
+        self.assertIn("was it meant in N/(mm um)? write 1e+08\n", result.stderr)
+
+    def test_a_damping_ratio_gives_that_share_of_critical_damping(self):
+        result = self.check("mesh.damping_Ns_per_m=0.05")
+        text = result.stderr.partition("was it meant as the damping ratio? write ")[2]
+        radius = {z: 0.5e-3 * z * 1.65 / math.cos(math.radians(33)) for z in (45, 41)}
+        mass = 2.1e-3 / radius[41] ** 2
+        self.assertAlmostEqual(float(text.split()[0]) / (2 * 0.05 * (1.05e8 * mass) ** 0.5), 1, delta=1e-5)
+
+        # A pinion driven by a torque moves as well.
+        result = self.check("mesh.damping_Ns_per_m=0.05 drive.kind=torque drive.torque_Nm=21 "
+                            "bodies.pinion_inertia_kg_m2=1e-3")
+        text = result.stderr.partition("was it meant as the damping ratio? write ")[2]
+        mass = 1 / (radius[41] ** 2 / 2.1e-3 + radius[45] ** 2 / 1e-3)
+        self.assertAlmostEqual(float(text.split()[0]) / (2 * 0.05 * (1.05e8 * mass) ** 0.5), 1, delta=1e-5)
+
+    def test_refused_values_say_what_was_perhaps_meant(self):
+        for setting, end in REFUSED:
+            with self.subTest(setting):
+                result = self.check(setting)
+                self.assertEqual(result.returncode, 2)
+                self.assertIn(f"(got {setting.partition('=')[2]}){end}\n", result.stderr)
+
+    def test_usual_gears_are_passed_in_silence(self):
+        keys = ["pinion_teeth", "wheel_teeth", "normal_module_mm", "normal_pressure_angle_deg", "helix_angle_deg",
+                "center_distance_mm", "face_width_mm"]
+        for name, text in USUAL.items():
+            with self.subTest(name):
+                values = text.split()
+                path = os.path.join(self.folder.name, "gears.ini")
+                with open(path, "w", encoding="utf-8") as file:
+                    file.write("[gears]\n" + "".join(f"{key} = {value}\n" for key, value in zip(keys, values)))
+                result = subprocess.run([GEARSIM, path, "--geometry", *[text for setting in values[7:]
+                                                                        for text in ("--set", setting)]],
+                                        capture_output=True, text=True, check=False)
+                self.assertEqual(result.returncode, 0, result.stderr)
+                self.assertNotIn("was it meant", result.stderr)
+
+    def test_examples_are_passed_in_silence(self):
+        for path in ["example/params.ini", "paper/fig16.ini", "relief/params.ini"]:
+            result = self.check("", path=os.path.join(ROOT, "data", path))
+            self.assertEqual(result.returncode, 0, result.stderr)
+            self.assertNotIn("warning", result.stderr)
+
+    def test_quiet_leaves_them_out_and_defaults_are_not_told(self):
+        self.assertEqual(self.check("gears.backlash_um=0.1", "--quiet").stderr, "")
+        self.assertNotIn("damping", self.check("mesh.damping_Ns_per_m=").stderr)
+
+    def test_gearflanks_tells_them_of_its_gears(self):
+        path = os.path.join(self.folder.name, "metres.ini")
+        with open(path, "w", encoding="utf-8") as file:
+            file.write("[gears]\npinion_teeth = 45\nwheel_teeth = 41\nnormal_module_mm = 0.00165\n"
+                       "normal_pressure_angle_deg = 16\nhelix_angle_deg = 33\ncenter_distance_mm = 0.085\n"
+                       "face_width_mm = 0.0175\n[mesh]\nstiffness_N_per_m = 300\n")
+        result = subprocess.run([GEARFLANKS, path, "--gear", "pinion", "--evaluate"],
+                                capture_output=True, text=True, check=False)
+        self.assertEqual(result.stderr.count("was it meant in metres? write "), 3)
+        self.assertNotIn("stiffness", result.stderr)  # which it has no use for
+        self.assertNotIn("gearsim", result.stderr)
+
+
+if __name__ == "__main__":
+    GEARSIM, GEARFLANKS = (os.path.abspath(path) for path in sys.argv[1:3])
+    unittest.main(argv=sys.argv[:1] + sys.argv[3:])
