@@ -28,6 +28,8 @@ GM_TEST_UNUSED static gm_pair_params reference_params(double face_width) {
     params.center_distance = 85e-3;
     params.face_width = face_width;
     params.backlash = 100e-6;
+    params.pinion_rack_addendum = params.wheel_rack_addendum = 1.5; /* a deep rack */
+    params.pinion_rack_dedendum = params.wheel_rack_dedendum = 1.75;
     params.pinion_tip_radius = 46.938390e-3;
     params.wheel_tip_radius = 43.003591e-3;
     return params;

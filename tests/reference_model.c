@@ -68,10 +68,15 @@ static void set_active_profile(model_pair *pair, const gm_pair_params *params) {
     const long double m_n = params->normal_module;
     const double tip[2] = {params->pinion_tip_radius, params->wheel_tip_radius};
     const double start[2] = {params->pinion_start_radius, params->wheel_start_radius};
+    /* The axes are closer than the shifts ask for: both teeth are cut shorter by as much. */
+    const long double apart = pair->shift[0] + pair->shift[1];
+    const long double distance = pair->reference_radius[0] + pair->reference_radius[1];
+    const long double too_close = apart - (pair->center_distance - distance) / m_n;
+    const long double cut = maximum(0.0L, too_close);
     for (int g = 0; g < 2; g++) {
         const long double r_b = pair->base_radius[g];
         pair->tip_radius[g] =
-            or_else(tip[g], pair->reference_radius[g] + m_n * (1 + pair->shift[g]));
+            or_else(tip[g], pair->reference_radius[g] + m_n * (1 + pair->shift[g] - cut));
         pair->rho_end[g] = sqrtl(pair->tip_radius[g] * pair->tip_radius[g] - r_b * r_b);
     }
     for (int g = 0; g < 2; g++) {

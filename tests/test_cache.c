@@ -547,6 +547,8 @@ static gm_pair pair_of_teeth(int pinion, int wheel) {
     params.wheel_teeth = wheel;
     params.center_distance = 85e-3 * (pinion + wheel) / 86.0;
     params.pinion_tip_radius = params.wheel_tip_radius = (double)NAN;
+    params.pinion_rack_addendum = params.wheel_rack_addendum = 1.0;
+    params.pinion_tip_alteration = params.wheel_tip_alteration = 0.0;
     return make_pair(&params);
 }
 

@@ -34,6 +34,8 @@ face_width_mm = 17.5
 backlash_um = 100
 pinion_tip_diameter_mm = 93.876780
 wheel_tip_diameter_mm = 86.007182
+pinion_rack_dedendum = 1.75
+wheel_rack_dedendum = 1.75
 [mesh]
 stiffness_N_per_m = 1.05e8
 damping_Ns_per_m = 844.361
@@ -251,7 +253,7 @@ class Text(Case):
         for length in [300, 5000, 1 << 20]:
             with self.subTest(length):
                 params = PARAMS.replace("[mesh]\n", "[flanks]\npinion = " + "a" * length + "\n[mesh]\n")
-                self.refused("run.ini:13: ", "too long", params=params)
+                self.refused("run.ini:15: ", "too long", params=params)
 
     def test_comment_too_long_for_the_reader_is_an_error(self):
         self.refused("run.ini:1: ", "too long: at most 4095", params="; " + "x" * 5000 + "\n" + PARAMS)
@@ -280,10 +282,10 @@ class Text(Case):
         self.assertEqual(self.accepted("run.ini", "--geometry").stdout, plain)
 
     def test_line_without_equals_sign(self):
-        self.refused("run.ini:12: ", "not understood", params=PARAMS.replace("[mesh]\n", "nonsense\n[mesh]\n"))
+        self.refused("run.ini:14: ", "not understood", params=PARAMS.replace("[mesh]\n", "nonsense\n[mesh]\n"))
 
     def test_text_behind_a_section(self):
-        self.refused("run.ini:12: ", "alone on its line", params=PARAMS.replace("[mesh]\n", "[mesh] x\n"))
+        self.refused("run.ini:14: ", "alone on its line", params=PARAMS.replace("[mesh]\n", "[mesh] x\n"))
 
     def test_key_before_any_section(self):
         self.refused("run.ini:1: ", "pinion_teeth", "without a section", params="pinion_teeth = 45\n")
@@ -330,7 +332,7 @@ class Names(Case):
                      params=PARAMS.replace("[gears]", "[Gears]"))
 
     def test_unknown_section(self):
-        self.refused("run.ini:12: [mash]: unknown section", "did you mean [mesh]?",
+        self.refused("run.ini:14: [mash]: unknown section", "did you mean [mesh]?",
                      params=PARAMS.replace("[mesh]", "[mash]"))
 
     def test_unknown_section_without_keys(self):
@@ -339,7 +341,7 @@ class Names(Case):
 
     def test_repeated_section(self):
         line = 1 + PARAMS.count("\n")
-        self.refused(f"run.ini:{line}: [mesh]: repeated section", "line 12", params=PARAMS + "[mesh]\n")
+        self.refused(f"run.ini:{line}: [mesh]: repeated section", "line 14", params=PARAMS + "[mesh]\n")
 
     def test_repeated_key(self):
         self.refused("run.ini:3: gears.pinion_teeth: repeated key", "line 2",
@@ -614,6 +616,97 @@ class Geometry(Case):
         self.assertRegex(self.warnings("wheel_start_diameter_mm=77"),
                          r"gears\.wheel_start_diameter_mm: warning: .* diameter of 77 mm, below the root form")
 
+    # A catalogue's pair: 12/24 teeth whose shifts ask for 0.38 mm more distance than there is.
+    CATALOGUE = ("[gears]\npinion_teeth = 12\nwheel_teeth = 24\nnormal_module_mm = 3\nnormal_pressure_angle_deg = 20\n"
+                 "center_distance_mm = 56.5\nface_width_mm = 30\npinion_profile_shift = 0.6\nwheel_profile_shift = 0.36\n")
+
+    def test_default_tips_keep_their_clearance(self):
+        # k m_n = 56.5 - 54 - 3 * 0.96 mm, tip = 18 + 3 * 1.6 + k m_n, root = 36 - 3 (1.25 - 0.36).
+        values = self.listing(params=self.CATALOGUE)
+        for name, expected in [("pinion_tip_alteration", -0.38 / 3), ("wheel_tip_alteration", -0.38 / 3),
+                               ("pinion_tip_radius_mm", 22.42), ("wheel_tip_radius_mm", 39.7),
+                               ("pinion_root_radius_mm", 16.05), ("wheel_root_radius_mm", 33.33),
+                               ("pinion_tip_clearance_mm", 0.75), ("wheel_tip_clearance_mm", 0.75),
+                               ("pinion_working_pitch_radius_mm", 56.5 / 3), ("wheel_working_pitch_radius_mm", 113 / 3),
+                               ("gear_ratio", 2), ("face_width_mm", 30)]:
+            with self.subTest(name):
+                self.assertAlmostEqual(values[name], expected, delta=1e-12 * 60)
+        self.assertAlmostEqual(values["transverse_contact_ratio"], 1.202, delta=0.5e-3)
+        # s_ta = r_a (s_t / r + 2 inv(alpha_t) - 2 inv(alpha_a))
+        self.assertAlmostEqual(values["pinion_tip_thickness_mm"], self.tip_thickness(18, 22.42, 0.6), delta=1e-12)
+        self.assertAlmostEqual(values["wheel_tip_thickness_mm"], self.tip_thickness(36, 39.7, 0.36), delta=1e-12)
+
+    @staticmethod
+    def tip_thickness(reference_mm, tip_mm, shift):
+        def involute(angle):
+            return math.tan(angle) - angle
+
+        alpha = math.radians(20)
+        thickness = 3 * (math.pi / 2 + 2 * shift * math.tan(alpha))
+        alpha_tip = math.acos(reference_mm * math.cos(alpha) / tip_mm)
+        return tip_mm * (thickness / reference_mm + 2 * involute(alpha) - 2 * involute(alpha_tip))
+
+    def test_small_tip_clearance_is_warned_of_with_the_tip_that_would_do(self):
+        self.write("run.ini", self.CATALOGUE)
+        full = ["--set", "gears.pinion_tip_alteration=0", "--set", "gears.wheel_rack_addendum=0.85"]
+        text = self.accepted("run.ini", "--geometry", *full).stderr
+        # 0.25 - 0.38 / 3 is above 0.1; with another 0.05 of addendum it is not.
+        self.assertEqual(text, "")
+        full += ["--set", "gears.pinion_rack_addendum=1.05"]
+        text = self.accepted("run.ini", "--geometry", *full).stderr
+        self.assertRegex(text, r"(?m)^run\.ini: gears\.pinion_tip_diameter_mm: warning: the tip clearance to the root of the wheel is "
+                               r"0\.073 normal modules, less than 0\.1: a tip alteration of -0\.1767 \(tip diameter 44\.840000 mm\) "
+                               r"would leave 0\.25; if the root is deeper, give gears\.wheel_rack_dedendum\n$")
+        again = self.accepted("run.ini", "--geometry", *full, "--set", "gears.pinion_tip_alteration=-0.1767",
+                              "--set", "gears.wheel_rack_dedendum=1.3")
+        self.assertEqual(again.stderr, "")
+
+    def test_tip_alteration_beside_a_tip_diameter_is_not_used(self):
+        for gear in ["pinion", "wheel"]:
+            text = self.warnings(f"{gear}_tip_alteration=-0.1")
+            self.assertEqual(text, f"--set gears.{gear}_tip_alteration: warning: not used, as gears.{gear}_tip_diameter_mm gives "
+                                   "the tip\n")
+        self.assertEqual(self.listing("--set", "gears.pinion_tip_alteration=-0.1"), self.listing())
+
+    def test_rounded_shifts_are_noted(self):
+        # The published shifts of the third stage of the NREL 5 MW gearbox leave -0.11 um; 1e-4 modules are 1.4 um.
+        pair = ("[gears]\npinion_teeth = 24\nwheel_teeth = 95\nnormal_module_mm = 14\nnormal_pressure_angle_deg = 20\n"
+                "helix_angle_deg = 10\ncenter_distance_mm = 861\nface_width_mm = 360\npinion_profile_shift = 0.48\n"
+                "wheel_profile_shift = 0.6691\n")
+        self.write("run.ini", pair)
+        result = self.accepted("run.ini", "--geometry")
+        self.assertRegex(result.stderr, r"^run\.ini: gears\.backlash_um: note: the backlash is -0\.114 um, .* rounded profile shifts\n$")
+        self.assertEqual(self.accepted("run.ini", "--geometry", "--quiet").stderr, "")
+        values = self.listing(params=pair)
+        self.assertLess(values["backlash_um"], -0.1)  # no number changes
+        self.assertAlmostEqual(values["transverse_contact_ratio"], 1.463, delta=0.5e-3)
+        text = self.accepted("run.ini", "--geometry", "--set", "gears.wheel_profile_shift=0.6693").stderr
+        self.assertRegex(text, r"warning: the backlash is -2\.\d+ um, negative")
+
+    def test_faces_of_their_own(self):
+        own = "pinion_face_width_mm = 26\nwheel_face_width_mm = 32\naxial_offset_mm = -1.5\n"
+        params = PARAMS.replace("face_width_mm = 17.5\n", own)
+        self.assertEqual(self.listing(params=params)["face_width_mm"], 26)
+        self.assertEqual(self.listing(params=params.replace("-1.5", "6"))["face_width_mm"], 23)
+        narrow = self.listing("--set", "gears.axial_offset_mm=2.5")
+        self.assertAlmostEqual(narrow["face_width_mm"], 15, delta=1e-14)
+        self.assertAlmostEqual(narrow["overlap_ratio"], self.listing()["overlap_ratio"] * 15 / 17.5, delta=1e-14)
+        self.refused("run.ini: gears.face_width_mm: missing", params=params.replace("wheel_face_width_mm = 32\n", ""))
+
+    def test_faces_that_contradict_each_other(self):
+        self.refused("run.ini:8: gears.face_width_mm: ", "(got 17.5)", "no larger than the face of either gear",
+                     "the faces are: pinion 0 to 15 mm, wheel -1.25 to 16.25 mm", arguments=["--set", "gears.pinion_face_width_mm=15"])
+        self.refused("run.ini:8: gears.face_width_mm: ", "(got 17.5)", "both gears share",
+                     arguments=["--set", "gears.pinion_face_width_mm=20", "--set", "gears.wheel_face_width_mm=20"])
+        self.refused_value("gears", "axial_offset_mm", "17.5", "faces of both gears overlap")
+        self.refused_value("gears", "axial_offset_mm", "-1e13", "from -1e+12 to 1e+12")
+
+    def test_flanks_need_equal_faces(self):
+        self.write("flanks.csv", DEVIATIONS)
+        params = with_key(PARAMS, "flanks", "pinion", "flanks.csv")
+        self.refused("gears.axial_offset_mm: must leave both gears the same face", params=params,
+                     arguments=["--set", "gears.axial_offset_mm=1"])
+
     def test_zero_backlash_is_not_taken_for_negative(self):
         # These leave -5e-14 and -1e-14 um where the profile shifts are derived for zero.
         self.write("run.ini", without_key(PARAMS, "backlash_um"))
@@ -638,7 +731,10 @@ class Geometry(Case):
             reference_center_distance_mm, pinion_profile_shift, wheel_profile_shift, pinion_base_radius_mm,
             wheel_base_radius_mm, pinion_tip_radius_mm, wheel_tip_radius_mm, pinion_start_radius_mm,
             wheel_start_radius_mm, transverse_base_pitch_mm, line_of_action_mm, path_start_mm, path_end_mm,
-            transverse_contact_ratio, overlap_ratio, total_contact_ratio, backlash_um, mean_mesh_stiffness_N_per_um,
+            transverse_contact_ratio, overlap_ratio, total_contact_ratio, backlash_um, pinion_working_pitch_radius_mm,
+            wheel_working_pitch_radius_mm, pinion_tip_clearance_mm, wheel_tip_clearance_mm, pinion_root_radius_mm,
+            wheel_root_radius_mm, pinion_tip_thickness_mm, wheel_tip_thickness_mm, pinion_tip_alteration,
+            wheel_tip_alteration, gear_ratio, face_width_mm, mean_mesh_stiffness_N_per_um,
             eigenfrequency_Hz, mesh_frequency_per_rpm_Hz"""
         self.assertEqual(list(self.listing()), [name.strip() for name in names.split(",")])
 
@@ -710,7 +806,7 @@ class Geometry(Case):
     def test_printed_digits_are_all_that_a_double_has(self):
         self.write("run.ini", PARAMS)
         lines = self.accepted("run.ini", "--geometry").stdout.splitlines()
-        self.assertEqual(len(lines), 24)
+        self.assertEqual(len(lines), 36)
         for line in lines:
             text = line.split(" = ")[1]
             self.assertEqual("%.17g" % float(text), text)

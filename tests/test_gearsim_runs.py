@@ -37,6 +37,8 @@ face_width_mm = 17.5
 backlash_um = 100
 pinion_tip_diameter_mm = 93.876780
 wheel_tip_diameter_mm = 86.007182
+pinion_rack_dedendum = 1.75
+wheel_rack_dedendum = 1.75
 [mesh]
 stiffness_N_per_m = {K}
 damping_Ns_per_m = {D}

@@ -14,7 +14,9 @@ static const char gears_text[] =
     "[gears]\npinion_teeth = 45\nwheel_teeth = 41\nnormal_module_mm = 1.65\n"
     "normal_pressure_angle_deg = 16\nhelix_angle_deg = 33\ncenter_distance_mm = 85\n"
     "face_width_mm = 17.5\nbacklash_um = 100\npinion_tip_diameter_mm = 93.87678\n"
-    "wheel_tip_diameter_mm = 86.007182\n[mesh]\nstiffness_N_per_m = 1e8\n[load]\nmean_Nm = 20\n"
+    "wheel_tip_diameter_mm = 86.007182\n"
+    "pinion_rack_dedendum = 1.75\nwheel_rack_dedendum = 1.75\n[mesh]\nstiffness_N_per_m = "
+    "1e8\n[load]\nmean_Nm = 20\n"
     "[analysis]\ntype = static\n[modifications]\n";
 
 static char folder[] = "/tmp/gearsim_modifications_XXXXXX";

@@ -9,41 +9,55 @@
 static const double degree = 0.017453292519943295;
 
 /** All doubles of a pair. */
-enum { GEAR_DOUBLES = 11, PAIR_DOUBLES = 2 * GEAR_DOUBLES + 21 };
+enum { GEAR_DOUBLES = 19, OWN_DOUBLES = 27, PAIR_DOUBLES = 2 * GEAR_DOUBLES + OWN_DOUBLES };
 
 static void list_gear(const gm_gear *g, double *out) {
     const double values[GEAR_DOUBLES] = {
-        g->profile_shift,   g->reference_radius, g->base_radius,          g->tip_radius,
-        g->start_radius,    g->normal_thickness, g->base_half_thickness,  g->start_roll_length,
-        g->tip_roll_length, g->pitch_angle,      g->pitch_angle_remainder};
+        g->profile_shift,      g->reference_radius, g->base_radius,          g->tip_radius,
+        g->start_radius,       g->normal_thickness, g->base_half_thickness,  g->start_roll_length,
+        g->tip_roll_length,    g->pitch_angle,      g->rack_addendum,        g->rack_dedendum,
+        g->rack_fillet_radius, g->tip_alteration,   g->root_radius,          g->tip_thickness,
+        g->face_width,         g->face_start,       g->pitch_angle_remainder};
     memcpy(out, values, sizeof values);
 }
 
 static void list_pair(const gm_pair *p, double out[PAIR_DOUBLES]) {
     list_gear(&p->pinion, out);
     list_gear(&p->wheel, out + GEAR_DOUBLES);
-    const double values[21] = {p->normal_module,
-                               p->transverse_module,
-                               p->normal_pressure_angle,
-                               p->transverse_pressure_angle,
-                               p->helix_angle,
-                               p->base_helix_angle,
-                               p->transverse_base_pitch,
-                               p->face_width,
-                               p->face_advance,
-                               p->normal_to_transverse,
-                               p->center_distance,
-                               p->reference_center_distance,
-                               p->working_pressure_angle,
-                               p->line_of_action,
-                               p->path_start,
-                               p->path_end,
-                               p->transverse_contact_ratio,
-                               p->overlap_ratio,
-                               p->total_contact_ratio,
-                               p->backlash,
-                               p->phase_origin};
+    const double values[OWN_DOUBLES] = {p->normal_module,
+                                        p->transverse_module,
+                                        p->normal_pressure_angle,
+                                        p->transverse_pressure_angle,
+                                        p->helix_angle,
+                                        p->base_helix_angle,
+                                        p->transverse_base_pitch,
+                                        p->face_width,
+                                        p->face_start,
+                                        p->face_advance,
+                                        p->normal_to_transverse,
+                                        p->center_distance,
+                                        p->reference_center_distance,
+                                        p->working_pressure_angle,
+                                        p->involute_difference,
+                                        p->line_of_action,
+                                        p->path_start,
+                                        p->path_end,
+                                        p->transverse_contact_ratio,
+                                        p->overlap_ratio,
+                                        p->total_contact_ratio,
+                                        p->backlash,
+                                        p->phase_origin,
+                                        p->pinion_working_pitch_radius,
+                                        p->wheel_working_pitch_radius,
+                                        p->pinion_tip_clearance,
+                                        p->wheel_tip_clearance};
     memcpy(out + 2 * GEAR_DOUBLES, values, sizeof values);
+}
+
+/** Every byte of a pair is a listed double, a number of teeth or a flag: no field is forgotten above. */
+static void the_lists_above_are_complete(void) {
+    GM_ASSERT_INT((int)sizeof(gm_gear), (int)(GEAR_DOUBLES * sizeof(double) + 2 * sizeof(int)));
+    GM_ASSERT_INT((int)sizeof(gm_pair), (int)(2 * sizeof(gm_gear) + OWN_DOUBLES * sizeof(double)));
 }
 
 /** Whether no field of the pair is of use. */
@@ -161,12 +175,30 @@ static void defaults_are_missing_or_derived(void) {
     GM_ASSERT_INT(p.wheel_teeth, 0);
     GM_ASSERT_INT(p.base_helix, GM_BASE_HELIX_ISO);
     GM_ASSERT_REL(p.helix_angle, 0.0, 0.0);
-    const double missing[] = {
-        p.normal_module,     p.normal_pressure_angle,   p.center_distance,
-        p.face_width,        p.pinion_profile_shift,    p.wheel_profile_shift,
-        p.backlash,          p.pinion_normal_thickness, p.wheel_normal_thickness,
-        p.pinion_tip_radius, p.wheel_tip_radius,        p.pinion_start_radius,
-        p.wheel_start_radius};
+    GM_ASSERT_REL(p.axial_offset, 0.0, 0.0);
+    const double missing[] = {p.normal_module,
+                              p.normal_pressure_angle,
+                              p.center_distance,
+                              p.face_width,
+                              p.pinion_profile_shift,
+                              p.wheel_profile_shift,
+                              p.backlash,
+                              p.pinion_normal_thickness,
+                              p.wheel_normal_thickness,
+                              p.pinion_tip_radius,
+                              p.wheel_tip_radius,
+                              p.pinion_start_radius,
+                              p.wheel_start_radius,
+                              p.pinion_face_width,
+                              p.wheel_face_width,
+                              p.pinion_rack_addendum,
+                              p.wheel_rack_addendum,
+                              p.pinion_rack_dedendum,
+                              p.wheel_rack_dedendum,
+                              p.pinion_rack_fillet_radius,
+                              p.wheel_rack_fillet_radius,
+                              p.pinion_tip_alteration,
+                              p.wheel_tip_alteration};
     for (size_t i = 0; i < sizeof missing / sizeof missing[0]; i++) {
         gm_test_context("field %d", (int)i);
         GM_ASSERT_NAN(missing[i]);
@@ -257,15 +289,284 @@ static void backlash_thins_both_teeth_equally_and_leaves_the_shifts(void) {
     GM_ASSERT_REL(make_pair(&params).backlash, -20e-6, 1e-15);
 }
 
-static void tips_default_to_a_standard_addendum(void) {
+/** A pair with nothing but what a catalogue prints. */
+static gm_pair_params catalogue_params(int pinion_teeth, int wheel_teeth, double module_mm,
+                                       double helix_deg, double distance_mm, double x_p,
+                                       double x_w) {
+    gm_pair_params params;
+    gm_pair_params_default(&params);
+    params.pinion_teeth = pinion_teeth;
+    params.wheel_teeth = wheel_teeth;
+    params.normal_module = module_mm * 1e-3;
+    params.normal_pressure_angle = 20.0 * degree;
+    params.helix_angle = helix_deg * degree;
+    params.center_distance = distance_mm * 1e-3;
+    params.face_width = 10.0 * module_mm * 1e-3;
+    params.pinion_profile_shift = x_p;
+    params.wheel_profile_shift = x_w;
+    return params;
+}
+
+/*
+ * Published pairs, with the digits printed there. NREL: KISSsoft reports of the gearbox of the open 5 MW wind turbine
+ * model, sun-planet of stage 1, sun-planet of stage 2, stage 3; k m_n stands there as tip alteration. The last one is
+ * the pair 12/24 of spur gear textbooks whose shifts ask for far more distance than there is.
+ */
+static void published_pairs_have_their_tips_and_contact_ratios(void) {
+    static const struct {
+        const char *name;
+        int pinion_teeth, wheel_teeth;
+        double module_mm, helix_deg, distance_mm, x_p, x_w;
+        double shift_digit; /* half a unit of the last digit of the shifts */
+        double k_mm, k_digit, contact_ratio;
+        double pinion_tip_mm, wheel_tip_mm; /* diameters */
+    } pairs[] = {
+        {"NREL 5 MW, stage 1", 19, 17, 45.0, 0.0, 863.0, 0.617, 0.802, 0.5e-3, -10.86, 0.5e-2,
+         1.115, NAN, NAN},
+        {"NREL 5 MW, stage 2", 18, 36, 21.0, 0.0, 584.0, 0.3890, 0.5039, 0.5e-4, -1.751, 0.5e-3,
+         1.370, NAN, NAN},
+        {"NREL 5 MW, stage 3", 24, 95, 14.0, 10.0, 861.0, 0.4800, 0.6691, 0.5e-4, -0.938, 0.5e-3,
+         1.463, 380.747, 1395.376},
+        {"12/24", 12, 24, 3.0, 0.0, 56.5, 0.6, 0.36, 0.0, -0.38, 1e-9, 1.202, NAN, NAN},
+    };
+    for (size_t i = 0; i < sizeof pairs / sizeof pairs[0]; i++) {
+        gm_test_context("%s", pairs[i].name);
+        const gm_pair_params params =
+            catalogue_params(pairs[i].pinion_teeth, pairs[i].wheel_teeth, pairs[i].module_mm,
+                             pairs[i].helix_deg, pairs[i].distance_mm, pairs[i].x_p, pairs[i].x_w);
+        const gm_pair p = make_pair(&params);
+        const double mm = 1e-3;
+        const double by_shifts = 2.0 * pairs[i].shift_digit * pairs[i].module_mm;
+        const double m_n = p.normal_module;
+        GM_ASSERT_ABS(m_n * p.pinion.tip_alteration, pairs[i].k_mm * mm,
+                      (pairs[i].k_digit + by_shifts) * mm);
+        GM_ASSERT_ABS(m_n * p.wheel.tip_alteration, pairs[i].k_mm * mm,
+                      (pairs[i].k_digit + by_shifts) * mm);
+        GM_ASSERT_ABS(p.transverse_contact_ratio, pairs[i].contact_ratio, 0.5e-3);
+        /* The tips keep the clearance of the rack, 0.25 m_n, so nothing is to be warned of. */
+        GM_ASSERT_ABS(p.pinion_tip_clearance, 0.25 * m_n, 1e-15);
+        GM_ASSERT_ABS(p.wheel_tip_clearance, 0.25 * m_n, 1e-15);
+        GM_ASSERT_INT(gm_pair_warnings(&p, &params) & ~GM_WARN_BACKLASH_ROUNDED, 0);
+        if (!isnan(pairs[i].pinion_tip_mm)) {
+            GM_ASSERT_ABS(2.0 * p.pinion.tip_radius, pairs[i].pinion_tip_mm * mm,
+                          (0.5e-3 + by_shifts) * mm);
+            GM_ASSERT_ABS(2.0 * p.wheel.tip_radius, pairs[i].wheel_tip_mm * mm,
+                          (0.5e-3 + by_shifts) * mm);
+        }
+    }
+}
+
+static void tips_default_to_addendum_shift_and_tip_alteration(void) {
     gm_pair_params params = reference_params(REFERENCE_FACE_WIDTH);
+    const double m_n = params.normal_module;
     params.pinion_tip_radius = NAN;
     params.wheel_tip_radius = NAN;
     params.pinion_profile_shift = 0.4;
+    params.pinion_rack_addendum = NAN; /* 1 */
+    params.wheel_rack_addendum = 1.2;
     const gm_pair p = make_pair(&params);
-    GM_ASSERT_REL(p.pinion.tip_radius, p.pinion.reference_radius + 1.65e-3 * 1.4, 1e-15);
-    GM_ASSERT_REL(p.wheel.tip_radius,
-                  p.wheel.reference_radius + 1.65e-3 * (1.0 + p.wheel.profile_shift), 1e-15);
+    /* a - r_p - r_w = 0.243530 m_n, and the shifts sum up to 0.2483897: data/paper/README.md. */
+    const double k = -0.0048598;
+    GM_ASSERT_ABS(p.pinion.tip_alteration, k, 1e-7);
+    GM_ASSERT_ABS(p.wheel.tip_alteration, k, 1e-7);
+    GM_ASSERT_ABS(p.pinion.tip_radius, p.pinion.reference_radius + m_n * (1.4 + k), 1e-7 * m_n);
+    GM_ASSERT_ABS(p.wheel.tip_radius, p.wheel.reference_radius + m_n * (1.2 + 0.2483897 - 0.4 + k),
+                  1e-7 * m_n);
+
+    /* Thinning by backlash lowers no tip, nor a root. */
+    params.backlash = 300e-6;
+    const gm_pair thin = make_pair(&params);
+    GM_ASSERT_REL(thin.pinion.tip_radius, p.pinion.tip_radius, 0.0);
+    GM_ASSERT_REL(thin.wheel.root_radius, p.wheel.root_radius, 0.0);
+
+    /* A tip alteration that is given stands, also a positive one, and leaves that of the mate alone. */
+    params.pinion_tip_alteration = 0.05;
+    const gm_pair longer = make_pair(&params);
+    GM_ASSERT_REL(longer.pinion.tip_radius, p.pinion.reference_radius + m_n * 1.45, 1e-15);
+    GM_ASSERT_ABS(longer.pinion.tip_alteration, 0.05, 1e-13);
+    GM_ASSERT_REL(longer.wheel.tip_radius, p.wheel.tip_radius, 0.0);
+    params.pinion_tip_alteration = NAN;
+    params.wheel_tip_alteration = -0.1;
+    const gm_pair shorter = make_pair(&params);
+    GM_ASSERT_REL(shorter.pinion.tip_radius, p.pinion.tip_radius, 0.0);
+    GM_ASSERT_ABS(shorter.wheel.tip_alteration, -0.1, 1e-13);
+
+    /* Axes further apart than the shifts ask for do not lengthen a tooth. */
+    params = catalogue_params(30, 40, 2.0, 0.0, 70.5, 0.1, 0.1);
+    const gm_pair apart = make_pair(&params);
+    GM_ASSERT_REL(apart.pinion.tip_radius, 30e-3 + 2e-3 * 1.1, 1e-15);
+    GM_ASSERT_ABS(apart.pinion.tip_alteration, 0.0, 1e-13);
+    GM_ASSERT(apart.pinion_tip_clearance > 0.25 * 2e-3);
+}
+
+/* Where k is at work, the clearance is that of the basic rack, c = h_fP - h_aP of the mate: by construction. */
+static void tip_alteration_keeps_the_clearance_of_the_rack(void) {
+    uint64_t seed = 9;
+    for (int i = 0; i < 200; i++) {
+        gm_test_context("pair %d", i);
+        gm_pair_params params =
+            catalogue_params(gm_test_integer(&seed, 18, 60), gm_test_integer(&seed, 18, 90), 2.0,
+                             gm_test_uniform(&seed, -30.0, 30.0), 0.0,
+                             gm_test_uniform(&seed, 0.0, 0.6), gm_test_uniform(&seed, 0.0, 0.6));
+        params.pinion_rack_addendum = gm_test_uniform(&seed, 0.9, 1.1);
+        params.wheel_rack_dedendum = gm_test_uniform(&seed, 1.2, 1.4);
+        const double shifts = params.pinion_profile_shift + params.wheel_profile_shift;
+        params.center_distance =
+            params.normal_module *
+            (0.5 * (params.pinion_teeth + params.wheel_teeth) / cos(params.helix_angle) +
+             shifts * gm_test_uniform(&seed, 0.7, 1.0));
+        const gm_pair p = make_pair(&params);
+        const double rounding = 8.0 * 0x1p-53 * p.center_distance;
+        const double m_n = params.normal_module;
+        GM_ASSERT_ABS(p.pinion_tip_clearance,
+                      m_n * (params.wheel_rack_dedendum - params.pinion_rack_addendum), rounding);
+        GM_ASSERT_ABS(p.wheel_tip_clearance, 0.25 * m_n, rounding);
+        /* What the tip, root and pitch circles are for: they fill the centre distance. */
+        GM_ASSERT_ABS(p.pinion.tip_radius + p.pinion_tip_clearance + p.wheel.root_radius,
+                      p.center_distance, rounding);
+        GM_ASSERT_ABS(p.pinion_working_pitch_radius + p.wheel_working_pitch_radius,
+                      p.center_distance, rounding);
+        GM_ASSERT_REL(p.wheel_working_pitch_radius / p.pinion_working_pitch_radius,
+                      (double)params.wheel_teeth / params.pinion_teeth, 1e-14);
+        GM_ASSERT_REL(p.pinion_working_pitch_radius * cos(p.working_pressure_angle),
+                      p.pinion.base_radius, 1e-14);
+    }
+}
+
+static void a_given_tip_tells_its_tip_alteration(void) {
+    const gm_pair p = reference_pair(REFERENCE_FACE_WIDTH);
+    const double m_n = p.normal_module;
+    /* Chosen as h = 1.5 with k of the shift sum, rounded to 1e-6 mm: data/paper/README.md. */
+    GM_ASSERT_ABS(p.pinion.tip_alteration, -0.0048598, 1e-6);
+    GM_ASSERT_ABS(p.wheel.tip_alteration, -0.0048598, 1e-6);
+    GM_ASSERT_REL(p.pinion.reference_radius +
+                      m_n * (1.5 + p.pinion.profile_shift + p.pinion.tip_alteration),
+                  46.938390e-3, 1e-15);
+    GM_ASSERT_REL(p.pinion.root_radius,
+                  p.pinion.reference_radius - m_n * (1.75 - p.pinion.profile_shift), 1e-15);
+    GM_ASSERT_REL(p.wheel.root_radius,
+                  p.wheel.reference_radius - m_n * (1.75 - p.wheel.profile_shift), 1e-15);
+    GM_ASSERT_ABS(p.pinion_tip_clearance, 0.25 * m_n, 1e-6 * m_n);
+    /* Transverse tip lands 0.617 and 0.599 modules: data/paper/README.md. */
+    GM_ASSERT_ABS(p.pinion.tip_thickness, 0.617 * m_n, 0.5e-3 * m_n);
+    GM_ASSERT_ABS(p.wheel.tip_thickness, 0.599 * m_n, 0.5e-3 * m_n);
+}
+
+/* ---------------------------------------------------------------------------------------------
+ * Faces
+ * ------------------------------------------------------------------------------------------- */
+
+static void equal_faces_may_be_said_in_each_way(void) {
+    const gm_pair_params common = reference_params(REFERENCE_FACE_WIDTH);
+    const gm_pair expected = make_pair(&common);
+    GM_ASSERT_REL(expected.face_start, 0.0, 0.0);
+    GM_ASSERT_REL(expected.wheel.face_start, 0.0, 0.0);
+    for (int way = 1; way < 8; way++) {
+        gm_test_context("way %d", way);
+        gm_pair_params params = common;
+        params.pinion_face_width = way & 1 ? REFERENCE_FACE_WIDTH : (double)NAN;
+        params.wheel_face_width = way & 2 ? REFERENCE_FACE_WIDTH : (double)NAN;
+        params.face_width = way & 4 ? (double)NAN : REFERENCE_FACE_WIDTH;
+        gm_pair pair;
+        const int status = gm_pair_init(&pair, &params);
+        if (way == 5 || way == 6 || way == 4) {
+            const char *field = "";
+            GM_ASSERT_INT(gm_pair_params_check(&params, &field, NULL), GM_ERR_PARAMETER);
+            GM_ASSERT_STRING(field, "face_width");
+            continue;
+        }
+        GM_ASSERT_INT(status, GM_OK);
+        GM_ASSERT(memcmp(&pair, &expected, sizeof pair) == 0);
+    }
+}
+
+static void unequal_faces_share_what_lies_in_both(void) {
+    static const struct {
+        double pinion, wheel, offset; /* (mm) */
+        double start, width, wheel_start;
+    } cases[] = {
+        {26.0, 32.0, -1.5, 0.0, 26.0, -4.5}, /* the pinion within the wheel */
+        {32.0, 26.0, 1.5, 4.5, 26.0, 4.5},   /* the wheel within the pinion */
+        {20.0, 20.0, 3.0, 3.0, 17.0, 3.0},   /* beyond face II */
+        {20.0, 20.0, -3.0, 0.0, 17.0, -3.0}, /* beyond face I */
+        {20.0, 10.0, 12.0, 17.0, 3.0, 17.0}, {20.0, 10.0, -12.0, 0.0, 3.0, -7.0},
+    };
+    for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
+        gm_test_context("case %d", (int)i);
+        gm_pair_params params = reference_params(NAN);
+        params.pinion_face_width = cases[i].pinion * 1e-3;
+        params.wheel_face_width = cases[i].wheel * 1e-3;
+        params.axial_offset = cases[i].offset * 1e-3;
+        const gm_pair p = make_pair(&params);
+        GM_ASSERT_REL(p.pinion.face_width, cases[i].pinion * 1e-3, 0.0);
+        GM_ASSERT_REL(p.wheel.face_width, cases[i].wheel * 1e-3, 0.0);
+        GM_ASSERT_REL(p.pinion.face_start, 0.0, 0.0);
+        GM_ASSERT_ABS(p.wheel.face_start, cases[i].wheel_start * 1e-3, 1e-17);
+        GM_ASSERT_ABS(p.face_start, cases[i].start * 1e-3, 1e-17);
+        GM_ASSERT_ABS(p.face_width, cases[i].width * 1e-3, 1e-17);
+        GM_ASSERT_REL(p.face_advance, p.face_width * tan(p.base_helix_angle), 1e-14);
+        GM_ASSERT_REL(p.overlap_ratio, p.face_advance / p.transverse_base_pitch, 1e-15);
+        /* The lines of contact start where the common face does; angles refer to z = 0. */
+        GM_ASSERT_REL(p.phase_origin,
+                      p.pinion.base_radius *
+                              (p.working_pressure_angle + p.pinion.base_half_thickness) +
+                          p.face_start * tan(p.base_helix_angle),
+                      1e-14);
+        /* The common width may be said as well. */
+        params.face_width = p.face_width;
+        GM_ASSERT_INT(gm_pair_params_check(&params, NULL, NULL), GM_OK);
+        params.face_width = fmin(params.pinion_face_width, params.wheel_face_width);
+        GM_ASSERT_INT(gm_pair_params_check(&params, NULL, NULL), GM_OK);
+    }
+}
+
+/* Moved together along the axis, the gears are the same: the phase follows the helix. */
+static void a_pinion_that_begins_earlier_only_turns_its_zero(void) {
+    gm_pair_params params = reference_params(NAN);
+    params.pinion_face_width = 24e-3;
+    params.wheel_face_width = 20e-3; /* z = 2 .. 22 mm */
+    const gm_pair wide = make_pair(&params);
+    params.pinion_face_width = 20e-3;
+    const gm_pair narrow = make_pair(&params);
+    const double turn = 2e-3 * tan(narrow.base_helix_angle) / narrow.pinion.base_radius;
+    const double wheel_turn = 2e-3 * tan(narrow.base_helix_angle) / narrow.wheel.base_radius;
+    for (int i = 0; i < 40; i++) {
+        gm_test_context("position %d", i);
+        const gm_state state = {.pinion_angle = 0.11 * i,
+                                .wheel_angle = 0.11 * i * 45.0 / 41.0 - 1.5e-3};
+        const gm_state later = {.pinion_angle = state.pinion_angle + turn,
+                                .wheel_angle = state.wheel_angle + wheel_turn};
+        gm_penetration of_wide, of_narrow;
+        GM_ASSERT_INT(gm_penetration_3d(&wide, NULL, NULL, &state, &of_wide), GM_OK);
+        GM_ASSERT_INT(gm_penetration_3d(&narrow, NULL, NULL, &later, &of_narrow), GM_OK);
+        GM_ASSERT(of_narrow.drive > 0.0);
+        GM_ASSERT_REL(of_wide.drive, of_narrow.drive, 1e-9);
+    }
+}
+
+static void faces_that_contradict_each_other_are_refused(void) {
+    static const struct {
+        double common, pinion, wheel, offset; /* (mm) */
+        const char *field;
+    } cases[] = {
+        {20.0, 15.0, NAN, 0.0, "face_width"}, /* the pinion's face is narrower */
+        {20.0, NAN, 15.0, 0.0, "face_width"},
+        {20.0, 25.0, 30.0, 0.0, "face_width"}, /* both are wider */
+        {20.0001, 20.0, 30.0, 0.0, "face_width"},
+        {NAN, 20.0, 30.0, 25.0, "axial_offset"}, /* next to each other */
+        {NAN, 20.0, 30.0, -25.0, "axial_offset"},
+        {20.0, NAN, NAN, 21.0, "axial_offset"},
+    };
+    for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
+        gm_test_context("case %d", (int)i);
+        gm_pair_params params = reference_params(cases[i].common * 1e-3);
+        params.pinion_face_width = cases[i].pinion * 1e-3;
+        params.wheel_face_width = cases[i].wheel * 1e-3;
+        params.axial_offset = cases[i].offset * 1e-3;
+        const char *field = "";
+        GM_ASSERT_INT(gm_pair_params_check(&params, &field, NULL), GM_ERR_GEOMETRY);
+        GM_ASSERT_STRING(field, cases[i].field);
+    }
 }
 
 static void profiles_start_where_the_mates_tip_reaches(void) {
@@ -715,6 +1016,7 @@ static void short_paths_are_warned_of(void) {
 
 int main(int argc, char **argv) {
     static const gm_test tests[] = {
+        GM_TEST(the_lists_above_are_complete),
         GM_TEST(reference_gears_have_their_known_geometry),
         GM_TEST(wider_reference_gears_have_their_known_overlap),
         GM_TEST(standard_rack_has_its_known_path),
@@ -725,7 +1027,14 @@ int main(int argc, char **argv) {
         GM_TEST(shifts_default_to_zero_backlash),
         GM_TEST(thickness_wins_over_shift),
         GM_TEST(backlash_thins_both_teeth_equally_and_leaves_the_shifts),
-        GM_TEST(tips_default_to_a_standard_addendum),
+        GM_TEST(published_pairs_have_their_tips_and_contact_ratios),
+        GM_TEST(tips_default_to_addendum_shift_and_tip_alteration),
+        GM_TEST(tip_alteration_keeps_the_clearance_of_the_rack),
+        GM_TEST(a_given_tip_tells_its_tip_alteration),
+        GM_TEST(equal_faces_may_be_said_in_each_way),
+        GM_TEST(unequal_faces_share_what_lies_in_both),
+        GM_TEST(a_pinion_that_begins_earlier_only_turns_its_zero),
+        GM_TEST(faces_that_contradict_each_other_are_refused),
         GM_TEST(profiles_start_where_the_mates_tip_reaches),
         GM_TEST(a_start_below_the_base_circle_is_raised),
         GM_TEST(a_later_start_shortens_the_path),

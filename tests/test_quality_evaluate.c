@@ -120,9 +120,9 @@ static void scope_ends_where_the_standard_says(void) {
     gm_pair gears = module_3();
     GM_ASSERT_INT(gm_quality_is_in_scope(&gears, 0), 1);
     GM_ASSERT_INT(gm_quality_is_in_scope(NULL, 0), 0);
-    gears.face_width = 3.9e-3;
+    gears.pinion.face_width = 3.9e-3;
     GM_ASSERT_INT(gm_quality_is_in_scope(&gears, 0), 0);
-    gears.face_width = 4e-3;
+    gears.pinion.face_width = 4e-3;
     GM_ASSERT_INT(gm_quality_is_in_scope(&gears, 0), 1);
     gears.helix_angle = -pi / 4.0;
     GM_ASSERT_INT(gm_quality_is_in_scope(&gears, 0), 1);
@@ -231,7 +231,7 @@ static void the_face_margin_is_the_smaller_of_both(void) {
     GM_ASSERT_INT(evaluate(0), GM_IO_OK);
     GM_ASSERT_REL(flanks[1].helix_form, 8e-6 * 0.9 * 0.9, 1e-12); /* 0.05 is a node */
 
-    gears.face_width = 120e-3; /* m / b = 0.025, halfway between nodes */
+    gears.pinion.face_width = 120e-3; /* m / b = 0.025, halfway between nodes */
     begin(&gears, 0);
     add_helix(crown);
     GM_ASSERT_INT(evaluate(0), GM_IO_OK);

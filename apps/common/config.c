@@ -73,6 +73,18 @@ void config_warn(const config *conf, const char *section_and_key, const char *fo
     va_end(values);
 }
 
+void config_remark(const config *conf, const char *section_and_key, const char *format, ...) {
+    static const char kind[] = "note: ";
+    char place[KEY_PLACE_SIZE + sizeof kind];
+    va_list values;
+
+    place_of(conf, section_and_key, place);
+    strcat(place, kind);
+    va_start(values, format);
+    message_note_list(conf->messages, place, format, values);
+    va_end(values);
+}
+
 const char *config_key_of_field(const char *field) {
     static const char *const unknown = "gears";
 

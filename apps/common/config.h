@@ -147,6 +147,9 @@ void config_complain(const config *config, const char *section_and_key, const ch
 /* The same with "warning: " behind the key; left out with --quiet. */
 void config_warn(const config *config, const char *section_and_key, const char *format, ...);
 
+/* The same with "note: ", of what is right as it is; silent with --quiet. */
+void config_remark(const config *config, const char *section_and_key, const char *format, ...);
+
 /* The INI key "section.key" that sets a field of gm_pair_params, and the text it was given (NULL = none). */
 const char *config_key_of_field(const char *field);
 const char *config_text(const config *config, const char *section_and_key);

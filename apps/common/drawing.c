@@ -35,25 +35,43 @@ static double base_diameter(const gm_pair_params *gears, int teeth) {
     return teeth * gears->normal_module / cos_helix * cos(transverse_pressure_angle);
 }
 
+/* The measures that a fault is judged by: where the faces lie, or the base circles (mm). */
+static void describe_measures(char *text, size_t size, const gm_pair_params *gears,
+                              const char *field) {
+    const double pinion =
+        isnan(gears->pinion_face_width) ? gears->face_width : gears->pinion_face_width;
+    const double wheel =
+        isnan(gears->wheel_face_width) ? gears->face_width : gears->wheel_face_width;
+    const double wheel_middle = 0.5 * pinion + gears->axial_offset;
+
+    if (strstr(field, "axial_offset") != NULL || strstr(field, "face_width") != NULL) {
+        snprintf(text, size, "the faces are: pinion 0 to %.9g mm, wheel %.9g to %.9g mm",
+                 1e3 * pinion, 1e3 * (wheel_middle - 0.5 * wheel),
+                 1e3 * (wheel_middle + 0.5 * wheel));
+    } else {
+        snprintf(text, size, "the base diameters are %.9g and %.9g mm",
+                 1e3 * base_diameter(gears, gears->pinion_teeth),
+                 1e3 * base_diameter(gears, gears->wheel_teeth));
+    }
+}
+
 /* A geometry that cannot be, said of the key that sets the field at fault. */
 static int refuse_geometry(const config *conf, int status) {
     const char *field = NULL;
     const char *requirement = NULL;
-    const char *key = "gears";
+    const char *key;
     const char *text;
     char wanted[256];
+    char measures[160];
 
     (void)gm_pair_params_check(&conf->gears, &field, &requirement);
-    if (field != NULL) {
-        key = config_key_of_field(field);
-    }
+    key = field != NULL ? config_key_of_field(field) : "gears";
     text = config_text(conf, key);
     speak_of_diameters(requirement != NULL ? requirement : gm_status_text(status), wanted,
                        sizeof wanted);
-    config_complain(conf, key, "must be %s (got %s); the base diameters are %.9g and %.9g mm",
-                    wanted, text != NULL ? text : "none, so it is derived",
-                    1e3 * base_diameter(&conf->gears, conf->gears.pinion_teeth),
-                    1e3 * base_diameter(&conf->gears, conf->gears.wheel_teeth));
+    describe_measures(measures, sizeof measures, &conf->gears, key);
+    config_complain(conf, key, "must be %s (got %s); %s", wanted,
+                    text != NULL ? text : "none, so it is derived", measures);
     return EXIT_BAD_INPUT;
 }
 
@@ -69,11 +87,9 @@ int drawing_derive(gm_pair *pair, const config *conf) {
 
 /* Normal tooth thickness at the tip circle, in modules; negative = the flanks cross below it. */
 static double tip_land(const gm_gear *gear, const gm_pair *pair) {
-    const double alpha = acos(gear->base_radius / gear->tip_radius);
-    const double half_angle = gear->base_half_thickness - (tan(alpha) - alpha);
     const double helix = atan(gear->tip_radius / gear->reference_radius * tan(pair->helix_angle));
 
-    return 2 * gear->tip_radius * half_angle * cos(helix) / pair->normal_module;
+    return gear->tip_thickness * cos(helix) / pair->normal_module;
 }
 
 static void warn_of_tip(const config *conf, const gm_pair *pair, const gm_gear *gear,
@@ -95,29 +111,61 @@ static void warn_of_tip(const config *conf, const gm_pair *pair, const gm_gear *
 
 /* What is said of one gear: keys and warnings of the pinion or of the wheel. */
 typedef struct gear_words {
-    const char *name, *teeth_key, *tip_key, *start_key;
-    int undercut, tip_land, root_form, start_radius;
+    const char *name, *mate;
+    const char *teeth_key, *tip_key, *start_key, *alteration_key, *mate_dedendum_key;
+    int undercut, tip_land, root_form, start_radius, tip_clearance, tip_alteration;
 } gear_words;
 
-static const gear_words pinion_words = {"pinion",
-                                        "gears.pinion_teeth",
-                                        "gears.pinion_tip_diameter_mm",
-                                        "gears.pinion_start_diameter_mm",
-                                        GM_WARN_PINION_UNDERCUT,
-                                        GM_WARN_PINION_TIP_LAND,
-                                        GM_WARN_PINION_ROOT_FORM,
-                                        GM_WARN_PINION_START_RADIUS};
-static const gear_words wheel_words = {"wheel",
-                                       "gears.wheel_teeth",
-                                       "gears.wheel_tip_diameter_mm",
-                                       "gears.wheel_start_diameter_mm",
-                                       GM_WARN_WHEEL_UNDERCUT,
-                                       GM_WARN_WHEEL_TIP_LAND,
-                                       GM_WARN_WHEEL_ROOT_FORM,
-                                       GM_WARN_WHEEL_START_RADIUS};
+static const gear_words words_of[2] = {
+    [GM_PINION] = {.name = "pinion",
+                   .mate = "wheel",
+                   .teeth_key = "gears.pinion_teeth",
+                   .tip_key = "gears.pinion_tip_diameter_mm",
+                   .start_key = "gears.pinion_start_diameter_mm",
+                   .alteration_key = "gears.pinion_tip_alteration",
+                   .mate_dedendum_key = "gears.wheel_rack_dedendum",
+                   .undercut = GM_WARN_PINION_UNDERCUT,
+                   .tip_land = GM_WARN_PINION_TIP_LAND,
+                   .root_form = GM_WARN_PINION_ROOT_FORM,
+                   .start_radius = GM_WARN_PINION_START_RADIUS,
+                   .tip_clearance = GM_WARN_PINION_TIP_CLEARANCE,
+                   .tip_alteration = GM_WARN_PINION_TIP_ALTERATION},
+    [GM_WHEEL] = {.name = "wheel",
+                  .mate = "pinion",
+                  .teeth_key = "gears.wheel_teeth",
+                  .tip_key = "gears.wheel_tip_diameter_mm",
+                  .start_key = "gears.wheel_start_diameter_mm",
+                  .alteration_key = "gears.wheel_tip_alteration",
+                  .mate_dedendum_key = "gears.pinion_rack_dedendum",
+                  .undercut = GM_WARN_WHEEL_UNDERCUT,
+                  .tip_land = GM_WARN_WHEEL_TIP_LAND,
+                  .root_form = GM_WARN_WHEEL_ROOT_FORM,
+                  .start_radius = GM_WARN_WHEEL_START_RADIUS,
+                  .tip_clearance = GM_WARN_WHEEL_TIP_CLEARANCE,
+                  .tip_alteration = GM_WARN_WHEEL_TIP_ALTERATION},
+};
 
-static void warn_of_gear(const config *conf, const gm_pair *pair, const gm_gear *gear,
-                         const gear_words *words, int warnings) {
+/* With the tip that would leave the usual quarter of a module. */
+static void warn_of_clearance(const config *conf, const gm_pair *pair, const gm_gear *gear,
+                              const gear_words *words, double clearance) {
+    const double usual = 0.25;
+    const double excess = usual - clearance / pair->normal_module; /* of the tooth, in modules */
+    const double tip_radius = gear->tip_radius - excess * pair->normal_module;
+
+    config_warn(conf, words->tip_key,
+                "the tip clearance to the root of the %s is %.3f normal modules, less than 0.1: a "
+                "tip alteration of %.4f (tip diameter %.6f mm) would leave %.2f; if the root is "
+                "deeper, give %s",
+                words->mate, clearance / pair->normal_module, gear->tip_alteration - excess,
+                2e3 * tip_radius, usual, words->mate_dedendum_key);
+}
+
+static void warn_of_gear(const config *conf, const gm_pair *pair, enum gm_role role, int warnings) {
+    const gm_gear *gear = role == GM_PINION ? &pair->pinion : &pair->wheel;
+    const double clearance =
+        role == GM_PINION ? pair->pinion_tip_clearance : pair->wheel_tip_clearance;
+    const gear_words *words = &words_of[role];
+
     if (warnings & words->undercut) {
         config_warn(
             conf, words->teeth_key,
@@ -127,6 +175,12 @@ static void warn_of_gear(const config *conf, const gm_pair *pair, const gm_gear 
     }
     if (warnings & words->tip_land) {
         warn_of_tip(conf, pair, gear, words->tip_key, words->name);
+    }
+    if (warnings & words->tip_clearance) {
+        warn_of_clearance(conf, pair, gear, words, clearance);
+    }
+    if (warnings & words->tip_alteration) {
+        config_warn(conf, words->alteration_key, "not used, as %s gives the tip", words->tip_key);
     }
     if (warnings & words->root_form) {
         config_warn(
@@ -145,8 +199,8 @@ static void warn_of_gear(const config *conf, const gm_pair *pair, const gm_gear 
 void drawing_warn(const config *conf, const gm_pair *pair) {
     const int warnings = gm_pair_warnings(pair, &conf->gears);
 
-    warn_of_gear(conf, pair, &pair->pinion, &pinion_words, warnings);
-    warn_of_gear(conf, pair, &pair->wheel, &wheel_words, warnings);
+    warn_of_gear(conf, pair, GM_PINION, warnings);
+    warn_of_gear(conf, pair, GM_WHEEL, warnings);
     if (warnings & GM_WARN_CONTACT_RATIO) {
         config_warn(
             conf, "gears.center_distance_mm",
@@ -157,5 +211,11 @@ void drawing_warn(const config *conf, const gm_pair *pair) {
         config_warn(conf, "gears.backlash_um",
                     "the backlash is %.6g um, negative: both flanks touch and press",
                     1e6 * pair->backlash);
+    }
+    if (warnings & GM_WARN_BACKLASH_ROUNDED) {
+        config_remark(conf, "gears.backlash_um",
+                      "the backlash is %.3g um, within 1e-4 normal modules below 0: taken as "
+                      "rounded profile shifts",
+                      1e6 * pair->backlash);
     }
 }

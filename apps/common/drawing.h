@@ -10,7 +10,8 @@
 /* Derives the pair. Returns 0, or EXIT_BAD_INPUT after a message that names the key at fault. */
 int drawing_derive(gm_pair *pair, const config *conf);
 
-/* Warns of undercut, thin tips, root fillets in contact, small contact ratio and negative backlash. */
+/* Warns of undercut, thin tips, small tip clearance, root fillets in contact, small contact ratio and negative backlash;
+ * notes profile shifts that are rounded. */
 void drawing_warn(const config *conf, const gm_pair *pair);
 
 #endif

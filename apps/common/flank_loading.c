@@ -13,17 +13,17 @@ typedef struct flank_task {
     const char *deviations_key;
     const char *pitch_key;
     const flank_files *files;
-    int gear; /* 0 = pinion, 1 = wheel */
+    enum gm_role gear;
     int teeth;
 } flank_task;
 
-static flank_task task_of(const config *conf, const gm_pair *pair, int gear) {
-    const flank_task pinion = {"flanks.pinion", "flanks.pinion_pitch", &conf->pinion_flanks, 0,
-                               pair->pinion.teeth};
-    const flank_task wheel = {"flanks.wheel", "flanks.wheel_pitch", &conf->wheel_flanks, 1,
+static flank_task task_of(const config *conf, const gm_pair *pair, enum gm_role gear) {
+    const flank_task pinion = {"flanks.pinion", "flanks.pinion_pitch", &conf->pinion_flanks,
+                               GM_PINION, pair->pinion.teeth};
+    const flank_task wheel = {"flanks.wheel", "flanks.wheel_pitch", &conf->wheel_flanks, GM_WHEEL,
                               pair->wheel.teeth};
 
-    return gear == 0 ? pinion : wheel;
+    return gear == GM_PINION ? pinion : wheel;
 }
 
 /* The file is at fault, and the key that names it tells where it came from. */

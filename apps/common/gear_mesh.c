@@ -18,13 +18,38 @@ static void derive_simple_model(gear_mesh *mesh, const config *conf) {
     mesh->simple_damping = conf->damping * contact_ratio;
 }
 
-static int load_flanks(gear_mesh *mesh, const config *conf) {
-    gear_flanks *pinion = &mesh->loaded_flanks[0];
-    gear_flanks *wheel = &mesh->loaded_flanks[1];
+/* Flanks with deviations are evaluated on faces that both begin and end together. */
+static int check_faces(const gear_mesh *mesh, const config *conf) {
+    static const char *const keys[] = {"gears.axial_offset_mm", "gears.pinion_face_width_mm",
+                                       "gears.wheel_face_width_mm"};
+    const gm_pair *pair = &mesh->pair;
+    int key = 0;
 
-    int status = gear_flanks_load(pinion, conf, &mesh->pair, 0);
+    if (pair->wheel.face_start == 0 && pair->pinion.face_width == pair->wheel.face_width) {
+        return 0;
+    }
+    while (key < 2 && config_text(conf, keys[key]) == NULL) {
+        ++key;
+    }
+    config_complain(
+        conf, keys[key],
+        "must leave both gears the same face for flanks with deviations or "
+        "modifications (got a pinion from 0 to %.9g mm and a wheel from %.9g to %.9g mm)",
+        1e3 * pair->pinion.face_width, 1e3 * pair->wheel.face_start,
+        1e3 * (pair->wheel.face_start + pair->wheel.face_width));
+    return EXIT_BAD_INPUT;
+}
+
+static int load_flanks(gear_mesh *mesh, const config *conf) {
+    gear_flanks *pinion = &mesh->loaded_flanks[GM_PINION];
+    gear_flanks *wheel = &mesh->loaded_flanks[GM_WHEEL];
+
+    int status = gear_flanks_load(pinion, conf, &mesh->pair, GM_PINION);
     if (status == 0) {
-        status = gear_flanks_load(wheel, conf, &mesh->pair, 1);
+        status = gear_flanks_load(wheel, conf, &mesh->pair, GM_WHEEL);
+    }
+    if (status == 0 && (pinion->memory != NULL || wheel->memory != NULL)) {
+        status = check_faces(mesh, conf);
     }
 
     mesh->pinion_flanks = pinion->memory != NULL ? &pinion->storage : NULL;
@@ -54,8 +79,8 @@ int gear_mesh_open(gear_mesh *mesh, const config *conf) {
 }
 
 void gear_mesh_close(gear_mesh *mesh) {
-    gear_flanks_free(&mesh->loaded_flanks[0]);
-    gear_flanks_free(&mesh->loaded_flanks[1]);
+    gear_flanks_free(&mesh->loaded_flanks[GM_PINION]);
+    gear_flanks_free(&mesh->loaded_flanks[GM_WHEEL]);
     memset(mesh, 0, sizeof *mesh);
 }
 

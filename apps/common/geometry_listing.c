@@ -47,8 +47,29 @@ static void print_pair(const gm_pair *pair, FILE *stream) {
     print_value(stream, "backlash_um", 1e6 * pair->backlash);
 }
 
+static void print_teeth(const gm_pair *pair, FILE *stream) {
+    const gm_gear *pinion = &pair->pinion;
+    const gm_gear *wheel = &pair->wheel;
+
+    print_value(stream, "pinion_working_pitch_radius_mm",
+                millimetres(pair->pinion_working_pitch_radius));
+    print_value(stream, "wheel_working_pitch_radius_mm",
+                millimetres(pair->wheel_working_pitch_radius));
+    print_value(stream, "pinion_tip_clearance_mm", millimetres(pair->pinion_tip_clearance));
+    print_value(stream, "wheel_tip_clearance_mm", millimetres(pair->wheel_tip_clearance));
+    print_value(stream, "pinion_root_radius_mm", millimetres(pinion->root_radius));
+    print_value(stream, "wheel_root_radius_mm", millimetres(wheel->root_radius));
+    print_value(stream, "pinion_tip_thickness_mm", millimetres(pinion->tip_thickness));
+    print_value(stream, "wheel_tip_thickness_mm", millimetres(wheel->tip_thickness));
+    print_value(stream, "pinion_tip_alteration", pinion->tip_alteration);
+    print_value(stream, "wheel_tip_alteration", wheel->tip_alteration);
+    print_value(stream, "gear_ratio", (double)wheel->teeth / pinion->teeth);
+    print_value(stream, "face_width_mm", millimetres(pair->face_width));
+}
+
 void geometry_print(const gear_mesh *mesh, const config *conf, FILE *stream) {
     print_pair(&mesh->pair, stream);
+    print_teeth(&mesh->pair, stream);
     print_value(stream, "mean_mesh_stiffness_N_per_um",
                 1e-6 * gear_mesh_mean_stiffness(mesh, conf));
     print_value(stream, "eigenfrequency_Hz", gear_mesh_eigenfrequency(mesh, conf));

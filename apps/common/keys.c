@@ -4,6 +4,8 @@
 #include "keys.h"
 #include "key_macros.h"
 
+#include <math.h>
+
 /* ---------------------------------------------------------------------------------------------
  * The table
  * ------------------------------------------------------------------------------------------- */
@@ -37,7 +39,13 @@ static const key_spec keys[] = {
     {NAME("gears", "center_distance_mm"), NUMBER(UNIT_MM, LENGTH), INTO_GEARS(center_distance),
      .required = FOR_ALL, .help = "distance of the axes"},
     {NAME("gears", "face_width_mm"), NUMBER(UNIT_MM, LENGTH), INTO_GEARS(face_width),
-     .required = FOR_ALL, .help = "face width common to both gears"},
+     .required = FOR_ALL, .help = "face width common to both gears; may be left out if each has its own"},
+    {NAME("gears", "pinion_face_width_mm"), NUMBER(UNIT_MM, LENGTH), INTO_GEARS(pinion_face_width),
+     .derived = "as face_width_mm", .help = "of the pinion alone"},
+    {NAME("gears", "wheel_face_width_mm"), NUMBER(UNIT_MM, LENGTH), INTO_GEARS(wheel_face_width),
+     .derived = "as face_width_mm", .help = "of the wheel alone"},
+    {NAME("gears", "axial_offset_mm"), NUMBER(UNIT_MM, UP_TO(1e12)), INTO_GEARS(axial_offset),
+     .standard = "0", .help = "middle of the wheel's face less that of the pinion's, along +z"},
     {NAME("gears", "pinion_profile_shift"), NUMBER(UNIT_SI, UP_TO(1000)), INTO_GEARS(pinion_profile_shift),
      .derived = "half, or rest, of the zero-backlash sum", .help = "profile shift coefficient"},
     {NAME("gears", "wheel_profile_shift"), NUMBER(UNIT_SI, UP_TO(1000)), INTO_GEARS(wheel_profile_shift),
@@ -45,10 +53,28 @@ static const key_spec keys[] = {
     {NAME("gears", "backlash_um"), NUMBER(UNIT_UM, UP_TO(1e15)), INTO_GEARS(backlash),
      .derived = "from the tooth thicknesses",
      .help = "along the line of action, by thinning both teeth"},
+    {NAME("gears", "pinion_rack_addendum"), NUMBER(UNIT_SI, BETWEEN(0, 10)), INTO_GEARS(pinion_rack_addendum),
+     .derived = "1", .help = "h_aP of the basic rack, in modules"},
+    {NAME("gears", "wheel_rack_addendum"), NUMBER(UNIT_SI, BETWEEN(0, 10)), INTO_GEARS(wheel_rack_addendum),
+     .derived = "1", .help = "h_aP of the basic rack, in modules"},
+    {NAME("gears", "pinion_rack_dedendum"), NUMBER(UNIT_SI, BETWEEN(0, 10)), INTO_GEARS(pinion_rack_dedendum),
+     .derived = "1.25", .help = "h_fP of the basic rack, in modules: sets the root circle"},
+    {NAME("gears", "wheel_rack_dedendum"), NUMBER(UNIT_SI, BETWEEN(0, 10)), INTO_GEARS(wheel_rack_dedendum),
+     .derived = "1.25", .help = "h_fP of the basic rack, in modules: sets the root circle"},
+    {NAME("gears", "pinion_rack_fillet_radius"), NUMBER(UNIT_SI, BETWEEN(0, 10)),
+     INTO_GEARS(pinion_rack_fillet_radius), .derived = "0.38", .help = "rho_fP of the basic rack, in modules"},
+    {NAME("gears", "wheel_rack_fillet_radius"), NUMBER(UNIT_SI, BETWEEN(0, 10)),
+     INTO_GEARS(wheel_rack_fillet_radius), .derived = "0.38", .help = "rho_fP of the basic rack, in modules"},
+    {NAME("gears", "pinion_tip_alteration"), NUMBER(UNIT_SI, UP_TO(10)), INTO_GEARS(pinion_tip_alteration),
+     .derived = "min(0, (d - a) / m_n - (x_p + x_w)), a the reference center distance",
+     .help = "k in modules, < 0: shorter teeth"},
+    {NAME("gears", "wheel_tip_alteration"), NUMBER(UNIT_SI, UP_TO(10)), INTO_GEARS(wheel_tip_alteration),
+     .derived = "min(0, (d - a) / m_n - (x_p + x_w)), a the reference center distance",
+     .help = "k in modules, < 0: shorter teeth"},
     {NAME("gears", "pinion_tip_diameter_mm"), NUMBER(UNIT_MM_DIAMETER, DIAMETER),
-     INTO_GEARS(pinion_tip_radius), .derived = "reference diameter + 2 m_n (1 + x)", .help = "tip circle"},
+     INTO_GEARS(pinion_tip_radius), .derived = "reference diameter + 2 m_n (h_aP + x + k)", .help = "tip circle"},
     {NAME("gears", "wheel_tip_diameter_mm"), NUMBER(UNIT_MM_DIAMETER, DIAMETER),
-     INTO_GEARS(wheel_tip_radius), .derived = "reference diameter + 2 m_n (1 + x)", .help = "tip circle"},
+     INTO_GEARS(wheel_tip_radius), .derived = "reference diameter + 2 m_n (h_aP + x + k)", .help = "tip circle"},
     {NAME("gears", "pinion_start_diameter_mm"), NUMBER(UNIT_MM_DIAMETER, DIAMETER),
      INTO_GEARS(pinion_start_radius), .derived = "the point that meets the wheel's tip",
      .help = "start of the active profile"},
@@ -186,8 +212,17 @@ int key_is_used(const key_spec *key, const config *conf, const char **reason) {
     return lacking == 0;
 }
 
+/* The common face follows from those of both gears. */
+static int follows_from_others(const key_spec *key, const config *conf) {
+    return key->target == offsetof(config, gears.face_width) &&
+           !isnan(conf->gears.pinion_face_width) && !isnan(conf->gears.wheel_face_width);
+}
+
 int key_is_required(const key_spec *key, const config *conf) {
     const unsigned purposes = conf->purpose == CONFIG_FOR_RUN ? FOR_ALL | FOR_RUN : FOR_ALL;
 
+    if (follows_from_others(key, conf)) {
+        return 0;
+    }
     return key->required != 0 && (key->required & ~(situation_of(conf) | purposes)) == 0;
 }

@@ -270,11 +270,11 @@ static int field_of(const key_place *range, const char *field) {
 
 /* What would be right, with the measures of this gear (mm). */
 static void describe_limit(char *text, size_t size, int field, const char *requirement,
-                           const gm_pair *pair, const gm_gear *gear) {
+                           const gm_gear *gear) {
     const double roll_length = gear->tip_roll_length - gear->start_roll_length;
 
     if (field == MODIFICATION_WIDTH) {
-        snprintf(text, size, "at most the face width, %.9g mm", 1e3 * pair->face_width);
+        snprintf(text, size, "at most the face width, %.9g mm", 1e3 * gear->face_width);
     } else if (field == MODIFICATION_LENGTH) {
         snprintf(text, size, "at most the roll length of the active profile, %.9g mm",
                  1e3 * roll_length);
@@ -288,8 +288,7 @@ static void describe_limit(char *text, size_t size, int field, const char *requi
     }
 }
 
-static int refuse(const config *conf, const gm_pair *pair, int gear, int side,
-                  const gm_modifications *design) {
+static int refuse(const config *conf, int gear, int side, const gm_modifications *design) {
     int index = -1;
     const char *field_name = NULL;
     const char *requirement = NULL;
@@ -307,7 +306,7 @@ static int refuse(const config *conf, const gm_pair *pair, int gear, int side,
     const int field = field_of(&range, field_name);
     const key_place at = source_of(conf, gear, side, kind, field);
     key_name(name, &at, field);
-    describe_limit(limit, sizeof limit, field, requirement, pair, design->gear);
+    describe_limit(limit, sizeof limit, field, requirement, design->gear);
     config_complain(conf, name, "must be %s (got %.80s)", limit, config_text(conf, name));
     return EXIT_BAD_INPUT;
 }
@@ -317,8 +316,8 @@ static int make_side(gear_design *design, const config *conf, const gm_pair *pai
     gm_modifications *of = &design->of[side];
 
     of->list = design->list[side];
-    of->gear = gear == 0 ? &pair->pinion : &pair->wheel;
-    of->face_width = pair->face_width;
+    of->gear = gear == GM_PINION ? &pair->pinion : &pair->wheel;
+    of->face_width = of->gear->face_width;
     for (int kind = 0; kind < GM_MODIFICATION_KINDS; ++kind) {
         if (amount_of(conf, gear, side, kind) != 0) {
             design->list[side][of->count++] = modification_of(conf, gear, side, kind);
@@ -327,7 +326,7 @@ static int make_side(gear_design *design, const config *conf, const gm_pair *pai
     if (gm_modifications_check(of, NULL, NULL, NULL) == GM_OK) {
         return 0;
     }
-    return refuse(conf, pair, gear, side, of);
+    return refuse(conf, gear, side, of);
 }
 
 int gear_design_make(gear_design *design, const config *conf, const gm_pair *pair, int gear) {

@@ -30,9 +30,18 @@ void gmi_gear_init(gm_gear *gear, int teeth, double transverse_module,
     gear->pitch_angle_remainder = (remainder + GMI_TWO_PI_REMAINDER) / number;
 }
 
-void gmi_gear_set_tip(gm_gear *gear, double tip_radius) {
+/* Root circle of the basic rack, by the shift as printed [ISO21771]. */
+void gmi_gear_set_root(gm_gear *gear, double normal_module) {
+    gear->root_radius =
+        gear->reference_radius - normal_module * (gear->rack_dedendum - gear->profile_shift);
+}
+
+/* r_a = r + m_n (h_aP + x + k) [ISO21771], read the other way round for k. */
+void gmi_gear_set_tip(gm_gear *gear, double tip_radius, double normal_module) {
     gear->tip_radius = tip_radius;
     gear->tip_roll_length = gmi_roll_length(tip_radius, gear->base_radius);
+    gear->tip_alteration = (tip_radius - gear->reference_radius) / normal_module -
+                           (gear->rack_addendum + gear->profile_shift);
 }
 
 void gmi_gear_set_start(gm_gear *gear, double start_radius) {
@@ -52,4 +61,11 @@ void gmi_gear_set_thickness(gm_gear *gear, double normal_thickness, double helix
     gear->normal_thickness = normal_thickness;
     gear->base_half_thickness = 0.5 * transverse_thickness / gear->reference_radius +
                                 gmi_involute(transverse_pressure_angle);
+}
+
+/* s_ta = 2 r_a (psi_b - inv(alpha_a)) with tan(alpha_a) = rho_a / r_b [ISO21771]. */
+void gmi_gear_set_tip_thickness(gm_gear *gear) {
+    const double tip_pressure_angle = atan2(gear->tip_roll_length, gear->base_radius);
+    gear->tip_thickness =
+        2.0 * gear->tip_radius * (gear->base_half_thickness - gmi_involute(tip_pressure_angle));
 }

@@ -3,7 +3,7 @@
 
 /*
  * What the sources of the core share and users never see. Dependencies run one way:
- * gear -> pair -> position -> contact -> flank -> line -> ramp -> penetration -> force -> wrench, equilibrium.
+ * gear -> meshing -> pair -> position -> contact -> flank -> line -> ramp -> penetration -> force -> wrench, equilibrium.
  */
 #ifndef GEARMESH_INTERNAL_H
 #define GEARMESH_INTERNAL_H
@@ -50,11 +50,40 @@ double gmi_product_remainder(double a, double b, double product);
 double gmi_involute(double angle);
 void gmi_gear_init(gm_gear *gear, int teeth, double transverse_module,
                    double transverse_pressure_angle);
-void gmi_gear_set_tip(gm_gear *gear, double tip_radius);
+void gmi_gear_set_root(gm_gear *gear, double normal_module);
+void gmi_gear_set_tip(gm_gear *gear, double tip_radius, double normal_module);
 void gmi_gear_set_start(gm_gear *gear, double start_radius);
 void gmi_gear_set_start_roll_length(gm_gear *gear, double start_roll_length);
 void gmi_gear_set_thickness(gm_gear *gear, double normal_thickness, double helix_angle,
                             double transverse_pressure_angle);
+void gmi_gear_set_tip_thickness(gm_gear *gear);
+
+/* meshing.c: two gears at a centre distance. */
+
+/*
+ * What depends on the centre distance, the gears staying as drawn; the names are those of gm_pair. At the drawing's own
+ * distance the numbers are the drawing's, to the last bit.
+ */
+typedef struct gmi_meshing {
+    double center_distance;        /* (m) */
+    double line_of_action;         /* T (m) */
+    double working_pressure_angle; /* alpha_wt (rad) */
+    double involute_difference;    /* inv(alpha_wt) - inv(alpha_t) (1) */
+    double backlash;               /* transverse, along the line of action (m) */
+    double start_roll_length
+        [2]; /* [enum gm_role] where the active profile starts at this distance (m) */
+    double path_start, path_end;     /* at zero penetration, from the pinion's tangent point (m) */
+    double transverse_contact_ratio; /* (1) */
+    double phase_origin; /* rho_p of tooth 0 at phi_p = 0 where the common face begins (m) */
+    double working_pitch_radius[2]; /* [enum gm_role] (m) */
+    double tip_clearance[2];        /* [enum gm_role] from this gear's tip to the mate's root (m) */
+} gmi_meshing;
+
+/* 1 if the gears mesh there: the base circles are apart and the path of contact is longer than 0; else 0. */
+int gmi_meshing_find(const gm_pair *pair, double center_distance, gmi_meshing *meshing);
+
+/* The first part of it, which needs no teeth: line_of_action, working_pressure_angle, involute_difference. */
+void gmi_meshing_find_angles(const gm_pair *pair, double center_distance, gmi_meshing *meshing);
 
 /* What to compute beside sum, contact and pairs. */
 enum gmi_wanted { GMI_SUM = 0, GMI_DERIVATIVES = 1, GMI_MOMENTS = 2 };

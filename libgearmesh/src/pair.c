@@ -14,14 +14,27 @@
 #define LARGEST_PLACE                                                                              \
     1000.0 /* and so do so many base pitches from tooth 0 to the path of contact */
 #define LARGEST_SHIFT 1000.0
+#define LARGEST_RACK  10.0 /* parts of a basic rack, and tip alteration, in modules */
+
+/* The basic rack of ISO 53, in modules. */
+#define RACK_ADDENDUM      1.0
+#define RACK_DEDENDUM      1.25
+#define RACK_FILLET_RADIUS 0.38
+
+/* Relative: how far a common face width may be off that of the faces that it repeats. */
+#define FACE_WIDTH_ROUNDING 1e-9
 
 /* Of the base pitch: what zero backlash may come out as. */
 #define BACKLASH_ROUNDING 1e-12
 
-/* In normal modules: straight flank of the assumed rack beyond the mate's tip, and the tip land below which
- * case-hardened tips crack. */
-#define STRAIGHT_RACK_EXTRA 0.05
-#define SMALLEST_TIP_LAND   0.2
+/*
+ * In normal modules: the backlash that profile shifts printed with four digits may leave; straight flank of the assumed
+ * rack beyond the mate's tip; the tip land below which case-hardened tips crack; the least tip clearance.
+ */
+#define SHIFT_ROUNDING         1e-4
+#define STRAIGHT_RACK_EXTRA    0.05
+#define SMALLEST_TIP_LAND      0.2
+#define SMALLEST_TIP_CLEARANCE 0.1
 
 /* What is wrong with the parameters; field NULL = nothing. */
 typedef struct problem {
@@ -31,6 +44,70 @@ typedef struct problem {
 } problem;
 
 static const problem no_problem = {GM_OK, NULL, NULL};
+
+/* What the drawing gives of one gear, and how these fields are called. */
+typedef struct gear_params {
+    int teeth;
+    double face_width;
+    double profile_shift;
+    double normal_thickness;
+    double rack_addendum, rack_dedendum, rack_fillet_radius;
+    double tip_alteration;
+    double tip_radius;
+    double start_radius;
+} gear_params;
+
+typedef struct gear_fields {
+    const char *teeth, *face_width, *profile_shift, *normal_thickness;
+    const char *rack_addendum, *rack_dedendum, *rack_fillet_radius, *tip_alteration;
+    const char *tip_radius, *start_radius;
+} gear_fields;
+
+#define FIELDS_OF(gear)                                                                            \
+    {                                                                                              \
+        gear "_teeth", gear "_face_width", gear "_profile_shift", gear "_normal_thickness",        \
+            gear "_rack_addendum", gear "_rack_dedendum", gear "_rack_fillet_radius",              \
+            gear "_tip_alteration", gear "_tip_radius", gear "_start_radius"                       \
+    }
+
+static const gear_fields fields_of[2] = {
+    [GM_PINION] = FIELDS_OF("pinion"), [GM_WHEEL] = FIELDS_OF("wheel")};
+
+static gear_params params_of(const gm_pair_params *p, enum gm_role role) {
+    const gear_params pinion = {p->pinion_teeth,
+                                p->pinion_face_width,
+                                p->pinion_profile_shift,
+                                p->pinion_normal_thickness,
+                                p->pinion_rack_addendum,
+                                p->pinion_rack_dedendum,
+                                p->pinion_rack_fillet_radius,
+                                p->pinion_tip_alteration,
+                                p->pinion_tip_radius,
+                                p->pinion_start_radius};
+    const gear_params wheel = {p->wheel_teeth,
+                               p->wheel_face_width,
+                               p->wheel_profile_shift,
+                               p->wheel_normal_thickness,
+                               p->wheel_rack_addendum,
+                               p->wheel_rack_dedendum,
+                               p->wheel_rack_fillet_radius,
+                               p->wheel_tip_alteration,
+                               p->wheel_tip_radius,
+                               p->wheel_start_radius};
+    return role == GM_PINION ? pinion : wheel;
+}
+
+static gm_gear *gear_of(gm_pair *pair, enum gm_role role) {
+    return role == GM_PINION ? &pair->pinion : &pair->wheel;
+}
+
+static enum gm_role mate_of(enum gm_role role) {
+    return role == GM_PINION ? GM_WHEEL : GM_PINION;
+}
+
+static double or_else(double value, double otherwise) {
+    return isnan(value) ? otherwise : value;
+}
 
 void gm_pair_params_default(gm_pair_params *params) {
     if (params == NULL) {
@@ -44,11 +121,22 @@ void gm_pair_params_default(gm_pair_params *params) {
         .helix_angle = 0.0,
         .center_distance = missing,
         .face_width = missing,
+        .pinion_face_width = missing,
+        .wheel_face_width = missing,
+        .axial_offset = 0.0,
         .pinion_profile_shift = missing,
         .wheel_profile_shift = missing,
         .backlash = missing,
         .pinion_normal_thickness = missing,
         .wheel_normal_thickness = missing,
+        .pinion_rack_addendum = missing,
+        .wheel_rack_addendum = missing,
+        .pinion_rack_dedendum = missing,
+        .wheel_rack_dedendum = missing,
+        .pinion_rack_fillet_radius = missing,
+        .wheel_rack_fillet_radius = missing,
+        .pinion_tip_alteration = missing,
+        .wheel_tip_alteration = missing,
         .pinion_tip_radius = missing,
         .wheel_tip_radius = missing,
         .pinion_start_radius = missing,
@@ -73,51 +161,139 @@ static int is_optional_within(double value, double limit) {
     return isnan(value) || fabs(value) <= limit;
 }
 
-/* Each parameter by itself. */
-static problem check_fields(const gm_pair_params *p) {
-    static const char teeth[] = "a whole number from 3 to 100000";
-    static const char length[] = "a length from 1e-6 to 1e9 m";
-    static const char shift[] = "a number from -1000 to 1000";
-    const double degree = GMI_PI / 180.0;
-    const struct {
-        int valid;
-        const char *field;
-        const char *requirement;
-    } checks[] = {
-        {is_teeth(p->pinion_teeth), "pinion_teeth", teeth},
-        {is_teeth(p->wheel_teeth), "wheel_teeth", teeth},
-        {p->base_helix == GM_BASE_HELIX_ISO || p->base_helix == GM_BASE_HELIX_PAPER, "base_helix",
-         "GM_BASE_HELIX_ISO or GM_BASE_HELIX_PAPER"},
-        {is_length(p->normal_module), "normal_module", length},
-        {p->normal_pressure_angle > 0.0 && p->normal_pressure_angle < 45.0 * degree,
-         "normal_pressure_angle", "an angle between 0 and 45 degrees"},
-        {fabs(p->helix_angle) < 60.0 * degree, "helix_angle",
-         "an angle between -60 and 60 degrees"},
-        {is_length(p->center_distance), "center_distance", length},
-        {is_length(p->face_width), "face_width", length},
-        {is_optional_within(p->pinion_profile_shift, LARGEST_SHIFT), "pinion_profile_shift", shift},
-        {is_optional_within(p->wheel_profile_shift, LARGEST_SHIFT), "wheel_profile_shift", shift},
-        {is_optional_within(p->backlash, GMI_LARGEST_LENGTH), "backlash",
-         "a length from -1e9 to 1e9 m"},
-        {is_optional_length(p->pinion_normal_thickness), "pinion_normal_thickness", length},
-        {is_optional_length(p->wheel_normal_thickness), "wheel_normal_thickness", length},
-        {is_optional_length(p->pinion_tip_radius), "pinion_tip_radius", length},
-        {is_optional_length(p->wheel_tip_radius), "wheel_tip_radius", length},
-        {is_optional_length(p->pinion_start_radius), "pinion_start_radius", length},
-        {is_optional_length(p->wheel_start_radius), "wheel_start_radius", length},
-    };
-    for (size_t k = 0; k < sizeof checks / sizeof checks[0]; ++k) {
+/* NaN, or 0 .. 10 modules. */
+static int is_optional_rack(double value) {
+    return isnan(value) || (value >= 0.0 && value <= LARGEST_RACK);
+}
+
+static problem problem_of(int status, const char *field, const char *requirement) {
+    const problem found = {status, field, requirement};
+    return found;
+}
+
+static problem geometry_problem(const char *field, const char *requirement) {
+    return problem_of(GM_ERR_GEOMETRY, field, requirement);
+}
+
+/* A parameter by itself: whether it is valid, how it is called, what would be right. */
+typedef struct check {
+    int valid;
+    const char *field;
+    const char *requirement;
+} check;
+
+static problem first_invalid(const check *checks, size_t count) {
+    for (size_t k = 0; k < count; ++k) {
         if (!checks[k].valid) {
-            const problem found = {GM_ERR_PARAMETER, checks[k].field, checks[k].requirement};
-            return found;
+            return problem_of(GM_ERR_PARAMETER, checks[k].field, checks[k].requirement);
         }
     }
     return no_problem;
 }
 
-static problem geometry_problem(const char *field, const char *requirement) {
-    const problem found = {GM_ERR_GEOMETRY, field, requirement};
+static const char length_requirement[] = "a length from 1e-6 to 1e9 m";
+
+/* Each parameter of the pair by itself. */
+static problem check_pair_fields(const gm_pair_params *p) {
+    static const char teeth[] = "a whole number from 3 to 100000";
+    const double degree = GMI_PI / 180.0;
+    const int both_widths_given = !isnan(p->pinion_face_width) && !isnan(p->wheel_face_width);
+    const check checks[] = {
+        {is_teeth(p->pinion_teeth), "pinion_teeth", teeth},
+        {is_teeth(p->wheel_teeth), "wheel_teeth", teeth},
+        {p->base_helix == GM_BASE_HELIX_ISO || p->base_helix == GM_BASE_HELIX_PAPER, "base_helix",
+         "GM_BASE_HELIX_ISO or GM_BASE_HELIX_PAPER"},
+        {is_length(p->normal_module), "normal_module", length_requirement},
+        {p->normal_pressure_angle > 0.0 && p->normal_pressure_angle < 45.0 * degree,
+         "normal_pressure_angle", "an angle between 0 and 45 degrees"},
+        {fabs(p->helix_angle) < 60.0 * degree, "helix_angle",
+         "an angle between -60 and 60 degrees"},
+        {is_length(p->center_distance), "center_distance", length_requirement},
+        {is_length(p->face_width) || (isnan(p->face_width) && both_widths_given), "face_width",
+         length_requirement},
+        {fabs(p->axial_offset) <= GMI_LARGEST_LENGTH, "axial_offset",
+         "a length from -1e9 to 1e9 m"},
+        {is_optional_within(p->backlash, GMI_LARGEST_LENGTH), "backlash",
+         "a length from -1e9 to 1e9 m"},
+    };
+    return first_invalid(checks, sizeof checks / sizeof checks[0]);
+}
+
+/* Each parameter of one gear by itself. */
+static problem check_gear_fields(const gm_pair_params *params, enum gm_role role) {
+    static const char rack[] = "a number of modules from 0 to 10";
+    const gear_params p = params_of(params, role);
+    const gear_fields *field = &fields_of[role];
+    const check checks[] = {
+        {is_optional_length(p.face_width), field->face_width, length_requirement},
+        {is_optional_within(p.profile_shift, LARGEST_SHIFT), field->profile_shift,
+         "a number from -1000 to 1000"},
+        {is_optional_length(p.normal_thickness), field->normal_thickness, length_requirement},
+        {is_optional_rack(p.rack_addendum), field->rack_addendum, rack},
+        {is_optional_rack(p.rack_dedendum), field->rack_dedendum, rack},
+        {is_optional_rack(p.rack_fillet_radius), field->rack_fillet_radius, rack},
+        {is_optional_within(p.tip_alteration, LARGEST_RACK), field->tip_alteration,
+         "a number of modules from -10 to 10"},
+        {is_optional_length(p.tip_radius), field->tip_radius, length_requirement},
+        {is_optional_length(p.start_radius), field->start_radius, length_requirement},
+    };
+    return first_invalid(checks, sizeof checks / sizeof checks[0]);
+}
+
+static problem check_fields(const gm_pair_params *params) {
+    problem found = check_pair_fields(params);
+    for (enum gm_role role = GM_PINION; found.field == NULL && role <= GM_WHEEL; ++role) {
+        found = check_gear_fields(params, role);
+    }
     return found;
+}
+
+/* A common width that is given beside those of the gears must agree with them. */
+static problem check_common_width(const gm_pair *pair, const gm_pair_params *p) {
+    const double narrower = fmin(pair->pinion.face_width, pair->wheel.face_width);
+    const double rounding = FACE_WIDTH_ROUNDING * narrower;
+    const int both_given = !isnan(p->pinion_face_width) && !isnan(p->wheel_face_width);
+    if (isnan(p->face_width)) {
+        return no_problem;
+    }
+    if (p->face_width > narrower + rounding) {
+        return geometry_problem("face_width",
+                                "a common width, no larger than the face of either gear");
+    }
+    if (both_given && p->face_width < narrower - rounding &&
+        fabs(p->face_width - pair->face_width) > rounding) {
+        return geometry_problem("face_width",
+                                "the width that the faces given for both gears share, or "
+                                "be left out");
+    }
+    return no_problem;
+}
+
+/* Where the faces of both gears begin, and the common face [z from the pinion's face I]. */
+static problem derive_faces(gm_pair *pair, const gm_pair_params *p) {
+    gm_gear *pinion = &pair->pinion;
+    gm_gear *wheel = &pair->wheel;
+    pinion->face_width = or_else(p->pinion_face_width, p->face_width);
+    wheel->face_width = or_else(p->wheel_face_width, p->face_width);
+    pinion->face_start = 0.0;
+    wheel->face_start = 0.5 * pinion->face_width + p->axial_offset - 0.5 * wheel->face_width;
+
+    /* The common face has the width of the narrower gear where it lies within the other one. */
+    const double wheel_end = wheel->face_start + wheel->face_width;
+    const int wheel_begins = wheel->face_start > 0.0;
+    const int wheel_ends = wheel_end < pinion->face_width;
+    pair->face_start = wheel_begins ? wheel->face_start : 0.0;
+    if (wheel_begins && wheel_ends) {
+        pair->face_width = wheel->face_width;
+    } else {
+        pair->face_width = (wheel_ends ? wheel_end : pinion->face_width) - pair->face_start;
+    }
+
+    if (!(pair->face_width >= GMI_SMALLEST_LENGTH)) {
+        return geometry_problem("axial_offset",
+                                "an offset at which the faces of both gears overlap");
+    }
+    return check_common_width(pair, p);
 }
 
 /* Transverse section, base circles and base helix: what no mate and no pose changes. */
@@ -130,7 +306,6 @@ static void derive_sections(gm_pair *pair, const gm_pair_params *p) {
     pair->normal_pressure_angle = p->normal_pressure_angle;
     pair->transverse_pressure_angle = alpha_t;
     pair->helix_angle = p->helix_angle;
-    pair->face_width = p->face_width;
 
     gmi_gear_init(&pair->pinion, p->pinion_teeth, pair->transverse_module, alpha_t);
     gmi_gear_init(&pair->wheel, p->wheel_teeth, pair->transverse_module, alpha_t);
@@ -143,44 +318,58 @@ static void derive_sections(gm_pair *pair, const gm_pair_params *p) {
                                       ? tan(p->helix_angle) / cos_transverse
                                       : tan(p->helix_angle) * cos_transverse;
     pair->base_helix_angle = atan(tan_base_helix);
-    pair->face_advance = p->face_width * tan_base_helix;
-    if (fabs(pair->face_advance) < DBL_EPSILON * pair->transverse_base_pitch) {
-        pair->face_advance = 0.0; /* a line climbs less than a phase is rounded: a spur pair */
-    }
     pair->normal_to_transverse = sqrt(1.0 + tan_base_helix * tan_base_helix);
+
+    /* A line that advances less than a phase is rounded: a spur pair. */
+    pair->face_advance = pair->face_width * tan_base_helix;
+    if (fabs(pair->face_advance) < DBL_EPSILON * pair->transverse_base_pitch) {
+        pair->face_advance = 0.0;
+    }
+    pair->overlap_ratio = fabs(pair->face_advance) / pair->transverse_base_pitch;
 }
 
-/*
- * Working pressure angle and line of action. Both are found from the small difference to the
- * reference position, so that inv(alpha_wt) - inv(alpha_t) keeps its digits when they nearly agree.
- * Returns inv(alpha_wt) - inv(alpha_t).
- */
-static double derive_pose(gm_pair *pair, double center_distance) {
-    const double base_sum = pair->pinion.base_radius + pair->wheel.base_radius;
-    const double alpha_t = pair->transverse_pressure_angle;
-    pair->center_distance = center_distance;
-    pair->line_of_action =
-        sqrt((center_distance - base_sum) * (center_distance + base_sum)); /* [Paper, Eq. 23] */
-    const double alpha_w = atan2(pair->line_of_action, base_sum);
+/* Depth to which the flank of the rack is straight, below its reference line, in modules. */
+static double straight_rack_depth(const gm_gear *gear, double normal_pressure_angle) {
+    return gear->rack_dedendum - gear->rack_fillet_radius * (1.0 - sin(normal_pressure_angle));
+}
 
-    /* cos(alpha_t) - cos(alpha_wt) = 2 sin((alpha_wt + alpha_t) / 2) sin((alpha_wt - alpha_t) / 2) */
-    const double cos_difference =
-        cos(alpha_t) * ((center_distance - pair->reference_center_distance) / center_distance);
-    const double difference = 2.0 * asin(cos_difference / (2.0 * sin(0.5 * (alpha_w + alpha_t))));
-    pair->working_pressure_angle = alpha_w;
-    return sin(difference) / (cos(alpha_w) * cos(alpha_t)) - difference;
+/* The basic rack of each gear; a fillet deeper than the dedendum leaves no straight flank. */
+static problem derive_rack(gm_gear *gear, const gm_pair_params *params, enum gm_role role) {
+    const gear_params p = params_of(params, role);
+    gear->rack_addendum = or_else(p.rack_addendum, RACK_ADDENDUM);
+    gear->rack_dedendum = or_else(p.rack_dedendum, RACK_DEDENDUM);
+    gear->rack_fillet_radius = or_else(p.rack_fillet_radius, RACK_FILLET_RADIUS);
+    if (straight_rack_depth(gear, params->normal_pressure_angle) >= 0.0) {
+        return no_problem;
+    }
+    return isnan(p.rack_fillet_radius)
+               ? geometry_problem(fields_of[role].rack_dedendum,
+                                  "a number of modules that leaves room for the fillet radius")
+               : geometry_problem(fields_of[role].rack_fillet_radius,
+                                  "a number of modules for which the dedendum has room");
+}
+
+/* Working pressure angle and line of action of the drawing. */
+static void derive_angles(gm_pair *pair, double center_distance) {
+    gmi_meshing nominal;
+    gmi_meshing_find_angles(pair, center_distance, &nominal);
+    pair->center_distance = nominal.center_distance;
+    pair->line_of_action = nominal.line_of_action;
+    pair->working_pressure_angle = nominal.working_pressure_angle;
+    pair->involute_difference = nominal.involute_difference;
 }
 
 /* What the thickness of a tooth comes from: what was given for it, else for its mate, else the centre distance. */
-static const char *thickness_field(const gm_pair_params *p, int of_pinion) {
-    if (!isnan(of_pinion ? p->pinion_normal_thickness : p->wheel_normal_thickness)) {
-        return of_pinion ? "pinion_normal_thickness" : "wheel_normal_thickness";
+static const char *thickness_field(const gm_pair_params *params, enum gm_role role) {
+    const gear_params own = params_of(params, role);
+    const gear_params mate = params_of(params, mate_of(role));
+    if (!isnan(own.normal_thickness)) {
+        return fields_of[role].normal_thickness;
     }
-    if (isnan(p->pinion_profile_shift) && isnan(p->wheel_profile_shift)) {
-        return "center_distance";
+    if (!isnan(own.profile_shift)) {
+        return fields_of[role].profile_shift;
     }
-    const int own_given = !isnan(of_pinion ? p->pinion_profile_shift : p->wheel_profile_shift);
-    return own_given == of_pinion ? "pinion_profile_shift" : "wheel_profile_shift";
+    return isnan(mate.profile_shift) ? "center_distance" : fields_of[mate_of(role)].profile_shift;
 }
 
 static problem check_thickness(const gm_pair *pair, const gm_pair_params *p) {
@@ -188,50 +377,54 @@ static problem check_thickness(const gm_pair *pair, const gm_pair_params *p) {
     const int pinion_fits = pair->pinion.normal_thickness > 0.0;
     const int wheel_fits = pair->wheel.normal_thickness > 0.0;
     if (!(pinion_fits && wheel_fits)) {
-        return geometry_problem(backlash_given ? "backlash" : thickness_field(p, !pinion_fits),
+        const enum gm_role thin = pinion_fits ? GM_WHEEL : GM_PINION;
+        return geometry_problem(backlash_given ? "backlash" : thickness_field(p, thin),
                                 "a value that leaves the teeth thicker than 0");
     }
-    const int pinion_thicker = pair->pinion.normal_thickness > pair->wheel.normal_thickness;
     if (!(pair->backlash > -pair->transverse_base_pitch)) {
-        return geometry_problem(backlash_given ? "backlash" : thickness_field(p, pinion_thicker),
+        const int pinion_thicker = pair->pinion.normal_thickness > pair->wheel.normal_thickness;
+        const enum gm_role thick = pinion_thicker ? GM_PINION : GM_WHEEL;
+        return geometry_problem(backlash_given ? "backlash" : thickness_field(p, thick),
                                 "a value that leaves the backlash above minus one base pitch");
     }
     return no_problem;
 }
 
+/* Profile shifts as printed; what is not given follows from the sum that leaves no backlash. */
+static void derive_shifts(gm_pair *pair, const gm_pair_params *p) {
+    const double shift_sum = (double)(p->pinion_teeth + p->wheel_teeth) *
+                             pair->involute_difference /
+                             (2.0 * tan(p->normal_pressure_angle)); /* [ISO21771] */
+    const int neither_given = isnan(p->pinion_profile_shift) && isnan(p->wheel_profile_shift);
+    const double pinion_rest = neither_given ? 0.5 * shift_sum : shift_sum - p->wheel_profile_shift;
+    const double wheel_rest = neither_given ? 0.5 * shift_sum : shift_sum - p->pinion_profile_shift;
+    pair->pinion.profile_shift = or_else(p->pinion_profile_shift, pinion_rest);
+    pair->wheel.profile_shift = or_else(p->wheel_profile_shift, wheel_rest);
+}
+
 /*
- * Profile shifts, tooth thicknesses and backlash along the line of action:
+ * Tooth thicknesses and backlash along the line of action:
  *     p_bt - 2 r_bp psi_p - 2 r_bw psi_w + 2 (r_bp + r_bw) inv(alpha_wt)
  *   = 2 (r_bp + r_bw) (inv(alpha_wt) - inv(alpha_t)) - (s_np + s_nw - pi m_n) cos(alpha_t) / cos(beta),
  * the second form without cancellation of the large terms.
  */
-static problem derive_thickness(gm_pair *pair, const gm_pair_params *p,
-                                double involute_difference) {
+static problem derive_thickness(gm_pair *pair, const gm_pair_params *p) {
     gm_gear *pinion = &pair->pinion;
     gm_gear *wheel = &pair->wheel;
     const double tan_normal = tan(p->normal_pressure_angle);
-    const double shift_sum = (double)(p->pinion_teeth + p->wheel_teeth) * involute_difference /
-                             (2.0 * tan_normal); /* [ISO21771]: no backlash */
-    double x_p = p->pinion_profile_shift;
-    double x_w = p->wheel_profile_shift;
-    if (isnan(x_p) && isnan(x_w)) {
-        x_p = x_w = 0.5 * shift_sum;
-    } else if (isnan(x_p)) {
-        x_p = shift_sum - x_w;
-    } else if (isnan(x_w)) {
-        x_w = shift_sum - x_p;
-    }
-    pinion->profile_shift = x_p;
-    wheel->profile_shift = x_w;
 
     /* Excess of the normal thickness over half a pitch, m_n pi / 2. */
     const double half_pitch = 0.5 * GMI_PI * p->normal_module;
-    double excess_p = isnan(p->pinion_normal_thickness) ? 2.0 * p->normal_module * x_p * tan_normal
-                                                        : p->pinion_normal_thickness - half_pitch;
-    double excess_w = isnan(p->wheel_normal_thickness) ? 2.0 * p->normal_module * x_w * tan_normal
-                                                       : p->wheel_normal_thickness - half_pitch;
+    double excess_p = isnan(p->pinion_normal_thickness)
+                          ? 2.0 * p->normal_module * pinion->profile_shift * tan_normal
+                          : p->pinion_normal_thickness - half_pitch;
+    double excess_w = isnan(p->wheel_normal_thickness)
+                          ? 2.0 * p->normal_module * wheel->profile_shift * tan_normal
+                          : p->wheel_normal_thickness - half_pitch;
+
+    /* A backlash that is given thins both teeth alike. */
     const double along_line = cos(pair->transverse_pressure_angle) / cos(p->helix_angle);
-    pair->backlash = 2.0 * (pinion->base_radius + wheel->base_radius) * involute_difference -
+    pair->backlash = 2.0 * (pinion->base_radius + wheel->base_radius) * pair->involute_difference -
                      (excess_p + excess_w) * along_line;
     if (!isnan(p->backlash)) {
         const double change = 0.5 * (pair->backlash - p->backlash) / along_line;
@@ -243,68 +436,83 @@ static problem derive_thickness(gm_pair *pair, const gm_pair_params *p,
     const double alpha_t = pair->transverse_pressure_angle;
     gmi_gear_set_thickness(pinion, half_pitch + excess_p, p->helix_angle, alpha_t);
     gmi_gear_set_thickness(wheel, half_pitch + excess_w, p->helix_angle, alpha_t);
-    pair->phase_origin =
-        pinion->base_radius * (pair->working_pressure_angle + pinion->base_half_thickness);
     return check_thickness(pair, p);
 }
 
-static double default_tip(const gm_gear *gear, double tip_radius, double normal_module) {
-    return isnan(tip_radius) ? gear->reference_radius + normal_module * (1.0 + gear->profile_shift)
-                             : tip_radius;
+/*
+ * Tip alteration that keeps the tip clearance of the basic rack when the axes are closer than the shifts ask for
+ * [ISO21771, k m_n = a - a_0 - m_n (x_p + x_w)]; a tooth is not made longer.
+ */
+static double default_tip_alteration(const gm_pair *pair) {
+    const double spread =
+        (pair->center_distance - pair->reference_center_distance) / pair->normal_module;
+    return fmin(0.0, spread - (pair->pinion.profile_shift + pair->wheel.profile_shift));
 }
 
-/* Flank ends [Paper, Eqs. 13-15]; a start radius that is not given meets the mate's tip. */
-static problem derive_flank_ends(gm_pair *pair, const gm_pair_params *p) {
-    gm_gear *pinion = &pair->pinion;
-    gm_gear *wheel = &pair->wheel;
-    gmi_gear_set_tip(pinion, default_tip(pinion, p->pinion_tip_radius, p->normal_module));
-    gmi_gear_set_tip(wheel, default_tip(wheel, p->wheel_tip_radius, p->normal_module));
-    static const char above_base[] = "a radius larger than the base radius";
-    if (!(pinion->tip_roll_length > 0.0)) {
-        return geometry_problem("pinion_tip_radius", above_base);
-    }
-    if (!(wheel->tip_roll_length > 0.0)) {
-        return geometry_problem("wheel_tip_radius", above_base);
+/* Root circle, tip circle and what is left of the tooth there. */
+static problem derive_tip(gm_pair *pair, const gm_pair_params *params, enum gm_role role) {
+    const gear_params p = params_of(params, role);
+    const gear_fields *field = &fields_of[role];
+    gm_gear *gear = gear_of(pair, role);
+    gmi_gear_set_root(gear, pair->normal_module);
+    if (!(gear->root_radius > 0.0)) {
+        return geometry_problem(field->rack_dedendum, "a number of modules that leaves a root "
+                                                      "radius above 0");
     }
 
-    if (isnan(p->pinion_start_radius)) {
-        gmi_gear_set_start_roll_length(pinion, pair->line_of_action - wheel->tip_roll_length);
-    } else {
-        gmi_gear_set_start(pinion, p->pinion_start_radius);
+    /* r_a = r + m_n (h_aP + x + k) where the drawing gives no tip [ISO21771]. */
+    const double k = or_else(p.tip_alteration, default_tip_alteration(pair));
+    const double height = gear->rack_addendum + gear->profile_shift + k;
+    gmi_gear_set_tip(gear,
+                     or_else(p.tip_radius, gear->reference_radius + pair->normal_module * height),
+                     pair->normal_module);
+    gmi_gear_set_tip_thickness(gear);
+    if (gear->tip_roll_length > 0.0) {
+        return no_problem;
     }
-    if (isnan(p->wheel_start_radius)) {
-        gmi_gear_set_start_roll_length(wheel, pair->line_of_action - pinion->tip_roll_length);
+    return isnan(p.tip_radius) && !isnan(p.tip_alteration)
+               ? geometry_problem(field->tip_alteration,
+                                  "a number that leaves the tip radius larger than the base radius")
+               : geometry_problem(field->tip_radius, "a radius larger than the base radius");
+}
+
+/* Start of the active profile [Paper, Eqs. 13-15]: as given, else the point that meets the mate's tip. */
+static problem derive_start(gm_pair *pair, const gm_pair_params *params, enum gm_role role) {
+    const gear_params p = params_of(params, role);
+    const gm_gear *mate = gear_of(pair, mate_of(role));
+    gm_gear *gear = gear_of(pair, role);
+    gear->start_is_given = !isnan(p.start_radius);
+    if (gear->start_is_given) {
+        gmi_gear_set_start(gear, p.start_radius);
     } else {
-        gmi_gear_set_start(wheel, p->wheel_start_radius);
+        gmi_gear_set_start_roll_length(gear, pair->line_of_action - mate->tip_roll_length);
     }
 
-    static const char below_tip[] = "a radius smaller than the tip radius";
-    static const char reach[] = "a radius at which the tips of both gears reach each other";
-    const int pinion_ends = pinion->start_roll_length < pinion->tip_roll_length;
-    const int wheel_ends = wheel->start_roll_length < wheel->tip_roll_length;
-    if (!pinion_ends) {
-        return isnan(p->pinion_start_radius) ? geometry_problem("pinion_tip_radius", reach)
-                                             : geometry_problem("pinion_start_radius", below_tip);
+    if (gear->start_roll_length < gear->tip_roll_length) {
+        return no_problem;
     }
-    if (!wheel_ends) {
-        return isnan(p->wheel_start_radius) ? geometry_problem("wheel_tip_radius", reach)
-                                            : geometry_problem("wheel_start_radius", below_tip);
-    }
-    return no_problem;
+    return gear->start_is_given
+               ? geometry_problem(fields_of[role].start_radius,
+                                  "a radius smaller than the tip radius")
+               : geometry_problem(fields_of[role].tip_radius,
+                                  "a radius at which the tips of both gears reach each other");
 }
 
 /* Path of contact at zero penetration and contact ratios [ISO21771]. */
 static problem derive_path(gm_pair *pair) {
-    pair->path_start =
-        fmax(pair->pinion.start_roll_length, pair->line_of_action - pair->wheel.tip_roll_length);
-    pair->path_end =
-        fmin(pair->pinion.tip_roll_length, pair->line_of_action - pair->wheel.start_roll_length);
-    pair->transverse_contact_ratio =
-        (pair->path_end - pair->path_start) / pair->transverse_base_pitch;
-    pair->overlap_ratio = fabs(pair->face_advance) / pair->transverse_base_pitch;
+    gmi_meshing nominal;
+    const int meshes = gmi_meshing_find(pair, pair->center_distance, &nominal);
+    pair->path_start = nominal.path_start;
+    pair->path_end = nominal.path_end;
+    pair->transverse_contact_ratio = nominal.transverse_contact_ratio;
     pair->total_contact_ratio = pair->transverse_contact_ratio + pair->overlap_ratio;
+    pair->phase_origin = nominal.phase_origin;
+    pair->pinion_working_pitch_radius = nominal.working_pitch_radius[GM_PINION];
+    pair->wheel_working_pitch_radius = nominal.working_pitch_radius[GM_WHEEL];
+    pair->pinion_tip_clearance = nominal.tip_clearance[GM_PINION];
+    pair->wheel_tip_clearance = nominal.tip_clearance[GM_WHEEL];
 
-    if (!(pair->path_end > pair->path_start)) {
+    if (!meshes) {
         return geometry_problem(
             "pinion_tip_radius",
             "a radius at which the active flanks of both gears reach each other");
@@ -322,7 +530,7 @@ static problem check_place(const gm_pair *pair, const gm_pair_params *p) {
         LARGEST_PLACE * pair->transverse_base_pitch) {
         return no_problem;
     }
-    return geometry_problem(thickness_field(p, 1),
+    return geometry_problem(thickness_field(p, GM_PINION),
                             "a value with which the teeth at zero angles stand less than 1000 base "
                             "pitches from their path of contact");
 }
@@ -332,6 +540,10 @@ static problem check_finite(const gm_pair *pair) {
     const double derived[] = {
         pair->pinion.base_half_thickness,
         pair->wheel.base_half_thickness,
+        pair->pinion.tip_alteration,
+        pair->wheel.tip_alteration,
+        pair->pinion.tip_thickness,
+        pair->wheel.tip_thickness,
         pair->pinion.tip_roll_length,
         pair->wheel.tip_roll_length,
         pair->pinion.normal_thickness,
@@ -342,6 +554,8 @@ static problem check_finite(const gm_pair *pair) {
         pair->face_advance,
         pair->backlash,
         pair->phase_origin,
+        pair->pinion_tip_clearance,
+        pair->wheel_tip_clearance,
     };
     for (size_t k = 0; k < sizeof derived / sizeof derived[0]; ++k) {
         if (!gmi_is_finite(derived[k])) {
@@ -357,15 +571,33 @@ static problem derive(gm_pair *pair, const gm_pair_params *params) {
     if (found.field != NULL) {
         return found;
     }
+
+    /* Each gear alone. */
+    found = derive_faces(pair, params);
+    if (found.field != NULL) {
+        return found;
+    }
     derive_sections(pair, params);
+    for (enum gm_role role = GM_PINION; found.field == NULL && role <= GM_WHEEL; ++role) {
+        found = derive_rack(gear_of(pair, role), params, role);
+    }
+    if (found.field != NULL) {
+        return found;
+    }
+
+    /* Both at the centre distance of the drawing. */
     if (!(params->center_distance > pair->pinion.base_radius + pair->wheel.base_radius)) {
         return geometry_problem("center_distance",
                                 "a distance larger than the sum of the base radii");
     }
-    const double involute_difference = derive_pose(pair, params->center_distance);
-    found = derive_thickness(pair, params, involute_difference);
-    if (found.field == NULL) {
-        found = derive_flank_ends(pair, params);
+    derive_angles(pair, params->center_distance);
+    derive_shifts(pair, params);
+    found = derive_thickness(pair, params);
+    for (enum gm_role role = GM_PINION; found.field == NULL && role <= GM_WHEEL; ++role) {
+        found = derive_tip(pair, params, role);
+    }
+    for (enum gm_role role = GM_PINION; found.field == NULL && role <= GM_WHEEL; ++role) {
+        found = derive_start(pair, params, role);
     }
     if (found.field == NULL) {
         found = derive_path(pair);
@@ -381,15 +613,66 @@ static problem derive(gm_pair *pair, const gm_pair_params *params) {
 
 static gm_gear gear_nan(void) {
     const double nan = gmi_nan();
-    const gm_gear gear = {0, nan, nan, nan, nan, nan, nan, nan, nan, nan, nan, nan};
+    const gm_gear gear = {
+        .teeth = 0,
+        .start_is_given = 0,
+        .profile_shift = nan,
+        .rack_addendum = nan,
+        .rack_dedendum = nan,
+        .rack_fillet_radius = nan,
+        .tip_alteration = nan,
+        .reference_radius = nan,
+        .base_radius = nan,
+        .root_radius = nan,
+        .tip_radius = nan,
+        .start_radius = nan,
+        .normal_thickness = nan,
+        .base_half_thickness = nan,
+        .tip_thickness = nan,
+        .start_roll_length = nan,
+        .tip_roll_length = nan,
+        .pitch_angle = nan,
+        .pitch_angle_remainder = nan,
+        .face_width = nan,
+        .face_start = nan,
+    };
     return gear;
 }
 
 static gm_pair pair_nan(void) {
     const double nan = gmi_nan();
     const gm_gear gear = gear_nan();
-    const gm_pair pair = {gear, gear, nan, nan, nan, nan, nan, nan, nan, nan, nan, nan,
-                          nan,  nan,  nan, nan, nan, nan, nan, nan, nan, nan, nan};
+    const gm_pair pair = {
+        .pinion = gear,
+        .wheel = gear,
+        .normal_module = nan,
+        .transverse_module = nan,
+        .normal_pressure_angle = nan,
+        .transverse_pressure_angle = nan,
+        .helix_angle = nan,
+        .base_helix_angle = nan,
+        .transverse_base_pitch = nan,
+        .face_width = nan,
+        .face_start = nan,
+        .face_advance = nan,
+        .normal_to_transverse = nan,
+        .center_distance = nan,
+        .reference_center_distance = nan,
+        .working_pressure_angle = nan,
+        .involute_difference = nan,
+        .line_of_action = nan,
+        .path_start = nan,
+        .path_end = nan,
+        .transverse_contact_ratio = nan,
+        .overlap_ratio = nan,
+        .total_contact_ratio = nan,
+        .backlash = nan,
+        .phase_origin = nan,
+        .pinion_working_pitch_radius = nan,
+        .wheel_working_pitch_radius = nan,
+        .pinion_tip_clearance = nan,
+        .wheel_tip_clearance = nan,
+    };
     return pair;
 }
 
@@ -425,65 +708,92 @@ int gm_pair_init(gm_pair *pair, const gm_pair_params *params) {
     return found.status;
 }
 
-/* Roll length of the root form point cut by the assumed rack; negative = undercut. */
-static double root_form_roll_length(const gm_pair *pair, const gm_gear *gear, const gm_gear *mate) {
-    const double m_n = pair->normal_module;
+/* Roll length of the root form point cut by the rack; negative = undercut. */
+static double root_form_roll_length(const gm_pair *pair, const gm_pair_params *params,
+                                    enum gm_role role) {
+    const gear_params p = params_of(params, role);
+    const gm_gear *gear = gmi_gear_of(pair, role);
+    const gm_gear *mate = gmi_gear_of(pair, mate_of(role));
+
+    /* Depth below the reference circle. A rack of which nothing is said reaches a little deeper than the mate's tip. */
+    const int rack_given = !isnan(p.rack_dedendum) || !isnan(p.rack_fillet_radius);
+    const double needed =
+        (gear->reference_radius + mate->tip_radius - pair->center_distance) / pair->normal_module;
+    const double depth =
+        rack_given ? straight_rack_depth(gear, pair->normal_pressure_angle) - gear->profile_shift
+                   : needed + STRAIGHT_RACK_EXTRA;
     const double sin_transverse = sin(pair->transverse_pressure_angle);
-    const double mate_addendum =
-        (mate->tip_radius - mate->reference_radius) / m_n - mate->profile_shift;
-    const double depth = mate_addendum + STRAIGHT_RACK_EXTRA - gear->profile_shift;
-    return gear->reference_radius * sin_transverse - depth * m_n / sin_transverse;
+    return gear->reference_radius * sin_transverse - depth * pair->normal_module / sin_transverse;
 }
 
+/* s_na = s_ta cos(beta_a), the helix angle growing with the radius. */
 static double normal_tip_land(const gm_pair *pair, const gm_gear *gear) {
-    const double tip_pressure_angle = atan2(gear->tip_roll_length, gear->base_radius);
-    const double transverse_land =
-        2.0 * gear->tip_radius * (gear->base_half_thickness - gmi_involute(tip_pressure_angle));
     const double tip_helix =
         atan(tan(pair->helix_angle) * gear->tip_radius / gear->reference_radius);
-    return transverse_land * cos(tip_helix);
+    return gear->tip_thickness * cos(tip_helix);
+}
+
+/* The warnings that both gears share, as one gear has them. */
+typedef struct gear_warnings {
+    int undercut, tip_land, root_form, start_radius, tip_clearance, tip_alteration;
+} gear_warnings;
+
+static int warnings_of_gear(const gm_pair *pair, const gm_pair_params *params, enum gm_role role) {
+    static const gear_warnings flags[2] = {
+        [GM_PINION] = {GM_WARN_PINION_UNDERCUT, GM_WARN_PINION_TIP_LAND, GM_WARN_PINION_ROOT_FORM,
+                       GM_WARN_PINION_START_RADIUS, GM_WARN_PINION_TIP_CLEARANCE,
+                       GM_WARN_PINION_TIP_ALTERATION},
+        [GM_WHEEL] = {GM_WARN_WHEEL_UNDERCUT, GM_WARN_WHEEL_TIP_LAND, GM_WARN_WHEEL_ROOT_FORM,
+                      GM_WARN_WHEEL_START_RADIUS, GM_WARN_WHEEL_TIP_CLEARANCE,
+                      GM_WARN_WHEEL_TIP_ALTERATION},
+    };
+    const gear_params p = params_of(params, role);
+    const gm_gear *gear = gmi_gear_of(pair, role);
+    const gear_warnings *flag = &flags[role];
+    int warnings = 0;
+
+    /* Root: what the rack leaves of the involute. */
+    const double form = root_form_roll_length(pair, params, role);
+    if (form < 0.0) {
+        warnings |= flag->undercut;
+    }
+    if (gear->start_roll_length < form) {
+        warnings |= flag->root_form;
+    }
+    if (p.start_radius < gear->base_radius) {
+        warnings |= flag->start_radius;
+    }
+
+    /* Tip: its thickness, and its clearance to the mate's root. */
+    const double clearance =
+        role == GM_PINION ? pair->pinion_tip_clearance : pair->wheel_tip_clearance;
+    if (normal_tip_land(pair, gear) < SMALLEST_TIP_LAND * pair->normal_module) {
+        warnings |= flag->tip_land;
+    }
+    if (clearance < SMALLEST_TIP_CLEARANCE * pair->normal_module) {
+        warnings |= flag->tip_clearance;
+    }
+    if (!isnan(p.tip_alteration) && !isnan(p.tip_radius)) {
+        warnings |= flag->tip_alteration;
+    }
+    return warnings;
 }
 
 int gm_pair_warnings(const gm_pair *pair, const gm_pair_params *params) {
     if (pair == NULL || params == NULL) {
         return 0;
     }
-    const gm_gear *pinion = &pair->pinion;
-    const gm_gear *wheel = &pair->wheel;
-    const double pinion_form = root_form_roll_length(pair, pinion, wheel);
-    const double wheel_form = root_form_roll_length(pair, wheel, pinion);
-    const double least_land = SMALLEST_TIP_LAND * pair->normal_module;
-
-    int warnings = 0;
-    if (pinion_form < 0.0) {
-        warnings |= GM_WARN_PINION_UNDERCUT;
-    }
-    if (wheel_form < 0.0) {
-        warnings |= GM_WARN_WHEEL_UNDERCUT;
-    }
-    if (normal_tip_land(pair, pinion) < least_land) {
-        warnings |= GM_WARN_PINION_TIP_LAND;
-    }
-    if (normal_tip_land(pair, wheel) < least_land) {
-        warnings |= GM_WARN_WHEEL_TIP_LAND;
-    }
-    if (pinion->start_roll_length < pinion_form) {
-        warnings |= GM_WARN_PINION_ROOT_FORM;
-    }
-    if (wheel->start_roll_length < wheel_form) {
-        warnings |= GM_WARN_WHEEL_ROOT_FORM;
-    }
+    int warnings =
+        warnings_of_gear(pair, params, GM_PINION) | warnings_of_gear(pair, params, GM_WHEEL);
     if (pair->transverse_contact_ratio < 1.0) {
         warnings |= GM_WARN_CONTACT_RATIO;
     }
-    if (pair->backlash < -BACKLASH_ROUNDING * pair->transverse_base_pitch) {
+
+    /* Profile shifts are printed with four digits or so. */
+    if (pair->backlash < -SHIFT_ROUNDING * pair->normal_module) {
         warnings |= GM_WARN_BACKLASH;
-    }
-    if (params->pinion_start_radius < pinion->base_radius) {
-        warnings |= GM_WARN_PINION_START_RADIUS;
-    }
-    if (params->wheel_start_radius < wheel->base_radius) {
-        warnings |= GM_WARN_WHEEL_START_RADIUS;
+    } else if (pair->backlash < -BACKLASH_ROUNDING * pair->transverse_base_pitch) {
+        warnings |= GM_WARN_BACKLASH_ROUNDED;
     }
     return warnings;
 }

@@ -35,7 +35,7 @@ static side_force force_of(const gmi_side_sum *sum, double approach_speed, doubl
 /*
  * Adds one side. mirror = +1 drive, -1 coast: the coast plane of action is the drive one mirrored at the plane
  * of both axes. On the wheel acts force * (sin(alpha), mirror cos(alpha), -mirror tan(beta_b)) at
- *     (r_bp cos(alpha) + rho sin(alpha), mirror (rho cos(alpha) - r_bp sin(alpha)), b t1).
+ *     (r_bp cos(alpha) + rho sin(alpha), mirror (rho cos(alpha) - r_bp sin(alpha)), z_0 + b t1).
  */
 static void add_side(const gm_pair *pair, const side_force *side, double mirror,
                      gm_wrench *wrench) {
@@ -51,7 +51,7 @@ static void add_side(const gm_pair *pair, const side_force *side, double mirror,
     const double r_b = pair->pinion.base_radius;
     const double x_force = force * r_b * cos_alpha + side->force_rho * sin_alpha;
     const double y_force = mirror * (side->force_rho * cos_alpha - force * r_b * sin_alpha);
-    const double z_force = pair->face_width * side->force_t1;
+    const double z_force = pair->face_start * force + pair->face_width * side->force_t1;
     const double m_x = y_force * axial_share - z_force * mirror * cos_alpha;
     const double m_y = z_force * sin_alpha - x_force * axial_share;
     const double m_z = force * mirror * r_b;

@@ -32,8 +32,9 @@
  * - Mesh coordinate x = r_bp phi_p - r_bw phi_w. The drive flanks touch for x > backlash / 2, the
  *   coast flanks for x < -backlash / 2. The transmission error shown to users is -x.
  * - helix_angle > 0: the pinion is right-handed (the wheel left-handed).
- * - t1 = z / face_width in [0, 1]; t2 in [0, 1] is uniform in the roll angle from the start radius
- *   to the tip radius. Flank deviation > 0: material added.
+ * - t1 in [0, 1] runs along the face of each gear, t1 = (z - face_start) / face_width; t2 in [0, 1]
+ *   is uniform in the roll angle from the start radius to the tip radius. Flank deviation > 0:
+ *   material added.
  *
  * ## Properties of every function here
  *
@@ -116,6 +117,9 @@ GM_API const char *gm_version(void);
  * Gear pair: what a drawing gives, and what follows from it
  * ------------------------------------------------------------------------------------------- */
 
+/** The two gears of a pair, and the order in which they stand in arrays. */
+enum gm_role { GM_PINION = 0, GM_WHEEL = 1 };
+
 /** How the base helix angle follows from the helix angle. */
 enum gm_base_helix {
     GM_BASE_HELIX_ISO = 0, /**< tan(beta_b) = tan(beta) cos(alpha_t) [ISO21771]: right */
@@ -136,7 +140,12 @@ typedef struct gm_pair_params {
     double normal_pressure_angle; /**< alpha_n, rad, 0 < alpha_n < 45 deg, required */
     double helix_angle;           /**< beta, rad, |beta| < 60 deg, > 0: right-handed pinion [0] */
     double center_distance;       /**< d, m, > r_bp + r_bw, required */
-    double face_width;            /**< b, common to both gears, m, required */
+    double face_width;        /**< b, common to both gears, m, required unless the face widths of
+                                        both gears are given */
+    double pinion_face_width; /**< b_p of the pinion alone, m [NaN: face_width] */
+    double wheel_face_width;  /**< b_w of the wheel alone, m [NaN: face_width] */
+    double axial_offset; /**< middle of the wheel's face less that of the pinion's, along +z, m,
+                                        |axial_offset| <= 1e9 m [0]; the faces must overlap */
     double
         pinion_profile_shift; /**< x_p, 1, |x_p| <= 1000 [NaN: half of the sum that gives zero backlash; the rest
                                         of that sum if only the wheel's is given] */
@@ -148,34 +157,68 @@ typedef struct gm_pair_params {
     double pinion_normal_thickness; /**< s_n at the reference circle, m [NaN: from the profile
                                         shift]; where given it wins over the shift */
     double wheel_normal_thickness;  /**< as for the pinion */
-    double pinion_tip_radius;       /**< r_ap, m [NaN: reference radius + m_n (1 + x_p)] */
-    double wheel_tip_radius;        /**< r_aw, m [NaN: reference radius + m_n (1 + x_w)] */
+
+    /** h_aP of the basic rack, in modules, 0 .. 10 [NaN: 1, ISO 53]. */
+    double pinion_rack_addendum;
+    double wheel_rack_addendum; /**< as for the pinion */
+
+    /** h_fP of the basic rack, in modules, 0 .. 10 [NaN: 1.25]; it sets the root radius. */
+    double pinion_rack_dedendum;
+    double wheel_rack_dedendum; /**< as for the pinion */
+
+    /** rho_fP of the basic rack, in modules, 0 .. 10, rho_fP (1 - sin(alpha_n)) <= h_fP [NaN: 0.38]. */
+    double pinion_rack_fillet_radius;
+    double wheel_rack_fillet_radius; /**< as for the pinion */
+
+    /** k_p, in modules, < 0: shorter teeth, |k_p| <= 10 [NaN: min(0, (d - r_p - r_w) / m_n - (x_p + x_w))]; not
+     *  used where the tip radius is given. */
+    double pinion_tip_alteration;
+    double wheel_tip_alteration; /**< k_w, as for the pinion */
+
+    /** r_ap, m [NaN: r_p + m_n (h_aP + x_p + k_p)]. Shifts count as printed: thinning by backlash does not
+     *  lower a tip. */
+    double pinion_tip_radius;
+    double wheel_tip_radius; /**< r_aw, m [NaN: as for the pinion] */
+
     double pinion_start_radius; /**< start of the active profile, m [NaN: the point that meets the
                                         wheel's tip at zero penetration]; below the base circle it is
                                         taken as the base circle */
     double wheel_start_radius;  /**< as for the pinion */
 } gm_pair_params;
 
-/** What belongs to one gear alone, whatever its mate and pose. Read-only after gm_pair_init(). */
+/**
+ * What belongs to one gear alone, as drawn. Nothing of it moves with a pose. Read-only after gm_pair_init().
+ */
 typedef struct gm_gear {
-    int teeth;                  /**< z */
-    double profile_shift;       /**< x, nominal (1) */
-    double reference_radius;    /**< r (m) */
-    double base_radius;         /**< r_b (m) */
-    double tip_radius;          /**< r_a (m) */
-    double start_radius;        /**< start of the active profile (m) */
-    double normal_thickness;    /**< s_n at the reference circle, backlash included (m) */
+    int teeth;            /**< z */
+    int start_is_given;   /**< 1: the drawing gives the start radius; 0: the mate's tip sets it */
+    double profile_shift; /**< x, nominal (1) */
+    double rack_addendum; /**< h_aP / m_n (1) */
+    double rack_dedendum; /**< h_fP / m_n (1) */
+    double rack_fillet_radius; /**< rho_fP / m_n (1) */
+    double tip_alteration;   /**< k = (r_a - r) / m_n - h_aP - x, whichever of them was given (1) */
+    double reference_radius; /**< r (m) */
+    double base_radius;      /**< r_b (m) */
+    double root_radius;      /**< r_f = r - m_n (h_fP - x) (m) */
+    double tip_radius;       /**< r_a (m) */
+    double start_radius;     /**< start of the active profile (m) */
+    double normal_thickness; /**< s_n at the reference circle, backlash included (m) */
     double base_half_thickness; /**< psi_b, half tooth thickness angle on the base circle (rad) */
-    double start_roll_length;   /**< rho at the start radius = r_b chi_start (m) */
-    double tip_roll_length;     /**< rho at the tip radius = r_b chi_end (m) */
-    double pitch_angle;         /**< 2 pi / z, leading part (rad) */
+    double tip_thickness;     /**< s_ta, transverse, at the tip circle, backlash included; < 0: the
+                                     flanks cross below it (m) */
+    double start_roll_length; /**< rho at the start radius = r_b chi_start (m) */
+    double tip_roll_length;   /**< rho at the tip radius = r_b chi_end (m) */
+    double pitch_angle;       /**< 2 pi / z, leading part (rad) */
     double
         pitch_angle_remainder; /**< 2 pi / z - pitch_angle, so that 1e6 rad cost one rounding (rad) */
+    double face_width;         /**< b of this gear (m) */
+    double face_start;         /**< z of its face I; 0 for the pinion (m) */
 } gm_gear;
 
 /**
- * A gear pair ready for evaluation. Filled by gm_pair_init(), read-only afterwards; plain data, may
- * be copied. The second half depends on the pose (center distance), the first does not.
+ * A gear pair ready for evaluation, as drawn: at the nominal center distance. Filled by gm_pair_init(),
+ * read-only afterwards; plain data, may be copied. The first half follows from the gears alone, the
+ * second from them and the center distance.
  */
 typedef struct gm_pair {
     gm_gear pinion; /**< the driving gear in the signs of this file, at the origin */
@@ -188,25 +231,32 @@ typedef struct gm_pair {
     double helix_angle;               /**< beta, > 0: right-handed pinion (rad) */
     double base_helix_angle;          /**< beta_b, sign of beta (rad) */
     double transverse_base_pitch;     /**< p_bt (m) */
-    double face_width;                /**< b (m) */
+    double face_width;                /**< b, of the common face: where both gears have one (m) */
+    double face_start;                /**< z at which the common face begins (m) */
     double face_advance;         /**< b tan(beta_b): how far a contact line advances along the line
-                                           of action over the face width, signed (m) */
+                                           of action over the common face, signed (m) */
     double normal_to_transverse; /**< 1 / cos(beta_b): factor from a deviation along the surface
                                            normal to one in the transverse section (1) */
 
     double center_distance;           /**< d (m) */
     double reference_center_distance; /**< r_p + r_w (m) */
     double working_pressure_angle;    /**< alpha_wt (rad) */
+    double involute_difference;       /**< inv(alpha_wt) - inv(alpha_t) (1) */
     double line_of_action;            /**< T0, between the base tangent points (m) */
     double path_start;                /**< of the path of contact at zero penetration, from the
                                            pinion's tangent point (m) */
     double path_end;                  /**< end of it (m) */
     double transverse_contact_ratio;  /**< eps_alpha (1) */
-    double overlap_ratio;             /**< eps_beta >= 0 (1) */
+    double overlap_ratio;             /**< eps_beta >= 0, of the common face (1) */
     double total_contact_ratio;       /**< eps_gamma (1) */
     double backlash;                  /**< transverse, along the line of action (m) */
-    double
-        phase_origin; /**< rho_p of tooth 0 at phi_p = 0, t1 = 0 = r_bp (alpha_wt + psi_bp) (m) */
+    double phase_origin; /**< rho_p of tooth 0 at phi_p = 0 where the common face begins
+                                           = r_bp (alpha_wt + psi_bp) + face_start tan(beta_b) (m) */
+    double pinion_working_pitch_radius; /**< r_wp = r_bp / cos(alpha_wt) (m) */
+    double wheel_working_pitch_radius;  /**< r_ww (m) */
+    double pinion_tip_clearance;        /**< c_p, from the pinion's tip to the wheel's root, on the
+                                           centre line: d - r_ap - r_fw (m) */
+    double wheel_tip_clearance;         /**< c_w, from the wheel's tip to the pinion's root (m) */
 } gm_pair;
 
 /** Fills with NaN (optional: derive; required: missing), zero helix angle, ISO base helix, 0 teeth. */
@@ -245,17 +295,25 @@ enum gm_pair_warning {
     GM_WARN_PINION_ROOT_FORM = 1 << 4, /**< start radius below the root form circle */
     GM_WARN_WHEEL_ROOT_FORM = 1 << 5,  /**< as for the pinion */
     GM_WARN_CONTACT_RATIO = 1 << 6,    /**< transverse contact ratio below 1 */
-    GM_WARN_BACKLASH = 1 << 7,         /**< negative backlash: both flanks touch */
+    GM_WARN_BACKLASH = 1 << 7,         /**< backlash below -1e-4 m_n: both flanks press */
     GM_WARN_PINION_START_RADIUS =
         1 << 8, /**< a start radius below the base circle was raised to it */
-    GM_WARN_WHEEL_START_RADIUS = 1 << 9 /**< as for the pinion */
+    GM_WARN_WHEEL_START_RADIUS = 1 << 9,     /**< as for the pinion */
+    GM_WARN_PINION_TIP_CLEARANCE = 1 << 10,  /**< pinion_tip_clearance below 0.1 m_n */
+    GM_WARN_WHEEL_TIP_CLEARANCE = 1 << 11,   /**< as for the pinion */
+    GM_WARN_PINION_TIP_ALTERATION = 1 << 12, /**< not used, as the tip radius is given */
+    GM_WARN_WHEEL_TIP_ALTERATION = 1 << 13,  /**< as for the pinion */
+    /** Backlash between -1e-4 m_n and 0, as profile shifts printed with few digits leave it: a note. */
+    GM_WARN_BACKLASH_ROUNDED = 1 << 14
 };
 
 /**
  * Warnings about a pair, as a sum of enum gm_pair_warning; 0 = none, or a pointer is NULL.
  *
- * The root form and undercut are those of a rack whose straight part reaches 0.05 m_n deeper than
- * the mate's tip needs: rho_Ff = r sin(alpha_t) - (h_Ff - x m_n) / sin(alpha_t), undercut where < 0.
+ * The root form and undercut are those of a rack whose straight flank reaches h_Ff below its reference line:
+ * rho_Ff = r sin(alpha_t) - (h_Ff - x m_n) / sin(alpha_t), undercut where < 0. Where the rack's dedendum or
+ * fillet radius is given, h_Ff = h_fP - rho_fP (1 - sin(alpha_n)). Else the flank is taken to reach 0.05 m_n
+ * deeper than the mate's tip does on the centre line: h_Ff - x m_n = r + r_a,mate - d + 0.05 m_n.
  */
 GM_API int gm_pair_warnings(const gm_pair *pair, const gm_pair_params *params);
 

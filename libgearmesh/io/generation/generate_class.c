@@ -441,7 +441,7 @@ int gmi_class_fill(gmi_generator *common) {
     generator make = {.common = common, .random = &common->random};
     gm_quality_options ranges;
     gm_quality_options_default(&ranges);
-    int status = gmi_trace_ranges(make.range, common->pair, &ranges, common->error);
+    int status = gmi_trace_ranges(make.range, common->pair, common->gear, &ranges, common->error);
 
     /* The wanted worst values. */
     for (int kind = 0; kind < GM_QUALITY_KINDS; ++kind) {

@@ -13,6 +13,11 @@
 /* Waves per revolution. */
 enum { MOST_ORDER = 1000000 };
 
+/* How far a contact line advances over the gear's own face (m). */
+static double face_advance(const gmi_generator *make) {
+    return make->pair->face_advance * (make->gear->face_width / make->pair->face_width);
+}
+
 /*
  * Turns of the gear at which a point of a flank comes into contact, less a constant and with the opposite
  * sign. Forward rotation moves the contact of pinion drive and wheel coast flanks to the tip, that of the
@@ -24,7 +29,7 @@ static double contact_turns(const gmi_generator *make, int tooth, int side, doub
         gear->start_roll_length + t2 * (gear->tip_roll_length - gear->start_roll_length);
     const double roll = (side == GM_DRIVE) == !make->wheel ? -rho : rho;
     return (double)tooth / gear->teeth +
-           (roll + t1 * make->pair->face_advance) / (2.0 * GMI_PI * gear->base_radius);
+           (roll + t1 * face_advance(make)) / (2.0 * GMI_PI * gear->base_radius);
 }
 
 void gmi_waves_draw(const gmi_generator *make) {
@@ -86,8 +91,7 @@ int gmi_waves_check(const gmi_generator *make) {
                                  "the amplitude of a wave must be finite and not below 0");
         }
 
-        status = check_resolution(make, "t1", make->pair->face_advance, options->face_nodes,
-                                  wave->order);
+        status = check_resolution(make, "t1", face_advance(make), options->face_nodes, wave->order);
         if (status == GM_IO_OK) {
             status = check_resolution(make, "t2",
                                       make->gear->tip_roll_length - make->gear->start_roll_length,

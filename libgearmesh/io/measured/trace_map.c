@@ -26,7 +26,7 @@ double gmi_profile_place(const gm_gear *gear, double roll_length) {
 }
 
 static double face_place(const gmi_mapping *map, double face) {
-    const double t1 = face / map->pair->face_width;
+    const double t1 = face / map->gear->face_width;
     return map->measurement->datum_face == GM_FACE_I ? t1 : 1.0 - t1;
 }
 
@@ -42,8 +42,8 @@ static int fail_face(const gmi_mapping *map, const gm_trace *trace, int point, d
     return gmi_error_set(
         map->error, GM_IO_ERR_FORMAT, line_of(trace, point),
         "%s leaves the gear: must be 0 to %s mm from the datum face, the face width (got %s mm)%s",
-        gmi_trace_name(name, trace), gmi_number_text(right, map->pair->face_width, 3, 7),
-        gmi_number_text(got, face, 3, 7), gmi_length_hint(reach, map->pair->face_width));
+        gmi_trace_name(name, trace), gmi_number_text(right, map->gear->face_width, 3, 7),
+        gmi_number_text(got, face, 3, 7), gmi_length_hint(reach, map->gear->face_width));
 }
 
 static int fail_roll(const gmi_mapping *map, const gm_trace *trace, int point, double roll,
@@ -178,7 +178,7 @@ static int check_cover(const gmi_mapping *map, const gmi_measured *trace) {
     /* The message gives the lengths as they stand in the file. */
     const gm_trace *raw = trace->from;
     const int profile = raw->kind == GM_TRACE_PROFILE;
-    const double full = profile ? map->gear->tip_roll_length : map->pair->face_width;
+    const double full = profile ? map->gear->tip_roll_length : map->gear->face_width;
     char name[GMI_TRACE_NAME_SIZE];
     char got[2][GMI_NUMBER_SIZE];
     char right[2][GMI_NUMBER_SIZE];

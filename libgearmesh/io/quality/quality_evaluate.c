@@ -254,7 +254,7 @@ static int check_inputs(evaluation *of, const gm_deviations *deviations, const g
                         const gm_quality_options *options, gm_io_error *error) {
     int status = gmi_check_teeth(of->gear->teeth, error);
     if (status == GM_IO_OK) {
-        status = gmi_trace_ranges(of->range, of->pair, options, error);
+        status = gmi_trace_ranges(of->range, of->pair, of->gear, options, error);
     }
     if (status == GM_IO_OK && deviations != NULL) {
         status = check_teeth(of, deviations->teeth, "flank", error);

@@ -64,9 +64,9 @@ double gm_quality_tolerance(const gm_pair *pair, int wheel, int kind, int qualit
         quality_class > GM_QUALITY_WORST_CLASS) {
         return (double)NAN;
     }
-    const double diameter = 2e3 * gmi_gear_of(pair, wheel)->reference_radius;
-    const double tolerance =
-        base_tolerance(kind, diameter, 1e3 * pair->normal_module, 1e3 * pair->face_width);
+    const gm_gear *gear = gmi_gear_of(pair, wheel);
+    const double tolerance = base_tolerance(kind, 2e3 * gear->reference_radius,
+                                            1e3 * pair->normal_module, 1e3 * gear->face_width);
     return rounded(tolerance * class_factor(quality_class - 5));
 }
 
@@ -78,7 +78,7 @@ int gm_quality_is_in_scope(const gm_pair *pair, int wheel) {
     const double slack = 1e-12;
     const gm_gear *gear = gmi_gear_of(pair, wheel);
     const double value[] = {gear->teeth, 2.0 * gear->reference_radius, pair->normal_module,
-                            pair->face_width, fabs(pair->helix_angle)};
+                            gear->face_width, fabs(pair->helix_angle)};
     static const double low[] = {5.0, 5e-3, 0.5e-3, 4e-3, 0.0};
     const double high[] = {1000.0, 15.0, 70e-3, 1.2, GMI_PI / 4.0};
     for (int i = 0; i < 5; ++i) {

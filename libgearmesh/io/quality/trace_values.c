@@ -114,17 +114,18 @@ gmi_trace_values gmi_trace_evaluate(const double *trace, int nodes, const gmi_ra
  * Ranges and traces of a flank
  * ------------------------------------------------------------------------------------------- */
 
-static double face_margin(const gm_pair *pair, const gm_quality_options *options) {
+static double face_margin(const gm_pair *pair, const gm_gear *gear,
+                          const gm_quality_options *options) {
     if (!isnan(options->face_margin)) {
         return options->face_margin;
     }
-    const double module = pair->normal_module / pair->face_width;
+    const double module = pair->normal_module / gear->face_width;
     return module < 0.05 ? module : 0.05;
 }
 
-int gmi_trace_ranges(gmi_range ranges[2], const gm_pair *pair, const gm_quality_options *options,
-                     gm_io_error *error) {
-    const double margin = face_margin(pair, options);
+int gmi_trace_ranges(gmi_range ranges[2], const gm_pair *pair, const gm_gear *gear,
+                     const gm_quality_options *options, gm_io_error *error) {
+    const double margin = face_margin(pair, gear, options);
     if (!(options->profile_from >= 0.0 && options->profile_from < options->profile_to &&
           options->profile_to <= 1.0)) {
         return gmi_error_set(

@@ -37,8 +37,8 @@ gmi_line gmi_trace_mean_line(const double *trace, int nodes, const gmi_range *ra
 gmi_trace_values gmi_trace_evaluate(const double *trace, int nodes, const gmi_range *range);
 
 /** Checks options and makes the ranges of profile (at [0]) and helix (at [1]) from them. */
-int gmi_trace_ranges(gmi_range ranges[2], const gm_pair *pair, const gm_quality_options *options,
-                     gm_io_error *error);
+int gmi_trace_ranges(gmi_range ranges[2], const gm_pair *pair, const gm_gear *gear,
+                     const gm_quality_options *options, gm_io_error *error);
 
 /** The trace along t2 at t1 = 0.5 of a table [face_nodes][profile_nodes], times a factor. */
 void gmi_profile_trace(double *trace, const double *table, int face_nodes, int profile_nodes,
