@@ -383,6 +383,32 @@ static void a_written_file_reads_back_to_the_same_bits(void) {
     gm_deviations_free(&deviations);
 }
 
+/* Also those that a double holds with fewer digits, and the largest. */
+static void values_of_any_size_read_back_to_the_same_bits(void) {
+    static const double sizes[] = {4.9406564584124654e-324,
+                                   1e-320,
+                                   2.2250738585072009e-308,
+                                   2.2250738585072014e-308,
+                                   1e-304,
+                                   1e-30,
+                                   1e300,
+                                   1e302};
+    static const char path[] = IO_TEST_PATH("out.csv");
+    make_own(0);
+    for (int node = 0; node < NODES; ++node) {
+        values[0][node] = (node % 2 ? -1.0 : 1.0) * sizes[node % 8];
+    }
+    GM_ASSERT_INT(gm_deviations_write(&own, path, &error), GM_IO_OK);
+    if (!GM_ASSERT_INT(gm_deviations_read(&deviations, path, TEETH, &error), GM_IO_OK)) {
+        return;
+    }
+    const gm_deviation_set *set = find_set(sets[0].tooth, sets[0].side);
+    for (int node = 0; node < NODES && GM_ASSERT(set != NULL); ++node) {
+        GM_ASSERT(same_bits(set->values[node], values[0][node]));
+    }
+    gm_deviations_free(&deviations);
+}
+
 /* One set of 2 x profile_nodes nodes with 1, 2, 3 .. um. */
 static void assert_written(int profile_nodes, const char *expected) {
     static const char path[] = IO_TEST_PATH("out.csv");
@@ -408,6 +434,37 @@ static void a_written_file_is_what_a_user_would_write(void) {
     assert_written(4, HEADER "*,drive,0,0,1\n*,drive,0,0.333333,2\n*,drive,0,0.666667,3\n"
                              "*,drive,0,1,4\n*,drive,1,0,5\n*,drive,1,0.333333,6\n"
                              "*,drive,1,0.666667,7\n*,drive,1,1,8\n");
+}
+
+static void a_stream_gets_what_a_file_would_hold(void) {
+    static const char path[] = IO_TEST_PATH("out.csv");
+    make_own(3);
+    FILE *stream = fopen(path, "wb");
+    if (!GM_ASSERT(stream != NULL)) {
+        return;
+    }
+    fputs("# a comment of the caller's\n", stream);
+    GM_ASSERT_INT(gm_deviations_print(&own, stream, &error), GM_IO_OK);
+    GM_ASSERT_INT(gm_deviations_print(NULL, stream, &error), GM_IO_ERR_NULL);
+    GM_ASSERT_INT(gm_deviations_print(&own, NULL, &error), GM_IO_ERR_NULL);
+    own.set_count = 0;
+    GM_ASSERT_INT(gm_deviations_print(&own, stream, &error), GM_IO_ERR_OPTION);
+    fclose(stream);
+
+    if (GM_ASSERT_INT(gm_deviations_read(&deviations, path, TEETH, &error), GM_IO_OK)) {
+        GM_ASSERT_INT(deviations.set_count, 3);
+        GM_ASSERT(same_bits(find_set(sets[2].tooth, sets[2].side)->values[NODES - 1],
+                            values[2][NODES - 1]));
+    }
+    gm_deviations_free(&deviations);
+
+    FILE *full = fopen("/dev/full", "wb"); /* where a system has it */
+    if (full != NULL) {
+        make_own(3);
+        GM_ASSERT_INT(gm_deviations_print(&own, full, &error), GM_IO_ERR_FILE);
+        assert_error(&error, "", 0, "cannot be written", "");
+        fclose(full);
+    }
 }
 
 static void a_file_that_cannot_be_written_is_an_error(void) {
@@ -546,6 +603,8 @@ int main(int argc, char **argv) {
         GM_TEST(a_failure_to_read_is_named),
         GM_TEST(two_gigabytes_of_zeros_are_refused_at_the_first_byte),
         GM_TEST(a_written_file_reads_back_to_the_same_bits),
+        GM_TEST(values_of_any_size_read_back_to_the_same_bits),
+        GM_TEST(a_stream_gets_what_a_file_would_hold),
         GM_TEST(a_written_file_is_what_a_user_would_write),
         GM_TEST(a_file_that_cannot_be_written_is_an_error),
         GM_TEST(what_could_not_be_read_back_is_not_written),

@@ -350,6 +350,15 @@ static void waves_out_of_range_are_refused(void) {
     options.waves = &wave;
     options.wave_count = 1;
     refused("the order of a wave: must be from 1 to 1000000 (got 0)");
+    wave.order = 1000001;
+    refused("the order of a wave: must be from 1 to 1000000 (got 1000001)");
+    options.wave_count = -1;
+    refused("waves: must be 0 to 100 (got -1)");
+    options.wave_count = GM_FLANK_WAVES_MAX + 1;
+    refused("waves: must be 0 to 100 (got 101)");
+    options.wave_count = 1;
+    wave = (gm_flank_wave){30, (double)INFINITY};
+    refused("must be finite");
     wave = (gm_flank_wave){30, -1e-9};
     refused("not below 0");
     wave = (gm_flank_wave){30, (double)NAN};

@@ -377,6 +377,19 @@ static void wrong_set_ups_are_refused(void) {
     GM_ASSERT_INT(gm_measurement_side(&setup, 7), -1);
     GM_ASSERT_INT(gm_measurement_side(NULL, GM_LEFT), -1);
     GM_ASSERT_INT(gm_measurement_tooth(&setup, &pair, 0, 46), -1);
+    GM_ASSERT_INT(gm_measurement_tooth(&setup, &pair, 0, 0), -1);
+    GM_ASSERT_INT(gm_measurement_tooth(&setup, NULL, 0, 1), -1);
+    GM_ASSERT_INT(gm_measurement_tooth(&setup, &pair, 0, 45), 44);
+    setup.first_tooth = 45;
+    GM_ASSERT_INT(gm_measurement_tooth(&setup, &pair, 0, 1), -1);
+    setup.first_tooth = -1;
+    GM_ASSERT_INT(gm_measurement_tooth(&setup, &pair, 0, 1), -1);
+    setup.first_tooth = 0;
+    setup.first_number = -1;
+    GM_ASSERT_INT(gm_measurement_tooth(&setup, &pair, 0, 1), -1);
+    setup.datum_face = 0;
+    GM_ASSERT_INT(gm_measurement_side(&setup, GM_LEFT), -1);
+    GM_ASSERT_INT(gm_measurement_side(&setup, GM_DRIVE), GM_DRIVE);
     GM_ASSERT_INT(gm_measured_pitch_build(NULL, NULL, &measured, &setup, &pair, 0, &error),
                   GM_IO_ERR_NULL);
     GM_ASSERT_INT(gm_measured_pitch_read(&measured, NULL, &error), GM_IO_ERR_NULL);

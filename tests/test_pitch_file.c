@@ -525,6 +525,34 @@ static void a_full_disk_is_an_error(void) {
     make_own();
     GM_ASSERT_INT(gm_pitch_write(&own, "/dev/full", &error), GM_IO_ERR_FILE);
     assert_error(&error, "/dev/full", 0, "cannot be written", "");
+    full = fopen("/dev/full", "wb");
+    if (GM_ASSERT(full != NULL)) {
+        GM_ASSERT_INT(gm_pitch_print(&own, full, &error), GM_IO_ERR_FILE);
+        assert_error(&error, "", 0, "cannot be written", "");
+        fclose(full);
+    }
+}
+
+static void a_stream_gets_what_a_file_would_hold(void) {
+    static const char path[] = IO_TEST_PATH("out.csv");
+    make_own();
+    FILE *stream = fopen(path, "wb");
+    if (!GM_ASSERT(stream != NULL)) {
+        return;
+    }
+    fputs("# a comment of the caller's\n", stream);
+    GM_ASSERT_INT(gm_pitch_print(&own, stream, &error), GM_IO_OK);
+    GM_ASSERT_INT(gm_pitch_print(NULL, stream, &error), GM_IO_ERR_NULL);
+    GM_ASSERT_INT(gm_pitch_print(&own, NULL, &error), GM_IO_ERR_NULL);
+    fclose(stream);
+
+    if (GM_ASSERT_INT(gm_pitch_read(&pitch, path, own.teeth, &error), GM_IO_OK)) {
+        for (int tooth = 0; tooth < own.teeth; ++tooth) {
+            GM_ASSERT_INT(pitch.drive_set[tooth], own.drive_set[tooth]);
+            GM_ASSERT(!own.drive_set[tooth] || same_bits(pitch.drive[tooth], own.drive[tooth]));
+        }
+    }
+    gm_pitch_free(&pitch);
 }
 
 static void what_could_not_be_read_back_is_not_written(void) {
@@ -602,6 +630,7 @@ int main(int argc, char **argv) {
         GM_TEST(a_written_file_holds_the_rows_that_are_set_and_no_others),
         GM_TEST(a_file_that_cannot_be_written_is_an_error),
         GM_TEST(a_full_disk_is_an_error),
+        GM_TEST(a_stream_gets_what_a_file_would_hold),
         GM_TEST(what_could_not_be_read_back_is_not_written),
     };
     return gm_test_main("unit.pitch_file", tests, GM_TEST_COUNT(tests), argc, argv);

@@ -445,6 +445,25 @@ static void what_no_file_says_is_not_evaluated(void) {
     GM_ASSERT_INT(quality.worst[GM_QUALITY_PROFILE_FORM].tooth, -1);
 }
 
+/* Far below what can be measured, down to numbers with few digits: small, not wrong. */
+static void deviations_of_any_size_measure_to_the_best_class(void) {
+    static const double sizes[] = {1e-20, 1e-200, 1e-304, 1e-310, 4.9406564584124654e-324};
+    for (int i = 0; i < 5; ++i) {
+        const gm_pair of = module_3();
+        begin(&of, 0);
+        gm_test_context("%g m", sizes[i]);
+        for (int node = 0; node < FACE_NODES * PROFILE_NODES; ++node) {
+            table[node] = node % 3 ? sizes[i] : -sizes[i];
+        }
+        drive[3] = coast[5] = sizes[i];
+        GM_ASSERT_INT(evaluate(0), GM_IO_OK);
+        for (int kind = 0; kind < GM_QUALITY_KINDS; ++kind) {
+            GM_ASSERT(worst(kind) >= 0.0 && worst(kind) <= 8.0 * sizes[i]);
+            GM_ASSERT_INT(quality.worst[kind].quality_class, 1);
+        }
+    }
+}
+
 static void refused(int status, const char *text) {
     GM_ASSERT_INT(evaluate(0), status);
     gm_test_context("%.150s", error.text);
@@ -503,6 +522,7 @@ int main(int argc, char **argv) {
         GM_TEST(run_out_is_twice_the_eccentricity),
         GM_TEST(a_space_that_stands_elsewhere_has_no_run_out),
         GM_TEST(what_no_file_says_is_not_evaluated),
+        GM_TEST(deviations_of_any_size_measure_to_the_best_class),
         GM_TEST(wrong_input_is_refused),
     };
     return gm_test_main("unit.quality_evaluate", tests, GM_TEST_COUNT(tests), argc, argv);
