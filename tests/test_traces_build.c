@@ -3,7 +3,7 @@
 
 /*
  * Tables from traces: surfaces of closed form come back from their traces, whichever way the gear stood on the machine;
- * made flanks keep their quality; teeth in between; every doubt and refusal that needs the gear.
+ * made flanks keep their quality; teeth in between; every refusal that needs the gear.
  */
 #include "io_test.h"
 #include "reference_gear.h"
@@ -501,7 +501,7 @@ static void made_flanks_keep_their_quality(void) {
     }
 }
 
-static void no_doubt_is_raised_by_flanks_of_random_form(void) {
+static void flanks_of_random_form_raise_no_alarm(void) {
     static const int classes[] = {2, 5, 8, 11};
     for (int which = 0; which < 32; which++) {
         begin();
@@ -526,7 +526,7 @@ static void no_doubt_is_raised_by_flanks_of_random_form(void) {
 }
 
 /* ---------------------------------------------------------------------------------------------
- * Doubts
+ * Signs, units and spikes
  * ------------------------------------------------------------------------------------------- */
 
 static double crowned(int tooth, int side, double t1, double t2) {
@@ -835,7 +835,7 @@ int main(int argc, char **argv) {
         GM_TEST(equal_teeth_stay_equal_to_the_bit),
         GM_TEST(a_side_may_stand_for_all_beside_one_tooth_by_tooth),
         GM_TEST(made_flanks_keep_their_quality),
-        GM_TEST(no_doubt_is_raised_by_flanks_of_random_form),
+        GM_TEST(flanks_of_random_form_raise_no_alarm),
         GM_TEST(the_opposite_sign_is_noticed),
         GM_TEST(other_units_are_noticed),
         GM_TEST(lengths_in_other_units_are_noticed),

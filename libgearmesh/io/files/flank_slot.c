@@ -62,3 +62,11 @@ int gmi_check_teeth(int teeth, gm_io_error *error) {
     return gmi_error_set(error, GM_IO_ERR_OPTION, 0, "teeth: must be from %d to %d (got %d)",
                          GMI_SMALLEST_TEETH, GMI_LARGEST_TEETH, teeth);
 }
+
+int gmi_check_same_teeth(int teeth, int got, const char *what, gm_io_error *error) {
+    return got == teeth
+               ? GM_IO_OK
+               : gmi_error_set(error, GM_IO_ERR_OPTION, 0,
+                               "the %s deviations must be for the %d teeth of the gear (got %d)",
+                               what, teeth, got);
+}

@@ -44,4 +44,7 @@ const char *gmi_slot_name(char name[GMI_SLOT_NAME_SIZE], int slot);
 /** Checks a number of teeth handed in by the caller. */
 int gmi_check_teeth(int teeth, gm_io_error *error);
 
+/** Checks that deviations, `flank` or `pitch`, are for as many teeth as the gear has. */
+int gmi_check_same_teeth(int teeth, int got, const char *what, gm_io_error *error);
+
 #endif /* GEARMESH_FLANK_SLOT_H */

@@ -19,6 +19,7 @@
 /* What all steps of one build share. */
 typedef struct builder {
     gm_flanks *flanks;
+    int teeth;
     const gm_deviations *deviations; /* NULL = none */
     const int *set_of_slot;          /* set of every slot, -1 = none */
     const gm_flanks_options *options;
@@ -81,13 +82,13 @@ static int has_design_table(const builder *build, int side) {
 }
 
 /* A shared set takes one place, however many teeth it serves; so does the design of teeth without a set. */
-static int count_tables(const builder *build, int teeth, int side) {
+static int count_tables(const builder *build, int side) {
     int tables = has_design_table(build, side);
     if (build->deviations == NULL) {
         return tables;
     }
     tables = tables || shared_set(build, side) >= 0;
-    for (int tooth = 0; tooth < teeth; ++tooth) {
+    for (int tooth = 0; tooth < build->teeth; ++tooth) {
         tables += own_set(build, tooth, side) >= 0 ? 1 : 0;
     }
     return tables;
@@ -167,7 +168,7 @@ static int set_side(const builder *build, int side) {
     if (status == GM_IO_OK && (shared >= 0 || has_design_table(build, side))) {
         status = set_table(build, side, GM_ALL_TEETH, shared);
     }
-    for (int tooth = 0; has_sets && status == GM_IO_OK && tooth < build->flanks->teeth; ++tooth) {
+    for (int tooth = 0; has_sets && status == GM_IO_OK && tooth < build->teeth; ++tooth) {
         const int own = own_set(build, tooth, side);
         if (own >= 0) {
             status = set_table(build, side, tooth, own);
@@ -177,7 +178,7 @@ static int set_side(const builder *build, int side) {
 }
 
 static int set_pitch(const builder *build, int side, const double *deviation, const int *set) {
-    for (int tooth = 0; tooth < build->flanks->teeth; ++tooth) {
+    for (int tooth = 0; tooth < build->teeth; ++tooth) {
         if (!set[tooth]) {
             continue;
         }
@@ -208,12 +209,12 @@ static int grid_nodes(const builder *build, int side, int axis) {
     return axis == 0 ? build->deviations->face_nodes : build->deviations->profile_nodes;
 }
 
-static gm_flanks_params sizes_of(const builder *build, int teeth) {
+static gm_flanks_params sizes_of(const builder *build) {
     gm_flanks_params params;
     memset(&params, 0, sizeof params);
-    params.teeth = teeth;
-    params.drive_tables = count_tables(build, teeth, GM_DRIVE);
-    params.coast_tables = count_tables(build, teeth, GM_COAST);
+    params.teeth = build->teeth;
+    params.drive_tables = count_tables(build, GM_DRIVE);
+    params.coast_tables = count_tables(build, GM_COAST);
     params.drive_face_nodes = grid_nodes(build, GM_DRIVE, 0);
     params.drive_profile_nodes = grid_nodes(build, GM_DRIVE, 1);
     params.coast_face_nodes = grid_nodes(build, GM_COAST, 0);
@@ -222,13 +223,13 @@ static gm_flanks_params sizes_of(const builder *build, int teeth) {
 }
 
 /* Allocates the memory of the flanks and prepares them as ideal. */
-static int make_ideal(const builder *build, int teeth, void **memory) {
-    const gm_flanks_params params = sizes_of(build, teeth);
+static int make_ideal(const builder *build, void **memory) {
+    const gm_flanks_params params = sizes_of(build);
     const size_t size = gm_flanks_size(&params);
     if (size == 0) {
         return gmi_error_set(
             build->error, GM_IO_ERR_OPTION, 0,
-            "the flank tables of %d teeth must fit into memory (got too large ones)", teeth);
+            "the flank tables of %d teeth must fit into memory (got too large ones)", build->teeth);
     }
     *memory = malloc(size);
     if (*memory == NULL) {
@@ -289,26 +290,18 @@ static int fill_flanks(builder *build, const gm_pitch *pitch) {
     return status;
 }
 
-static int make_design(builder *build, int side, int teeth) {
+static int make_design(builder *build, int side) {
     const gm_modifications *modifications = side == GM_DRIVE ? build->options->drive_modifications
                                                              : build->options->coast_modifications;
-    const int is_for_gear =
-        modifications == NULL || modifications->gear == NULL || modifications->gear->teeth == teeth;
+    const int is_for_gear = modifications == NULL || modifications->gear == NULL ||
+                            modifications->gear->teeth == build->teeth;
     if (!is_for_gear) {
         return gmi_error_set(build->error, GM_IO_ERR_OPTION, 0,
                              "the modifications must be for the %d teeth of the gear (got %d)",
-                             teeth, modifications->gear->teeth);
+                             build->teeth, modifications->gear->teeth);
     }
     return gmi_design_make(&build->design[side], modifications, build->deviations,
                            build->options->modification_tolerance, build->error);
-}
-
-static int check_same_teeth(int teeth, int got, const char *what, gm_io_error *error) {
-    return got == teeth
-               ? GM_IO_OK
-               : gmi_error_set(error, GM_IO_ERR_OPTION, 0,
-                               "the %s deviations must be for the %d teeth of the gear (got %d)",
-                               what, teeth, got);
 }
 
 static int check_inputs(int teeth, const gm_deviations *deviations, const gm_pitch *pitch,
@@ -318,10 +311,10 @@ static int check_inputs(int teeth, const gm_deviations *deviations, const gm_pit
         status = check_options(options, error);
     }
     if (status == GM_IO_OK && deviations != NULL) {
-        status = check_same_teeth(teeth, deviations->teeth, "flank", error);
+        status = gmi_check_same_teeth(teeth, deviations->teeth, "flank", error);
     }
     if (status == GM_IO_OK && pitch != NULL) {
-        status = check_same_teeth(teeth, pitch->teeth, "pitch", error);
+        status = gmi_check_same_teeth(teeth, pitch->teeth, "pitch", error);
     }
     return status == GM_IO_OK && pitch != NULL ? gmi_pitch_check(pitch, error) : status;
 }
@@ -339,10 +332,10 @@ static gm_flanks_side_report report_of(const gmi_design *design) {
 }
 
 /* On an error memory may be allocated and the flanks half done: for the caller to undo. */
-static int build_flanks(builder *build, int teeth, const gm_pitch *pitch, void **memory,
+static int build_flanks(builder *build, const gm_pitch *pitch, void **memory,
                         gm_flanks_report *report) {
     int *set_of_slot = NULL;
-    int status = check_inputs(teeth, build->deviations, pitch, build->options, build->error);
+    int status = check_inputs(build->teeth, build->deviations, pitch, build->options, build->error);
     if (status == GM_IO_OK && build->deviations != NULL) {
         status = gmi_deviations_index(build->deviations, &set_of_slot, build->error);
         build->set_of_slot = set_of_slot;
@@ -350,10 +343,10 @@ static int build_flanks(builder *build, int teeth, const gm_pitch *pitch, void *
 
     /* The sizes of the designs have to be known before the memory. */
     for (int side = GM_DRIVE; status == GM_IO_OK && side <= GM_COAST; ++side) {
-        status = make_design(build, side, teeth);
+        status = make_design(build, side);
     }
     if (status == GM_IO_OK) {
-        status = make_ideal(build, teeth, memory);
+        status = make_ideal(build, memory);
     }
     if (status == GM_IO_OK) {
         status = fill_flanks(build, pitch);
@@ -369,6 +362,11 @@ static int build_flanks(builder *build, int teeth, const gm_pitch *pitch, void *
     return status;
 }
 
+/* Flanks that no evaluation accepts. The only place here that needs to know how large the struct is. */
+static void clear_flanks(gm_flanks *flanks) {
+    memset(flanks, 0, sizeof *flanks);
+}
+
 int gm_flanks_build(gm_flanks *flanks, void **memory, int teeth, const gm_deviations *deviations,
                     const gm_pitch *pitch, const gm_flanks_options *options,
                     gm_flanks_report *report, gm_io_error *error) {
@@ -377,7 +375,7 @@ int gm_flanks_build(gm_flanks *flanks, void **memory, int teeth, const gm_deviat
         memset(report, 0, sizeof *report);
     }
     if (flanks != NULL) {
-        memset(flanks, 0, sizeof *flanks);
+        clear_flanks(flanks);
     }
     if (memory != NULL) {
         *memory = NULL;
@@ -388,15 +386,16 @@ int gm_flanks_build(gm_flanks *flanks, void **memory, int teeth, const gm_deviat
     gm_flanks_options defaults;
     gm_flanks_options_default(&defaults);
     builder build = {.flanks = flanks,
+                     .teeth = teeth,
                      .deviations = deviations,
                      .options = options != NULL ? options : &defaults,
                      .error = error};
 
-    const int status = build_flanks(&build, teeth, pitch, memory, report);
+    const int status = build_flanks(&build, pitch, memory, report);
     if (status != GM_IO_OK) {
         free(*memory);
         *memory = NULL;
-        memset(flanks, 0, sizeof *flanks);
+        clear_flanks(flanks);
     }
     return status;
 }

@@ -44,12 +44,12 @@ static double value_at(const family *of, int i, double t) {
  * ------------------------------------------------------------------------------------------- */
 
 /* Helix less profile where they cross. */
-static double gap(const surface *of, int i, int k) {
+static double mismatch(const surface *of, int i, int k) {
     return value_at(&of->helix, k, place_of(&of->profile, i)) -
            value_at(&of->profile, i, place_of(&of->helix, k));
 }
 
-/* The levels that make profiles and helices agree best where they cross (least squares): means of the gaps. */
+/* The levels that make profiles and helices agree best where they cross (least squares): means of the differences. */
 static void find_levels(surface *of) {
     double mean = 0.0;
     for (int k = 0; k < of->helix.count; ++k) {
@@ -60,8 +60,8 @@ static void find_levels(surface *of) {
     for (int i = 0; i < of->profile.count; ++i) {
         double sum = 0.0;
         for (int k = 0; k < of->helix.count; ++k) {
-            sum += gap(of, i, k);
-            of->helix.level[k] -= gap(of, i, k) / of->profile.count;
+            sum += mismatch(of, i, k);
+            of->helix.level[k] -= mismatch(of, i, k) / of->profile.count;
         }
         of->profile.level[i] = sum / of->helix.count;
         mean += of->profile.level[i] / of->profile.count;
@@ -80,7 +80,7 @@ static double find_crossings(surface *of) {
         for (int k = 0; k < of->helix.count; ++k) {
             const double profile =
                 value_at(&of->profile, i, place_of(&of->helix, k)) + of->profile.level[i];
-            const double rest = gap(of, i, k) - of->profile.level[i] + of->helix.level[k];
+            const double rest = mismatch(of, i, k) - of->profile.level[i] + of->helix.level[k];
             of->crossing[i * of->helix.count + k] = profile + 0.5 * rest;
             worst = fabs(rest) > worst ? fabs(rest) : worst;
         }

@@ -242,14 +242,6 @@ static void find_classes(const evaluation *of) {
     }
 }
 
-static int check_teeth(const evaluation *of, int teeth, const char *what, gm_io_error *error) {
-    return teeth == of->gear->teeth
-               ? GM_IO_OK
-               : gmi_error_set(error, GM_IO_ERR_OPTION, 0,
-                               "the %s deviations must be for the %d teeth of the gear (got %d)",
-                               what, of->gear->teeth, teeth);
-}
-
 static int check_inputs(evaluation *of, const gm_deviations *deviations, const gm_pitch *pitch,
                         const gm_quality_options *options, gm_io_error *error) {
     int status = gmi_check_teeth(of->gear->teeth, error);
@@ -257,10 +249,10 @@ static int check_inputs(evaluation *of, const gm_deviations *deviations, const g
         status = gmi_trace_ranges(of->range, of->pair, of->gear, options, error);
     }
     if (status == GM_IO_OK && deviations != NULL) {
-        status = check_teeth(of, deviations->teeth, "flank", error);
+        status = gmi_check_same_teeth(of->gear->teeth, deviations->teeth, "flank", error);
     }
     if (status == GM_IO_OK && pitch != NULL) {
-        status = check_teeth(of, pitch->teeth, "pitch", error);
+        status = gmi_check_same_teeth(of->gear->teeth, pitch->teeth, "pitch", error);
     }
     return status == GM_IO_OK && pitch != NULL ? gmi_pitch_check(pitch, error) : status;
 }
