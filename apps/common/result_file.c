@@ -132,12 +132,21 @@ static int try_lock(int descriptor) {
     return failed;
 }
 
-/* Whether the path, not followed, is the file that is open. */
-static int is_open_file(const char *path, int descriptor) {
+/* Whether the path, not followed, is the file that is open: 1 or 0, or -1 if that cannot be told, with errno. */
+static int compare_open_file(const char *path, int descriptor) {
     struct stat at_path, opened;
 
-    return lstat(path, &at_path) == 0 && fstat(descriptor, &opened) == 0 &&
-           at_path.st_dev == opened.st_dev && at_path.st_ino == opened.st_ino;
+    if (lstat(path, &at_path) != 0) {
+        return errno == ENOENT ? 0 : -1;
+    }
+    if (fstat(descriptor, &opened) != 0) {
+        return -1;
+    }
+    return at_path.st_dev == opened.st_dev && at_path.st_ino == opened.st_ino;
+}
+
+static int is_open_file(const char *path, int descriptor) {
+    return compare_open_file(path, descriptor) == 1;
 }
 
 /* Locks what is open under the name FILE.part. Where the file system has no locks there is none; the check before the
@@ -229,10 +238,13 @@ static int finish_part(result_file *file) {
     if (not_synced || not_closed) {
         return refuse_for(file, file->part, error, EXIT_RUN_FAILED);
     }
-    return is_open_file(file->part, file->lock)
-               ? EXIT_DONE
-               : refuse(file, file->part, "was removed or replaced by another program",
-                        EXIT_RUN_FAILED);
+    const int is_ours = compare_open_file(file->part, file->lock);
+    if (is_ours < 0) {
+        return refuse_for(file, file->part, errno, EXIT_RUN_FAILED);
+    }
+    return is_ours ? EXIT_DONE
+                   : refuse(file, file->part, "was removed or replaced by another program",
+                            EXIT_RUN_FAILED);
 }
 
 /* Gives the old FILE a second name. Where the file system has no links it goes under that name for a moment. */
