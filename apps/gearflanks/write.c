@@ -17,7 +17,19 @@ static int complain(message_sink *messages, const result_file *wrong, int status
     return status;
 }
 
-/* Head and rows. The stream has a descriptor of its own: that of the result stays open to bring it to the disk. */
+/* Head and rows into an open stream; why they could not be written goes into the error. */
+static int print_text(const written *what, FILE *stream, gm_io_error *error) {
+    errno = 0;
+    what->print_head(stream, what->context);
+    if (ferror(stream)) {
+        snprintf(error->text, sizeof error->text, "cannot be written: %s", strerror(errno));
+        return GM_IO_ERR_FILE;
+    }
+    return what->deviations != NULL ? gm_deviations_print(what->deviations, stream, error)
+                                    : gm_pitch_print(what->pitch, stream, error);
+}
+
+/* The stream has a descriptor of its own: that of the result stays open to bring it to the disk. */
 static int print_part(message_sink *messages, const written *what, const result_file *result) {
     gm_io_error error;
     const int descriptor = dup(result->data);
@@ -30,10 +42,7 @@ static int print_part(message_sink *messages, const written *what, const result_
         return EXIT_RUN_FAILED;
     }
 
-    what->print_head(stream, what->context);
-    const int failed = what->deviations != NULL
-                           ? gm_deviations_print(what->deviations, stream, &error)
-                           : gm_pitch_print(what->pitch, stream, &error);
+    const int failed = print_text(what, stream, &error) != GM_IO_OK;
     errno = 0;
     const int not_closed = fclose(stream) != 0;
     if (failed || not_closed) {

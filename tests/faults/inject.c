@@ -108,19 +108,40 @@ static const struct {
     uint64_t number;
     const char *name;
 } names[] = {
-    {SYS_write, "write"},         {SYS_pwrite64, "pwrite"},   {SYS_read, "read"},
-    {SYS_pread64, "pread"},       {SYS_openat, "open"},       {SYS_close, "close"},
-    {SYS_fsync, "fsync"},         {SYS_ftruncate, "ftruncate"}, {SYS_fallocate, "fallocate"},
-    {SYS_flock, "flock"},         {SYS_linkat, "link"},       {SYS_unlinkat, "unlink"},
-    {SYS_renameat, "rename"},     {SYS_fcntl, "fcntl"},       {SYS_dup, "dup"},
-    {SYS_newfstatat, "stat"},     {SYS_fstat, "fstat"},       {SYS_faccessat, "access"},
-    {SYS_readlinkat, "readlink"}, {SYS_lseek, "lseek"},       {SYS_mmap, "mmap"},
-    {SYS_mremap, "mremap"},       {SYS_munmap, "munmap"},     {SYS_brk, "brk"},
-    {SYS_exit_group, "exit"},     {SYS_rt_sigaction, "sigaction"},
+    {SYS_write, "write"},
+    {SYS_pwrite64, "pwrite"},
+    {SYS_read, "read"},
+    {SYS_pread64, "pread"},
+    {SYS_openat, "open"},
+    {SYS_close, "close"},
+    {SYS_fsync, "fsync"},
+    {SYS_ftruncate, "ftruncate"},
+    {SYS_fallocate, "fallocate"},
+    {SYS_flock, "flock"},
+    {SYS_linkat, "link"},
+    {SYS_unlinkat, "unlink"},
+    {SYS_renameat, "rename"},
+    {SYS_fcntl, "fcntl"},
+    {SYS_dup, "dup"},
+    {SYS_newfstatat, "stat"},
+    {SYS_fstat, "fstat"},
+    {SYS_faccessat, "access"},
+    {SYS_readlinkat, "readlink"},
+    {SYS_lseek, "lseek"},
+    {SYS_mmap, "mmap"},
+    {SYS_mremap, "mremap"},
+    {SYS_munmap, "munmap"},
+    {SYS_brk, "brk"},
+    {SYS_exit_group, "exit"},
+    {SYS_rt_sigaction, "sigaction"},
     {SYS_rt_sigreturn, "sigreturn"},
 #ifdef __x86_64__
-    {SYS_link, "link"},           {SYS_unlink, "unlink"},     {SYS_rename, "rename"},
-    {SYS_access, "access"},       {SYS_readlink, "readlink"}, {SYS_stat, "stat"},
+    {SYS_link, "link"},
+    {SYS_unlink, "unlink"},
+    {SYS_rename, "rename"},
+    {SYS_access, "access"},
+    {SYS_readlink, "readlink"},
+    {SYS_stat, "stat"},
     {SYS_lstat, "stat"},
 #endif
 };
@@ -146,9 +167,9 @@ static long result_of(uint64_t number, int error) {
     return number == SYS_brk ? 0 : -error;
 }
 
-/* These do not come back, or not to where they were called. */
+/* Two do not come back, or not to where they were called; the C library stops where the third one fails. */
 static int can_fail(uint64_t number) {
-    return number != SYS_exit_group && number != SYS_rt_sigreturn;
+    return number != SYS_exit_group && number != SYS_rt_sigreturn && number != SYS_futex;
 }
 
 /* Lets it happen as a call begins; returns whether it has to end with *result. */
@@ -184,8 +205,8 @@ static void at_call(pid_t child, const fault *what, following *state, FILE *repo
         exit(CANNOT);
     }
     if (info.op == PTRACE_SYSCALL_INFO_ENTRY) {
-        const int is_first = info.entry.nr == SYS_fcntl && info.entry.args[0] == 0 &&
-                             info.entry.args[1] == F_GETFD;
+        const int is_first =
+            info.entry.nr == SYS_fcntl && info.entry.args[0] == 0 && info.entry.args[1] == F_GETFD;
         if (state->count == 0 && !is_first) {
             return;
         }

@@ -331,28 +331,34 @@ int gm_deviations_ideal_teeth(const gm_deviations *deviations, int side) {
  * Writing
  * ------------------------------------------------------------------------------------------- */
 
-static void print_node(FILE *stream, const gm_deviations *deviations, const gm_deviation_set *set,
-                       int face, int profile) {
+/* Nonzero if it failed. */
+static int print_node(FILE *stream, const gm_deviations *deviations, const gm_deviation_set *set,
+                      int face, int profile) {
     const size_t node = (size_t)face * (size_t)deviations->profile_nodes + (size_t)profile;
+    const double t1 = (double)face / (deviations->face_nodes - 1);
+    const double t2 = (double)profile / (deviations->profile_nodes - 1);
     char tooth[GMI_SLOT_NAME_SIZE];
-    char t1[GMI_NUMBER_SIZE];
-    char t2[GMI_NUMBER_SIZE];
+    char place[2][GMI_NUMBER_SIZE];
     char value[GMI_NUMBER_SIZE];
-    fprintf(stream, "%s,%s,%s,%s,%s\n", gmi_tooth_name(tooth, set->tooth), gmi_side_name(set->side),
-            gmi_number_text(t1, (double)face / (deviations->face_nodes - 1), 0, PLACE_DIGITS),
-            gmi_number_text(t2, (double)profile / (deviations->profile_nodes - 1), 0, PLACE_DIGITS),
-            gmi_number_text(value, set->values[node], -MICRO, 0));
+
+    return fprintf(stream, "%s,%s,%s,%s,%s\n", gmi_tooth_name(tooth, set->tooth),
+                   gmi_side_name(set->side), gmi_number_text(place[0], t1, 0, PLACE_DIGITS),
+                   gmi_number_text(place[1], t2, 0, PLACE_DIGITS),
+                   gmi_number_text(value, set->values[node], -MICRO, 0)) < 0;
 }
 
-static void print_rows(FILE *stream, const void *data) {
+static int print_rows(FILE *stream, const void *data) {
     const gm_deviations *deviations = data;
+    int failed = 0;
+
     for (int i = 0; i < deviations->set_count; ++i) {
         for (int face = 0; face < deviations->face_nodes; ++face) {
-            for (int profile = 0; profile < deviations->profile_nodes; ++profile) {
-                print_node(stream, deviations, &deviations->sets[i], face, profile);
+            for (int profile = 0; profile < deviations->profile_nodes && !failed; ++profile) {
+                failed = print_node(stream, deviations, &deviations->sets[i], face, profile);
             }
         }
     }
+    return failed;
 }
 
 /* Deviations that cannot be read back are not written. */

@@ -215,20 +215,24 @@ static int check_writable(const gm_pitch *pitch, gm_io_error *error) {
     return GM_IO_OK;
 }
 
-static void print_flank(FILE *stream, int tooth, int side, double deviation, int set) {
+/* Nonzero if it failed. */
+static int print_flank(FILE *stream, int tooth, int side, double deviation, int set) {
     char value[GMI_NUMBER_SIZE];
-    if (set) {
-        fprintf(stream, "%d,%s,%s\n", tooth, gmi_side_name(side),
-                gmi_number_text(value, deviation, -MICRO, 0));
-    }
+
+    return set && fprintf(stream, "%d,%s,%s\n", tooth, gmi_side_name(side),
+                          gmi_number_text(value, deviation, -MICRO, 0)) < 0;
 }
 
-static void print_rows(FILE *stream, const void *data) {
+static int print_rows(FILE *stream, const void *data) {
     const gm_pitch *pitch = data;
-    for (int tooth = 0; tooth < pitch->teeth; ++tooth) {
-        print_flank(stream, tooth, GM_DRIVE, pitch->drive[tooth], pitch->drive_set[tooth]);
-        print_flank(stream, tooth, GM_COAST, pitch->coast[tooth], pitch->coast_set[tooth]);
+    int failed = 0;
+
+    for (int tooth = 0; tooth < pitch->teeth && !failed; ++tooth) {
+        failed =
+            print_flank(stream, tooth, GM_DRIVE, pitch->drive[tooth], pitch->drive_set[tooth]) ||
+            print_flank(stream, tooth, GM_COAST, pitch->coast[tooth], pitch->coast_set[tooth]);
     }
+    return failed;
 }
 
 int gm_pitch_print(const gm_pitch *pitch, FILE *stream, gm_io_error *error) {

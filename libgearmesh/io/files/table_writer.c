@@ -9,20 +9,25 @@
 
 #include "io_error.h"
 
-int gmi_table_print(const gmi_written *table, FILE *stream, gm_io_error *error) {
-    for (int i = 0; i < table->column_count; ++i) {
-        fprintf(stream, "%s%s", i > 0 ? "," : "", table->columns[i]);
-    }
-    fprintf(stream, "\n");
-    table->print_rows(stream, table->data);
+/* Nonzero if it failed. */
+static int print_header(const gmi_written *table, FILE *stream) {
+    int failed = 0;
 
-    /* Not every call above was looked at: the stream remembers whether one failed. */
-    errno = 0;
-    const int flush_failed = fflush(stream) != 0;
-    if (flush_failed || ferror(stream) != 0) {
-        return gmi_error_file(error, 0, "written", errno);
+    for (int i = 0; i < table->column_count && !failed; ++i) {
+        failed = fprintf(stream, "%s%s", i > 0 ? "," : "", table->columns[i]) < 0;
     }
-    return GM_IO_OK;
+    return failed || fprintf(stream, "\n") < 0;
+}
+
+int gmi_table_print(const gmi_written *table, FILE *stream, gm_io_error *error) {
+    int failed = print_header(table, stream) != 0 || table->print_rows(stream, table->data) != 0;
+
+    /* What is left in the buffer; and the stream remembers what failed before. */
+    if (!failed) {
+        errno = 0;
+        failed = fflush(stream) != 0 || ferror(stream) != 0;
+    }
+    return failed ? gmi_error_file(error, 0, "written", errno) : GM_IO_OK;
 }
 
 int gmi_table_write(const gmi_written *table, const char *path, gm_io_error *error) {

@@ -16,8 +16,9 @@
 typedef struct gmi_written {
     const char *const *columns; /**< [column_count] names in the header */
     int column_count;
-    void (*print_rows)(FILE *stream, const void *data);
-    const void *data; /**< what print_rows() needs */
+    int (*print_rows)(FILE *stream,
+                      const void *data); /**< stops with errno and nonzero where a write fails */
+    const void *data;                    /**< what print_rows() needs */
 } gmi_written;
 
 /** Writes header and rows and flushes, to tell whether all of it was written. */
