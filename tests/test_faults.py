@@ -157,7 +157,7 @@ class SystemCalls(Case):
                     failed += run.code != 0
                     if name in ("flanks", "measured") and "unlink" not in self.calls[at - 1]:
                         self.assert_nothing_beside(what)
-        self.assertGreater(failed, 3)
+        self.assertGreater(failed, 0)
 
     def test_csv(self):
         self.each_call_fails("csv", 24)

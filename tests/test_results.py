@@ -212,8 +212,8 @@ class TwoRuns(Case):
         for ending in ENDINGS:
             name, part = "out" + ending, "out" + ending + ".part"
             self.write(name, OLD)
-            run = self.start(self.sim(name, "--set", "analysis.duration_s=2"))
-            self.wait_for(self.path(part))
+            run = self.start(self.sim(name, "--set", "analysis.duration_s=5"))
+            self.wait_for(self.path(part), 500000)  # rows are written
             os.remove(self.path(part))
             self.write(part, "of somebody else\n")
             errors = run.communicate(timeout=60)[1]
