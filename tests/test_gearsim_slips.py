@@ -137,6 +137,17 @@ class Slips(unittest.TestCase):
                       "write 85\n", result.stderr)
         self.assertIn("was it meant in inches? write 5.08\n", result.stderr)
 
+    def test_a_pitch_is_told_from_a_distance_in_inches(self):
+        """Where the one number and the square of 25.4 are about the same."""
+        gears = ("gears.pinion_teeth=30 gears.wheel_teeth=50 gears.helix_angle_deg=0 gears.normal_pressure_angle_deg=20 "
+                 "gears.pinion_tip_diameter_mm= gears.wheel_tip_diameter_mm= gears.face_width_mm=40 ")
+        for settings, meant in [("gears.center_distance_mm=42.3333 gears.normal_module_mm=24", "as the diametral pitch? write 1.05833"),
+                                ("gears.center_distance_mm=37.795 gears.normal_module_mm=24", "in inches? write 959.993")]:
+            with self.subTest(settings):
+                result = self.check(gears + settings)
+                self.assertIn(f"; was it meant {meant}\n", result.stderr)
+                self.assertEqual(result.stderr.count("was it meant"), 1)
+
     def test_transverse_module_of_small_helix_angles(self):
         """Where the shifts are given, or where there are none and the sum of the pitch circles gives it away."""
         helix, teeth = 10, 50

@@ -30,16 +30,15 @@ static const key_spec *key_at(int index) {
 
 /* Index of "section.key", or -1. */
 static int find_full_name(const char *section_and_key) {
-    const char *dot = strchr(section_and_key, '.');
     char section[NAME_SIZE];
-    size_t length;
-
-    if (dot == NULL || (length = (size_t)(dot - section_and_key)) >= sizeof section) {
+    const size_t length = strcspn(section_and_key, ".");
+    if (section_and_key[length] == '\0' || length >= sizeof section) {
         return -1;
     }
+
     memcpy(section, section_and_key, length);
     section[length] = '\0';
-    return key_find(&gearsim_keys, section, dot + 1);
+    return key_find(&gearsim_keys, section, section_and_key + length + 1);
 }
 
 /* Where a key was set. */

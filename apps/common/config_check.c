@@ -59,6 +59,8 @@ static int check_loads(const config *conf) {
                         conf->loads, conf->positions);
         return 1;
     }
+
+    /* Several loads need the last one, on the same side of the backlash. */
     if (conf->loads > 1 && isnan(conf->end_load)) {
         config_complain(conf, "analysis.loads", "must be 1 without load.end_Nm (got %d)",
                         conf->loads);

@@ -13,15 +13,17 @@
 
 /* The library speaks of radii, the file of diameters. */
 static void speak_of_diameters(const char *requirement, char *text, size_t size) {
-    const char *radius;
     size_t length = 0;
 
     *text = '\0';
-    while ((radius = strstr(requirement, "radius")) != NULL && length < size) {
+    const char *radius = strstr(requirement, "radius");
+    while (radius != NULL && length < size) {
         length += (size_t)snprintf(text + length, size - length, "%.*sdiameter",
                                    (int)(radius - requirement), requirement);
         requirement = radius + strlen("radius");
+        radius = strstr(requirement, "radius");
     }
+
     if (length < size) {
         snprintf(text + length, size - length, "%s", requirement);
     }
@@ -59,14 +61,14 @@ static void describe_measures(char *text, size_t size, const gm_pair_params *gea
 static int refuse_geometry(const config *conf, int status) {
     const char *field = NULL;
     const char *requirement = NULL;
-    const char *key;
-    const char *text;
+
+    /* Which field it is, and the key that sets it. */
+    (void)gm_pair_params_check(&conf->gears, &field, &requirement);
+    const char *key = field != NULL ? config_key_of_field(field) : "gears";
+    const char *text = config_text(conf, key);
+
     char wanted[256];
     char measures[160];
-
-    (void)gm_pair_params_check(&conf->gears, &field, &requirement);
-    key = field != NULL ? config_key_of_field(field) : "gears";
-    text = config_text(conf, key);
     speak_of_diameters(requirement != NULL ? requirement : gm_status_text(status), wanted,
                        sizeof wanted);
     describe_measures(measures, sizeof measures, &conf->gears, key);
@@ -182,6 +184,8 @@ static void warn_of_gear(const config *conf, const gm_pair *pair, enum gm_role r
     if (warnings & words->tip_alteration) {
         config_warn(conf, words->alteration_key, "not used, as %s gives the tip", words->tip_key);
     }
+
+    /* Where the active profile begins. */
     if (warnings & words->root_form) {
         config_warn(
             conf, words->start_key,
@@ -201,6 +205,8 @@ void drawing_warn(const config *conf, const gm_pair *pair) {
 
     warn_of_gear(conf, pair, GM_PINION, warnings);
     warn_of_gear(conf, pair, GM_WHEEL, warnings);
+
+    /* Of both gears together. */
     if (warnings & GM_WARN_CONTACT_RATIO) {
         config_warn(
             conf, "gears.center_distance_mm",

@@ -31,12 +31,16 @@ static void print_pair(const gm_pair *pair, FILE *stream) {
                 millimetres(pair->reference_center_distance));
     print_value(stream, "pinion_profile_shift", pair->pinion.profile_shift);
     print_value(stream, "wheel_profile_shift", pair->wheel.profile_shift);
+
+    /* Of each gear. */
     print_value(stream, "pinion_base_radius_mm", millimetres(pair->pinion.base_radius));
     print_value(stream, "wheel_base_radius_mm", millimetres(pair->wheel.base_radius));
     print_value(stream, "pinion_tip_radius_mm", millimetres(pair->pinion.tip_radius));
     print_value(stream, "wheel_tip_radius_mm", millimetres(pair->wheel.tip_radius));
     print_value(stream, "pinion_start_radius_mm", millimetres(pair->pinion.start_radius));
     print_value(stream, "wheel_start_radius_mm", millimetres(pair->wheel.start_radius));
+
+    /* Along the line of action. */
     print_value(stream, "transverse_base_pitch_mm", millimetres(pair->transverse_base_pitch));
     print_value(stream, "line_of_action_mm", millimetres(pair->line_of_action));
     print_value(stream, "path_start_mm", millimetres(pair->path_start));

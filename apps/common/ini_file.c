@@ -61,14 +61,15 @@ static const char *forbidden(int c) {
 
 /* Reads a line without its end into `text`. 0 at the end of the file, or after a fault. */
 static int read_line(line_source *source) {
-    size_t length = 0;
     int c = getc(source->file);
-
     if (c == EOF) {
         return 0;
     }
     ++source->line;
+
+    size_t length = 0;
     for (; c != EOF && c != '\n'; c = getc(source->file)) {
+        /* CRLF ends a line as LF does. */
         if (c == '\r') {
             c = getc(source->file);
             if (c == '\n') {
@@ -78,6 +79,8 @@ static int read_line(line_source *source) {
             stop(source, "a carriage return within a line: end lines with LF or CRLF");
             return 0;
         }
+
+        /* What is no text, or more than there is room for, ends the reading. */
         if (forbidden(c) != NULL) {
             stop(source, forbidden(c));
             return 0;
@@ -86,6 +89,7 @@ static int read_line(line_source *source) {
             stop(source, "the line is too long: at most 4095 characters");
             return 0;
         }
+
         source->text[length++] = (char)c;
     }
     source->text[length] = '\0';
@@ -94,21 +98,25 @@ static int read_line(line_source *source) {
 
 /* The part of the line that means something: without byte order mark, comment and white space around. */
 static char *significant_part(line_source *source) {
+    static const char byte_order_mark[] = "\xEF\xBB\xBF";
     char *start = source->text;
-    char *end;
 
-    if (source->line == 1 && strncmp(start, "\xEF\xBB\xBF", 3) == 0) {
+    if (source->line == 1 && strncmp(start, byte_order_mark, 3) == 0) {
         start += 3;
     }
     while (is_blank(*start)) {
         ++start;
     }
-    for (end = start; *end != '\0'; ++end) {
+
+    /* A comment begins where a word could. */
+    char *end = start;
+    for (; *end != '\0'; ++end) {
         const int at_word_start = end == start || is_blank(end[-1]);
         if (at_word_start && (*end == ';' || *end == '#')) {
             break;
         }
     }
+
     while (end > start && is_blank(end[-1])) {
         --end;
     }
@@ -132,7 +140,6 @@ static void report_section(line_source *source, char *text) {
 /* Gives inih its next line (an ini_reader). */
 static char *next_line(char *line, int size, void *stream) {
     line_source *source = stream;
-    char *text;
 
     if (source->stopped || !read_line(source)) {
         return NULL;
@@ -141,11 +148,14 @@ static char *next_line(char *line, int size, void *stream) {
         stop(source, "too many lines: this is no INI file of parameters");
         return NULL;
     }
-    text = significant_part(source);
+
+    /* A line that inih would split is refused. */
+    char *text = significant_part(source);
     if (strlen(text) + 3 > (size_t)size) {
         stop(source, "the line is too long: shorten it, or give the value with --set");
         return NULL;
     }
+
     if (*text == '[') {
         report_section(source, text);
     }

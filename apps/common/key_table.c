@@ -147,6 +147,7 @@ static int is_plain_number(const char *text) {
     const char *end = skip_digits(start);
     long digits = end - start;
 
+    /* Digits before the point, behind it, or both. */
     if (*end == '.') {
         const char *fraction = end + 1;
         end = skip_digits(fraction);
@@ -155,6 +156,7 @@ static int is_plain_number(const char *text) {
     if (digits == 0) {
         return 0;
     }
+
     if (*end == 'e' || *end == 'E') {
         const char *exponent = end + 1;
         exponent += *exponent == '+' || *exponent == '-';
@@ -353,6 +355,7 @@ enum key_result key_assign_default(const key_spec *key, void *filled) {
         return key_assign(key, filled, key->standard, fault);
     }
 
+    /* NaN and -1 say that a number or choice is not given. */
     switch (key->kind) {
     case KEY_NUMBER:
         *(double *)target_of(key, filled) = (double)NAN;
@@ -366,6 +369,8 @@ enum key_result key_assign_default(const key_spec *key, void *filled) {
     case KEY_SEED:
         *(uint64_t *)target_of(key, filled) = 0;
         break;
+
+    /* Texts are on the heap. */
     case KEY_TEXT:
     case KEY_PATH:
         free(*(char **)target_of(key, filled));

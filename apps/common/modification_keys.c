@@ -330,9 +330,8 @@ static int make_side(gear_design *design, const config *conf, const gm_pair *pai
 }
 
 int gear_design_make(gear_design *design, const config *conf, const gm_pair *pair, int gear) {
-    int status;
-
     memset(design, 0, sizeof *design);
-    status = make_side(design, conf, pair, gear, GM_DRIVE);
+
+    const int status = make_side(design, conf, pair, gear, GM_DRIVE);
     return status != 0 ? status : make_side(design, conf, pair, gear, GM_COAST);
 }

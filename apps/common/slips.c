@@ -219,41 +219,58 @@ static void judge_backlash(const config *conf, double module) {
     }
 }
 
-/* The drawing, from what the other values are compared with to these. */
-static usual_gear judge_drawing(const config *conf) {
+/*
+ * The module by itself, and against the centre distance; the one or the other may be at fault. Returned is the module that
+ * is probably meant.
+ */
+static double judge_module(const config *conf, double pressure_angle, double cos_helix) {
     static const double module_possible[] = {0.05, 120}, module_usual[] = {0.1, 100};
-    static const double distance_possible[] = {0.5, 2}, distance_usual[] = {0.8, 1.25};
-    static const double width_possible[] = {0.2, 300}, width_usual[] = {1, 100};
+    static const double possible[] = {0.5, 2}, usual[] = {0.8, 1.25};
     static const other_unit metric[] = {{"in metres", 1e3}, {"in micrometres", 1e-3}, {NULL, 0}};
-    const gm_pair_params *gears = &conf->gears;
-    usual_gear usual = {.module = 1e3 * gears->normal_module};
+    const double teeth = conf->gears.pinion_teeth + conf->gears.wheel_teeth;
+    const double distance = 1e3 * conf->gears.center_distance;
+    const double module =
+        judge(conf, "gears.normal_module_mm", 1e3 * conf->gears.normal_module, " mm", 1,
+              module_possible, module_usual, metric, "which no gear has");
 
+    /* In terms of the pitch circles. */
+    const double reference = module * teeth / (2 * cos_helix);
+    const double share = distance / reference;
+    if (is_within(share, possible[0], possible[1])) {
+        return judge_against_distance(conf, module, distance, pressure_angle, cos_helix);
+    }
+    if (is_inch_drawing(conf, cos_helix)) {
+        return judge_inch_drawing(conf);
+    }
+
+    /* Another unit of the distance, unless a diametral pitch explains it better. */
+    const other_unit *other = unit_for(lengths, share, usual[0], usual[1]);
+    const double of_pitch = fabs(log(share * module * module / 25.4));
+    if (other == NULL || of_pitch < fabs(log(share * other->size))) {
+        return judge_against_distance(conf, module, distance, pressure_angle, cos_helix);
+    }
+    (void)judge(conf, "gears.center_distance_mm", distance, " mm", reference, possible, usual,
+                lengths, "far from half the sum of the reference diameters");
+    return module;
+}
+
+/* The drawing; returned is what the other values are compared with. */
+static usual_gear judge_drawing(const config *conf) {
+    static const double width_possible[] = {0.2, 300}, width_usual[] = {1, 100};
+    const gm_pair_params *gears = &conf->gears;
+    usual_gear usual;
+
+    /* Angles and module first, as the rest is in terms of module and reference diameters. */
     const double pressure_angle = judge_pressure_angle(conf);
     usual.cos_helix = cos(judge_helix_angle(conf) * pi / 180);
-
-    /* The module by itself, then against the centre distance: the one or the other may be at fault. */
-    usual.module = judge(conf, "gears.normal_module_mm", usual.module, " mm", 1, module_possible,
-                         module_usual, metric, "which no gear has");
-    const double teeth = gears->pinion_teeth + gears->wheel_teeth;
-    const double reference = usual.module * teeth / (2 * usual.cos_helix);
-    const double distance = 1e3 * gears->center_distance;
-    if (!is_within(distance / reference, distance_possible[0], distance_possible[1]) &&
-        is_inch_drawing(conf, usual.cos_helix)) {
-        usual.module = judge_inch_drawing(conf);
-    } else {
-        const double meant =
-            judge(conf, "gears.center_distance_mm", distance, " mm", reference, distance_possible,
-                  distance_usual, lengths, "far from half the sum of the reference diameters");
-        usual.module =
-            judge_against_distance(conf, usual.module, meant, pressure_angle, usual.cos_helix);
-    }
+    usual.module = judge_module(conf, pressure_angle, usual.cos_helix);
     usual.diameter[0] = usual.module * gears->pinion_teeth / usual.cos_helix;
     usual.diameter[1] = usual.module * gears->wheel_teeth / usual.cos_helix;
 
-    /* The rest in terms of module and reference diameters. */
     usual.face_width =
         judge(conf, "gears.face_width_mm", 1e3 * gears->face_width, " mm", usual.module,
               width_possible, width_usual, lengths, "out of proportion to the module");
+
     judge_diameter(conf, "gears.pinion_tip_diameter_mm", gears->pinion_tip_radius,
                    usual.diameter[0]);
     judge_diameter(conf, "gears.wheel_tip_diameter_mm", gears->wheel_tip_radius, usual.diameter[1]);
@@ -261,6 +278,7 @@ static usual_gear judge_drawing(const config *conf) {
                    usual.diameter[0]);
     judge_diameter(conf, "gears.wheel_start_diameter_mm", gears->wheel_start_radius,
                    usual.diameter[1]);
+
     judge_shift(conf, "gears.pinion_profile_shift", gears->pinion_profile_shift, usual.module);
     judge_shift(conf, "gears.wheel_profile_shift", gears->wheel_profile_shift, usual.module);
     judge_backlash(conf, usual.module);

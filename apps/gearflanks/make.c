@@ -27,6 +27,8 @@ static void print_head(FILE *file, const void *context) {
     } else {
         fprintf(file, "ISO 1328-1 class %d, share %g\n", generate->quality_class, generate->share);
     }
+
+    /* All that the same flanks need to be made again. */
     fprintf(file, "# seed %llu, nodes %dx%d\n", (unsigned long long)generate->seed,
             generate->face_nodes, generate->profile_nodes);
     if (generate->scatter != NULL) {

@@ -93,6 +93,7 @@ static void print_range(const char *kind, const double range[2], const char *coo
 static void print_traces(const measured_gear *of, FILE *file) {
     const gm_traces_report *found = &of->traces;
 
+    /* What was measured, and how well the grid holds it. */
     print_traces_of(of, "profile", found->profile_traces, found->profile_teeth,
                     "constant along the profile", file);
     print_traces_of(of, "helix", found->helix_traces, found->helix_teeth, "constant along the face",
@@ -101,6 +102,8 @@ static void print_traces(const measured_gear *of, FILE *file) {
     print_range("helix", found->face_range, "t1", file);
     fprintf(file, "# %d x %d nodes: no measured point is off by more than %.3f um\n",
             of->deviations.face_nodes, of->deviations.profile_nodes, 1e6 * found->resampling_error);
+
+    /* What of it is doubtful. */
     if (found->crossing_error > 1e-12) {
         fprintf(file,
                 "# where traces of a flank cross they contradict each other by %.3f um at most\n",
@@ -110,6 +113,8 @@ static void print_traces(const measured_gear *of, FILE *file) {
         fprintf(file, "# %d point%s left out: spikes\n", found->spikes,
                 found->spikes == 1 ? "" : "s");
     }
+
+    /* Values that were probably not measured, or counted the other way. */
     if (found->filled_points > 0) {
         fprintf(file, "# %d points left out: filled in, not measured\n", found->filled_points);
     }
@@ -122,6 +127,7 @@ static void print_traces(const measured_gear *of, FILE *file) {
                 of->constant.kind == GM_TRACE_PROFILE ? "profile" : "helix", of->constant.tooth,
                 flanks[of->constant.flank], found->constant_traces > 1 ? ", as some others" : "");
     }
+
     if (2 * found->hollow_traces > found->judged_traces) {
         fprintf(file, "# %d of %d traces stand out at their ends: is material added counted > 0?\n",
                 found->hollow_traces, found->judged_traces);
@@ -261,13 +267,11 @@ static int write_all(const measured_gear *of) {
 }
 
 int build_measured(const flanks_options *options, const gm_pair *pair) {
-    measured_gear of;
+    measured_gear of = {
+        .options = options, .pair = pair, .gear = options->wheel ? &pair->wheel : &pair->pinion};
     int status = EXIT_DONE;
 
-    memset(&of, 0, sizeof of);
-    of.options = options;
-    of.pair = pair;
-    of.gear = options->wheel ? &pair->wheel : &pair->pinion;
+    /* Traces and pitch, or one of them. */
     if (options->traces != NULL) {
         status = read_traces(&of);
     }
@@ -277,6 +281,8 @@ int build_measured(const flanks_options *options, const gm_pair *pair) {
     if (status == EXIT_DONE) {
         status = write_all(&of);
     }
+
+    /* How it was understood, and the class that it has. */
     if (status == EXIT_DONE) {
         print_report(&of);
         status = report_quality(options, pair, options->traces != NULL ? &of.deviations : NULL,

@@ -499,15 +499,16 @@ static int check(const parsing *state) {
 }
 
 int options_parse(flanks_options *options, int count, char *const texts[], message_sink *messages) {
-    parsing state = {.options = options};
-    int status = 0;
-
     memset(options, 0, sizeof *options);
     options->messages = messages;
     gm_generate_options_default(&options->generate);
     gm_measurement_default(&options->measurement);
     gm_traces_options_default(&options->from_traces);
     options->generate.waves = options->waves;
+
+    /* --help and --version win over whatever follows. */
+    parsing state = {.options = options};
+    int status = 0;
     for (int i = 1; i < count && status == 0; ++i) {
         if (strcmp(texts[i], "--help") == 0 || strcmp(texts[i], "--version") == 0) {
             options->task = texts[i][2] == 'h' ? FLANKS_HELP : FLANKS_VERSION;
@@ -516,6 +517,7 @@ int options_parse(flanks_options *options, int count, char *const texts[], messa
         status = texts[i][0] == '-' ? take_option(&state, count, texts, &i)
                                     : take_parameters(&state, texts[i]);
     }
+
     if (options->task == FLANKS_MAKE &&
         (options->traces != NULL || options->measured_pitch != NULL)) {
         options->task = FLANKS_MEASURED;

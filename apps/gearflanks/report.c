@@ -27,8 +27,6 @@ static int open_files(measured *of, const flanks_options *options, const flank_f
     const int given = options->deviations != NULL || options->pitch != NULL;
     const char *deviations = given ? options->deviations : files->deviations;
     const char *pitch = given ? options->pitch : files->pitch;
-    gm_io_error error;
-    int status = GM_IO_OK;
 
     memset(of, 0, sizeof *of);
     if (deviations == NULL && pitch == NULL) {
@@ -38,15 +36,18 @@ static int open_files(measured *of, const flanks_options *options, const flank_f
                            options->parameters, options->wheel ? "wheel" : "pinion");
         return EXIT_BAD_INPUT;
     }
+
+    gm_io_error error;
     if (deviations != NULL) {
-        status = gm_deviations_read(&of->deviation_storage, deviations, teeth, &error);
+        const int status = gm_deviations_read(&of->deviation_storage, deviations, teeth, &error);
         if (status != GM_IO_OK) {
             return refuse_input(options->messages, status, &error);
         }
         of->deviations = &of->deviation_storage;
     }
+
     if (pitch != NULL) {
-        status = gm_pitch_read(&of->pitch_storage, pitch, teeth, &error);
+        const int status = gm_pitch_read(&of->pitch_storage, pitch, teeth, &error);
         if (status != GM_IO_OK) {
             close_files(of);
             return refuse_input(options->messages, status, &error);

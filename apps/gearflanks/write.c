@@ -117,6 +117,9 @@ static const char *see_option(const char *field) {
 int refuse_input(message_sink *messages, int status, const gm_io_error *error) {
     const char *option = see_option(error->option);
 
+    if (status == GM_IO_ERR_MEMORY) {
+        return message_no_memory(messages);
+    }
     if (error->file[0] == '\0') {
         message_of_program(messages, "%s%s", error->text, option);
     } else if (error->line > 0) {
@@ -124,5 +127,5 @@ int refuse_input(message_sink *messages, int status, const gm_io_error *error) {
     } else {
         message_error(messages, "%s: %s%s", error->file, error->text, option);
     }
-    return status == GM_IO_ERR_MEMORY ? EXIT_RUN_FAILED : EXIT_BAD_INPUT;
+    return EXIT_BAD_INPUT;
 }

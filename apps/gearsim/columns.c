@@ -72,6 +72,7 @@ int columns_select(column_list *columns, const config *conf, const char *const n
 
     const char *text = conf->columns;
     for (;;) {
+        /* A name up to the comma or the end, without blanks around it. */
         text += strspn(text, blanks);
         const size_t field = strcspn(text, ",");
         size_t length = field;
@@ -81,6 +82,7 @@ int columns_select(column_list *columns, const config *conf, const char *const n
         if (add(columns, conf, text, length, names, name_count) != 0) {
             return EXIT_BAD_INPUT;
         }
+
         if (text[field] == '\0') {
             return 0;
         }
