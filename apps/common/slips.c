@@ -208,6 +208,55 @@ static void judge_shift(const config *conf, const char *key, double shift, doubl
     (void)judge(conf, key, shift, "", 1, possible, usual, units, "more than teeth allow");
 }
 
+/* The basic rack and the tip alteration are in modules: a drawing has them in mm as well. */
+static void judge_in_modules(const config *conf, const char *key, double value, double module,
+                             const double possible[2], const double usual[2]) {
+    const other_unit units[] = {{"in mm, not in modules", 1 / module}, {NULL, 0}};
+
+    (void)judge(conf, key, value, "", 1, possible, usual, units, "far from that of any tool");
+}
+
+static void judge_racks(const config *conf, double module) {
+    static const double addendum[] = {0.3, 1.8}, usual_addendum[] = {0.7, 1.4};
+    static const double dedendum[] = {0.5, 2.2}, usual_dedendum[] = {0.9, 1.8};
+    static const double fillet[] = {0, 0.6}, usual_fillet[] = {0.1, 0.5};
+    static const double alteration[] = {-1, 1}, usual_alteration[] = {-0.8, 0.5};
+    const gm_pair_params *gears = &conf->gears;
+
+    judge_in_modules(conf, "gears.pinion_rack_addendum", gears->pinion_rack_addendum, module,
+                     addendum, usual_addendum);
+    judge_in_modules(conf, "gears.wheel_rack_addendum", gears->wheel_rack_addendum, module,
+                     addendum, usual_addendum);
+    judge_in_modules(conf, "gears.pinion_rack_dedendum", gears->pinion_rack_dedendum, module,
+                     dedendum, usual_dedendum);
+    judge_in_modules(conf, "gears.wheel_rack_dedendum", gears->wheel_rack_dedendum, module,
+                     dedendum, usual_dedendum);
+
+    judge_in_modules(conf, "gears.pinion_rack_fillet_radius", gears->pinion_rack_fillet_radius,
+                     module, fillet, usual_fillet);
+    judge_in_modules(conf, "gears.wheel_rack_fillet_radius", gears->wheel_rack_fillet_radius,
+                     module, fillet, usual_fillet);
+    judge_in_modules(conf, "gears.pinion_tip_alteration", gears->pinion_tip_alteration, module,
+                     alteration, usual_alteration);
+    judge_in_modules(conf, "gears.wheel_tip_alteration", gears->wheel_tip_alteration, module,
+                     alteration, usual_alteration);
+}
+
+/* The common face width, or the smaller of both; NaN = none is given (mm). */
+static double judge_face_widths(const config *conf, double module) {
+    static const double possible[] = {0.2, 300}, usual[] = {1, 100};
+    static const char why[] = "out of proportion to the module";
+    const gm_pair_params *gears = &conf->gears;
+
+    const double common = judge(conf, "gears.face_width_mm", 1e3 * gears->face_width, " mm", module,
+                                possible, usual, lengths, why);
+    const double pinion = judge(conf, "gears.pinion_face_width_mm", 1e3 * gears->pinion_face_width,
+                                " mm", module, possible, usual, lengths, why);
+    const double wheel = judge(conf, "gears.wheel_face_width_mm", 1e3 * gears->wheel_face_width,
+                               " mm", module, possible, usual, lengths, why);
+    return fmin(common, fmin(pinion, wheel));
+}
+
 /* In terms of the module. Narrower backlash presses, wider is none. */
 static void judge_backlash(const config *conf, double module) {
     static const double possible[] = {0.003, INFINITY}, usual[] = {0.003, 0.3};
@@ -256,7 +305,6 @@ static double judge_module(const config *conf, double pressure_angle, double cos
 
 /* The drawing; returned is what the other values are compared with. */
 static usual_gear judge_drawing(const config *conf) {
-    static const double width_possible[] = {0.2, 300}, width_usual[] = {1, 100};
     const gm_pair_params *gears = &conf->gears;
     usual_gear usual;
 
@@ -267,9 +315,7 @@ static usual_gear judge_drawing(const config *conf) {
     usual.diameter[0] = usual.module * gears->pinion_teeth / usual.cos_helix;
     usual.diameter[1] = usual.module * gears->wheel_teeth / usual.cos_helix;
 
-    usual.face_width =
-        judge(conf, "gears.face_width_mm", 1e3 * gears->face_width, " mm", usual.module,
-              width_possible, width_usual, lengths, "out of proportion to the module");
+    usual.face_width = judge_face_widths(conf, usual.module);
 
     judge_diameter(conf, "gears.pinion_tip_diameter_mm", gears->pinion_tip_radius,
                    usual.diameter[0]);
@@ -281,6 +327,7 @@ static usual_gear judge_drawing(const config *conf) {
 
     judge_shift(conf, "gears.pinion_profile_shift", gears->pinion_profile_shift, usual.module);
     judge_shift(conf, "gears.wheel_profile_shift", gears->wheel_profile_shift, usual.module);
+    judge_racks(conf, usual.module);
     judge_backlash(conf, usual.module);
     return usual;
 }
