@@ -130,7 +130,7 @@ static void the_first_of_two_equilibria_counts(void) {
     /* A drive pair ends at rho_p = T0 + delta - rho_w(tip): choose the phase so that it leaves at
      * delta = 0.75 target. Below it two pairs carry the torque at target / 2; above it one at target. */
     const double rho_p = pair.line_of_action + 0.75 * target - pair.wheel.tip_roll_length;
-    double angle = (rho_p - pair.phase_origin) / r_bp;
+    double angle = (rho_p - pair.phase_origin[GM_DRIVE]) / r_bp;
     GM_ASSERT_INT(at(&pair, NULL, NULL, angle, pair.backlash / 2 + 0.74 * target).drive_pairs, 2);
     GM_ASSERT_INT(at(&pair, NULL, NULL, angle, pair.backlash / 2 + 0.76 * target).drive_pairs, 1);
     double x = NAN;
@@ -477,7 +477,7 @@ static void a_step_of_the_sum_is_the_answer_from_any_guess(void) {
     GM_ASSERT_INT(gm_flanks_init(&flanks, &sizes, memory, sizeof memory), GM_OK);
     GM_ASSERT_INT(gm_flanks_set_pitch(&flanks, GM_DRIVE, GM_ALL_TEETH, 20e-6), GM_OK);
     const double rho = pair.line_of_action - 5e-6 - pair.wheel.start_roll_length;
-    const double angle = (rho - pair.phase_origin) / pair.pinion.base_radius;
+    const double angle = (rho - pair.phase_origin[GM_DRIVE]) / pair.pinion.base_radius;
     const double step = 0.5 * pair.backlash - 5e-6;
     const gm_penetration before = at(&pair, &flanks, NULL, angle, step - 1e-12);
     const gm_penetration behind = at(&pair, &flanks, NULL, angle, step + 1e-12);
@@ -647,10 +647,57 @@ static void no_case_takes_many_evaluations(void) {
     }
 }
 
+/*
+ * Faces of 26 and 32 mm, the middle of the wheel's 1.5 mm before that of the pinion's. Right values by brute force of
+ * turned helicoids, to 2e-5 um.
+ */
+static void unequal_faces_carry_as_turned_helicoids_do(void) {
+    static const struct {
+        double hand, torque;
+        double te_um[5]; /* at 0, 0.4 pi, 0.8 pi, 1.2 pi, 1.6 pi of the pinion's angle */
+    } cases[] = {
+        {1.0,
+         83.3,
+         {-50.66419558518596, -51.10885554019886, -51.326450640219484, -50.5968456728733,
+          -51.39000857709836}},
+        {-1.0,
+         -83.3,
+         {50.66419558518596, 51.39000857709873, 50.596845672908884, 51.326450640122864,
+          51.10885554006444}},
+    };
+    const double degree = 0.017453292519943295;
+    for (int i = 0; i < 2; i++) {
+        gm_pair_params params;
+        gm_pair_params_default(&params);
+        params.pinion_teeth = 27;
+        params.wheel_teeth = 38;
+        params.normal_module = 2.5e-3;
+        params.normal_pressure_angle = 20.0 * degree;
+        params.helix_angle = cases[i].hand * 22.0 * degree;
+        params.center_distance = 88.2e-3;
+        params.backlash = 90e-6;
+        params.pinion_face_width = 26e-3;
+        params.wheel_face_width = 32e-3;
+        params.axial_offset = -1.5e-3;
+        params.pinion_start_radius = 0.5 * 68.2600963e-3;
+        params.wheel_start_radius = 0.5 * 96.3795598e-3;
+        const gm_pair pair = make_pair(&params);
+        for (int k = 0; k < 5; k++) {
+            gm_test_context("case %d, position %d", i, k);
+            double offset = 0.0;
+            GM_ASSERT_INT(gm_static_equilibrium(&pair, NULL, NULL, k * 72.0 * degree, 2e8,
+                                                cases[i].torque, &offset, NULL),
+                          GM_OK);
+            GM_ASSERT_ABS(-1e6 * offset, cases[i].te_um[k], 2e-5);
+        }
+    }
+}
+
 int main(int argc, char **argv) {
     static const gm_test tests[] = {
         GM_TEST(equilibrium_inverts_the_sum),
         GM_TEST(loaded_transmission_error_of_the_reference_gears),
+        GM_TEST(unequal_faces_carry_as_turned_helicoids_do),
         GM_TEST(the_first_of_two_equilibria_counts),
         GM_TEST(every_equilibrium_found_carries_the_torque),
         GM_TEST(the_least_torque_is_carried_at_the_clearance),

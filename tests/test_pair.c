@@ -9,7 +9,7 @@
 static const double degree = 0.017453292519943295;
 
 /** All doubles of a pair. */
-enum { GEAR_DOUBLES = 19, OWN_DOUBLES = 27, PAIR_DOUBLES = 2 * GEAR_DOUBLES + OWN_DOUBLES };
+enum { GEAR_DOUBLES = 19, OWN_DOUBLES = 28, PAIR_DOUBLES = 2 * GEAR_DOUBLES + OWN_DOUBLES };
 
 static void list_gear(const gm_gear *g, double *out) {
     const double values[GEAR_DOUBLES] = {
@@ -46,7 +46,8 @@ static void list_pair(const gm_pair *p, double out[PAIR_DOUBLES]) {
                                         p->overlap_ratio,
                                         p->total_contact_ratio,
                                         p->backlash,
-                                        p->phase_origin,
+                                        p->phase_origin[GM_DRIVE],
+                                        p->phase_origin[GM_COAST],
                                         p->pinion_working_pitch_radius,
                                         p->wheel_working_pitch_radius,
                                         p->pinion_tip_clearance,
@@ -493,7 +494,7 @@ static void unequal_faces_share_what_lies_in_both(void) {
     };
     for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
         gm_test_context("case %d", (int)i);
-        gm_pair_params params = reference_params(NAN);
+        gm_pair_params params = reference_params((double)NAN);
         params.pinion_face_width = cases[i].pinion * 1e-3;
         params.wheel_face_width = cases[i].wheel * 1e-3;
         params.axial_offset = cases[i].offset * 1e-3;
@@ -507,11 +508,11 @@ static void unequal_faces_share_what_lies_in_both(void) {
         GM_ASSERT_REL(p.face_advance, p.face_width * tan(p.base_helix_angle), 1e-14);
         GM_ASSERT_REL(p.overlap_ratio, p.face_advance / p.transverse_base_pitch, 1e-15);
         /* The lines of contact start where the common face does; angles refer to z = 0. */
-        GM_ASSERT_REL(p.phase_origin,
-                      p.pinion.base_radius *
-                              (p.working_pressure_angle + p.pinion.base_half_thickness) +
-                          p.face_start * tan(p.base_helix_angle),
-                      1e-14);
+        const double at_zero =
+            p.pinion.base_radius * (p.working_pressure_angle + p.pinion.base_half_thickness);
+        const double before = p.face_start * tan(p.base_helix_angle);
+        GM_ASSERT_REL(p.phase_origin[GM_DRIVE], at_zero + before, 1e-14);
+        GM_ASSERT_REL(p.phase_origin[GM_COAST], at_zero - before, 1e-14);
         /* The common width may be said as well. */
         params.face_width = p.face_width;
         GM_ASSERT_INT(gm_pair_params_check(&params, NULL, NULL), GM_OK);
@@ -522,7 +523,7 @@ static void unequal_faces_share_what_lies_in_both(void) {
 
 /* Moved together along the axis, the gears are the same: the phase follows the helix. */
 static void a_pinion_that_begins_earlier_only_turns_its_zero(void) {
-    gm_pair_params params = reference_params(NAN);
+    gm_pair_params params = reference_params((double)NAN);
     params.pinion_face_width = 24e-3;
     params.wheel_face_width = 20e-3; /* z = 2 .. 22 mm */
     const gm_pair wide = make_pair(&params);
@@ -533,14 +534,15 @@ static void a_pinion_that_begins_earlier_only_turns_its_zero(void) {
     for (int i = 0; i < 40; i++) {
         gm_test_context("position %d", i);
         const gm_state state = {.pinion_angle = 0.11 * i,
-                                .wheel_angle = 0.11 * i * 45.0 / 41.0 - 1.5e-3};
+                                .wheel_angle = 0.11 * i * 45.0 / 41.0 + (i % 2 ? 1.5e-3 : -1.5e-3)};
         const gm_state later = {.pinion_angle = state.pinion_angle + turn,
                                 .wheel_angle = state.wheel_angle + wheel_turn};
         gm_penetration of_wide, of_narrow;
         GM_ASSERT_INT(gm_penetration_3d(&wide, NULL, NULL, &state, &of_wide), GM_OK);
         GM_ASSERT_INT(gm_penetration_3d(&narrow, NULL, NULL, &later, &of_narrow), GM_OK);
-        GM_ASSERT(of_narrow.drive > 0.0);
+        GM_ASSERT(of_narrow.drive + of_narrow.coast > 0.0);
         GM_ASSERT_REL(of_wide.drive, of_narrow.drive, 1e-9);
+        GM_ASSERT_REL(of_wide.coast, of_narrow.coast, 1e-9);
     }
 }
 
@@ -675,6 +677,22 @@ static const wrong_value wrong_values[] = {
     NUMBER(face_width, -1e-3, GM_ERR_PARAMETER),
     NUMBER(face_width, NAN, GM_ERR_PARAMETER),
     NUMBER(face_width, HUGE_VAL, GM_ERR_PARAMETER),
+    NUMBER(pinion_face_width, 0.0, GM_ERR_PARAMETER),
+    NUMBER(pinion_face_width, HUGE_VAL, GM_ERR_PARAMETER),
+    NUMBER(wheel_face_width, 0.99e-6, GM_ERR_PARAMETER),
+    NUMBER(wheel_face_width, 1.01e9, GM_ERR_PARAMETER),
+    NUMBER(axial_offset, NAN, GM_ERR_PARAMETER),
+    NUMBER(axial_offset, 1.01e9, GM_ERR_PARAMETER),
+    NUMBER(axial_offset, -1.01e9, GM_ERR_PARAMETER),
+    NUMBER(pinion_rack_addendum, -1e-9, GM_ERR_PARAMETER),
+    NUMBER(wheel_rack_addendum, 10.01, GM_ERR_PARAMETER),
+    NUMBER(pinion_rack_dedendum, 10.01, GM_ERR_PARAMETER),
+    NUMBER(wheel_rack_dedendum, -1e-9, GM_ERR_PARAMETER),
+    NUMBER(pinion_rack_fillet_radius, -1e-9, GM_ERR_PARAMETER),
+    NUMBER(wheel_rack_fillet_radius, 10.01, GM_ERR_PARAMETER),
+    NUMBER(pinion_tip_alteration, -10.01, GM_ERR_PARAMETER),
+    NUMBER(wheel_tip_alteration, 10.01, GM_ERR_PARAMETER),
+    NUMBER(wheel_tip_alteration, HUGE_VAL, GM_ERR_PARAMETER),
     NUMBER(pinion_profile_shift, HUGE_VAL, GM_ERR_PARAMETER),
     NUMBER(wheel_profile_shift, -HUGE_VAL, GM_ERR_PARAMETER),
     NUMBER(backlash, HUGE_VAL, GM_ERR_PARAMETER),
@@ -717,7 +735,12 @@ static const wrong_value wrong_values[] = {
     NUMBER(pinion_profile_shift, -3.0, GM_ERR_GEOMETRY), /* s_n = m_n (pi/2 - 6 tan(16 deg)) < 0 */
     NUMBER(wheel_profile_shift, -3.0, GM_ERR_GEOMETRY),
     NUMBER(backlash, -5.85e-3, GM_ERR_GEOMETRY), /* the base pitch is 5.848 mm */
-    NUMBER(face_width, 100.0, GM_ERR_GEOMETRY),  /* thousands of lines of contact at once */
+    /* 1.75 / (1 - sin(16 deg)) = 2.4159 modules of fillet take all of the dedendum. */
+    NUMBER(pinion_rack_fillet_radius, 2.416, GM_ERR_GEOMETRY),
+    NUMBER(wheel_rack_fillet_radius, 2.416, GM_ERR_GEOMETRY),
+    NUMBER(pinion_rack_dedendum, 0.275, GM_ERR_GEOMETRY), /* 0.38 (1 - sin(16 deg)) = 0.27526 */
+    NUMBER(wheel_rack_dedendum, 0.275, GM_ERR_GEOMETRY),
+    NUMBER(face_width, 100.0, GM_ERR_GEOMETRY), /* thousands of lines of contact at once */
     /* Teeth so thick that they would overlap by more than a pitch, also where no backlash is given. */
     NUMBER(pinion_normal_thickness, 20e-3, GM_ERR_GEOMETRY),
     NUMBER(wheel_normal_thickness, 1e6, GM_ERR_GEOMETRY),
@@ -754,6 +777,83 @@ static void every_wrong_value_is_named(void) {
         memset(&pair, 0, sizeof pair);
         GM_ASSERT_INT(gm_pair_init(&pair, &params), wrong->status);
         assert_unusable(&pair);
+    }
+}
+
+/* The same bounds from the other side. */
+static void racks_just_inside_the_ranges_are_taken(void) {
+    gm_pair_params params = reference_params(REFERENCE_FACE_WIDTH);
+    params.pinion_rack_fillet_radius = 2.4158;
+    params.wheel_rack_fillet_radius = 0.0;
+    GM_ASSERT_INT(gm_pair_params_check(&params, NULL, NULL), GM_OK);
+    params.wheel_rack_fillet_radius = 2.4158;
+    params.pinion_rack_fillet_radius = 0.0;
+    GM_ASSERT_INT(gm_pair_params_check(&params, NULL, NULL), GM_OK);
+    params = reference_params(REFERENCE_FACE_WIDTH);
+    params.pinion_rack_dedendum = params.wheel_rack_dedendum = 0.2753;
+    params.pinion_rack_addendum = params.wheel_rack_addendum = 0.0;
+    GM_ASSERT_INT(gm_pair_params_check(&params, NULL, NULL), GM_OK);
+    params.pinion_rack_addendum = params.wheel_rack_addendum = 10.0;
+    params.pinion_rack_dedendum = params.wheel_rack_dedendum = 10.0;
+    params.pinion_rack_fillet_radius = params.wheel_rack_fillet_radius = 10.0;
+    GM_ASSERT_INT(gm_pair_params_check(&params, NULL, NULL), GM_OK);
+    params.pinion_tip_alteration = 10.0;
+    params.wheel_tip_alteration = -10.0;
+    GM_ASSERT_INT(gm_pair_params_check(&params, NULL, NULL), GM_OK);
+    params.axial_offset = 17e-3; /* leaves 0.5 mm */
+    GM_ASSERT_INT(gm_pair_params_check(&params, NULL, NULL), GM_OK);
+    params.axial_offset = REFERENCE_FACE_WIDTH - 1.1e-6;
+    GM_ASSERT_INT(gm_pair_params_check(&params, NULL, NULL), GM_OK);
+    params.axial_offset = REFERENCE_FACE_WIDTH - 0.9e-6; /* below the smallest length */
+    GM_ASSERT_INT(gm_pair_params_check(&params, NULL, NULL), GM_ERR_GEOMETRY);
+}
+
+/* A gear of 15 teeth and a rack of 10 modules: nothing is left of its body, r = 7.5 m_n. */
+static void a_rack_deeper_than_the_gear_is_refused(void) {
+    const struct {
+        int pinion_teeth, wheel_teeth;
+        double dedendum;
+        const char *field;
+    } cases[] = {
+        {15, 40, 7.51, "pinion_rack_dedendum"},
+        {40, 15, 7.51, "wheel_rack_dedendum"},
+        {15, 40, 7.49, NULL},
+        {40, 15, 7.49, NULL},
+    };
+    for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
+        gm_test_context("case %d", (int)i);
+        gm_pair_params params =
+            catalogue_params(cases[i].pinion_teeth, cases[i].wheel_teeth, 2.0, 0.0, 55.0, 0.0, 0.0);
+        params.pinion_rack_dedendum = params.wheel_rack_dedendum = cases[i].dedendum;
+        const char *field = "";
+        const int status = gm_pair_params_check(&params, &field, NULL);
+        GM_ASSERT_INT(status, cases[i].field == NULL ? GM_OK : GM_ERR_GEOMETRY);
+        GM_ASSERT_STRING(field, cases[i].field);
+    }
+}
+
+/* What makes a tip too low is named: the tip alteration where it is given, else the tip. */
+static void a_tip_below_the_base_circle_is_blamed_on_what_was_given(void) {
+    static const struct {
+        double pinion_k, wheel_k, pinion_addendum;
+        const char *field;
+    } cases[] = {
+        {-3.0, NAN, NAN, "pinion_tip_alteration"},
+        {NAN, -4.0, 1.2, "wheel_tip_alteration"},
+        /* 10 teeth: r_b = r - 0.3015 m_n, and x_p = -0.7: h_aP > 0.3985. */
+        {NAN, NAN, 0.39, "pinion_tip_radius"},
+        {NAN, NAN, 0.41, NULL},
+    };
+    for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
+        gm_test_context("case %d", (int)i);
+        gm_pair_params params = catalogue_params(10, 30, 2.0, 0.0, 40.0, -0.7, 0.7);
+        params.pinion_tip_alteration = cases[i].pinion_k;
+        params.wheel_tip_alteration = cases[i].wheel_k;
+        params.pinion_rack_addendum = cases[i].pinion_addendum;
+        params.wheel_rack_addendum = 2.0; /* reaches beyond the pinion's base circle */
+        const char *field = "";
+        (void)gm_pair_params_check(&params, &field, NULL);
+        GM_ASSERT_STRING(field, cases[i].field);
     }
 }
 
@@ -1006,6 +1106,102 @@ static void a_start_below_the_root_form_is_warned_of(void) {
     GM_ASSERT_INT(warnings_of(&params), GM_WARN_PINION_ROOT_FORM | GM_WARN_PINION_START_RADIUS);
 }
 
+/* With the rack given, form and undercut are those of this rack; without, of one that suits the mate's tip. */
+static void the_rack_that_is_given_cuts_the_root(void) {
+    /* r sin^2(20 deg) = 0.1170 * r, so a straight flank down to that depth ends on the base circle: for 20 teeth,
+     * r = 10 m_n, it is 1.1698 m_n deep. A fillet of 0.38 takes 0.38 (1 - sin(20 deg)) = 0.25003 off the dedendum. */
+    const struct {
+        double dedendum, fillet;
+        int undercut;
+    } cases[] = {
+        {1.419, NAN, 0}, {1.421, NAN, 1}, /* 1.1690 and 1.1710 straight */
+        {NAN, 0.0, 1},                    /* 1.25 straight */
+        {NAN, 0.13, 0},                   /* 1.1645 straight */
+        {1.30, 0.19, 1}, {1.30, 0.21, 0}, /* 1.1750 and 1.1618 */
+        {NAN, NAN, 0},                    /* 1.05: the mate's tip, and a little more */
+    };
+    for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
+        for (int wheel = 0; wheel < 2; wheel++) {
+            gm_test_context("case %d, wheel %d", (int)i, wheel);
+            gm_pair_params params =
+                catalogue_params(wheel ? 60 : 20, wheel ? 20 : 60, 2.0, 0.0, 80.0, 0.0, 0.0);
+            params.backlash = 50e-6;
+            *(wheel ? &params.wheel_rack_dedendum : &params.pinion_rack_dedendum) =
+                cases[i].dedendum;
+            *(wheel ? &params.wheel_rack_fillet_radius : &params.pinion_rack_fillet_radius) =
+                cases[i].fillet;
+            const int expected = wheel ? GM_WARN_WHEEL_UNDERCUT : GM_WARN_PINION_UNDERCUT;
+            GM_ASSERT_INT(warnings_of(&params) & (GM_WARN_WHEEL_UNDERCUT | GM_WARN_PINION_UNDERCUT),
+                          cases[i].undercut ? expected : 0);
+        }
+    }
+}
+
+/* The assumed rack reaches 0.05 m_n deeper than the mate's tip: with these tips the form circle is passed by the start. */
+static void the_assumed_rack_suits_the_mates_tip(void) {
+    gm_pair_params params = catalogue_params(40, 50, 2.0, 0.0, 90.0, 0.0, 0.0);
+    params.backlash = 50e-6;
+    const gm_pair p = make_pair(&params);
+    /* rho_Ff = r sin(20 deg) - 1.05 m_n / sin(20 deg) */
+    const double sine = sin(20.0 * degree);
+    const double form = 40e-3 * sine - 1.05 * 2e-3 / sine;
+    params.pinion_start_radius = hypot(p.pinion.base_radius, form - 1e-6);
+    GM_ASSERT_INT(warnings_of(&params), GM_WARN_PINION_ROOT_FORM);
+    params.pinion_start_radius = hypot(p.pinion.base_radius, form + 1e-6);
+    GM_ASSERT_INT(warnings_of(&params), 0);
+    params.pinion_start_radius = NAN;
+    const double wheel_form = 50e-3 * sine - 1.05 * 2e-3 / sine;
+    params.wheel_start_radius = hypot(p.wheel.base_radius, wheel_form - 1e-6);
+    GM_ASSERT_INT(warnings_of(&params), GM_WARN_WHEEL_ROOT_FORM);
+    params.wheel_start_radius = hypot(p.wheel.base_radius, wheel_form + 1e-6);
+    GM_ASSERT_INT(warnings_of(&params), 0);
+}
+
+static void small_tip_clearances_are_warned_of(void) {
+    /* Without shifts the clearance of the pinion's tip is h_fP of the wheel - h_aP of the pinion - k. */
+    gm_pair_params params = catalogue_params(40, 50, 2.0, 0.0, 90.0, 0.0, 0.0);
+    params.backlash = 50e-6;
+    params.pinion_tip_alteration = 0.1499;
+    GM_ASSERT_INT(warnings_of(&params), 0);
+    params.pinion_tip_alteration = 0.1501;
+    GM_ASSERT_INT(warnings_of(&params), GM_WARN_PINION_TIP_CLEARANCE);
+    params.pinion_tip_alteration = NAN;
+    params.wheel_tip_alteration = 0.1499;
+    GM_ASSERT_INT(warnings_of(&params), 0);
+    params.wheel_tip_alteration = 0.1501;
+    GM_ASSERT_INT(warnings_of(&params), GM_WARN_WHEEL_TIP_CLEARANCE);
+}
+
+static void a_tip_alteration_beside_a_tip_is_not_used(void) {
+    const gm_pair_params reference = reference_params(REFERENCE_FACE_WIDTH);
+    const gm_pair expected = make_pair(&reference);
+    gm_pair_params params = reference;
+    params.pinion_tip_alteration = -0.2;
+    GM_ASSERT_INT(warnings_of(&params), GM_WARN_PINION_TIP_ALTERATION);
+    params.wheel_tip_alteration = -0.2;
+    GM_ASSERT_INT(warnings_of(&params),
+                  GM_WARN_PINION_TIP_ALTERATION | GM_WARN_WHEEL_TIP_ALTERATION);
+    const gm_pair p = make_pair(&params);
+    GM_ASSERT(memcmp(&p, &expected, sizeof p) == 0);
+    params.pinion_tip_alteration = NAN;
+    GM_ASSERT_INT(warnings_of(&params), GM_WARN_WHEEL_TIP_ALTERATION);
+}
+
+static void a_little_negative_backlash_is_that_of_rounded_shifts(void) {
+    gm_pair_params params = reference_params(REFERENCE_FACE_WIDTH);
+    const double limit = -1e-4 * params.normal_module;
+    params.backlash = 1.001 * limit;
+    GM_ASSERT_INT(warnings_of(&params), GM_WARN_BACKLASH);
+    params.backlash = 0.999 * limit;
+    GM_ASSERT_INT(warnings_of(&params), GM_WARN_BACKLASH_ROUNDED);
+    params.backlash = -2e-12 * make_pair(&params).transverse_base_pitch;
+    GM_ASSERT_INT(warnings_of(&params), GM_WARN_BACKLASH_ROUNDED);
+    params.backlash = -0.5e-12 * make_pair(&params).transverse_base_pitch; /* rounding of zero */
+    GM_ASSERT_INT(warnings_of(&params), 0);
+    params.backlash = 0.0;
+    GM_ASSERT_INT(warnings_of(&params), 0);
+}
+
 static void short_paths_are_warned_of(void) {
     gm_pair_params params = reference_params(REFERENCE_FACE_WIDTH);
     params.pinion_tip_radius = 45.3e-3;
@@ -1040,6 +1236,9 @@ int main(int argc, char **argv) {
         GM_TEST(a_later_start_shortens_the_path),
         GM_TEST(pitch_angle_carries_two_doubles),
         GM_TEST(every_wrong_value_is_named),
+        GM_TEST(racks_just_inside_the_ranges_are_taken),
+        GM_TEST(a_rack_deeper_than_the_gear_is_refused),
+        GM_TEST(a_tip_below_the_base_circle_is_blamed_on_what_was_given),
         GM_TEST(values_just_inside_the_ranges_are_taken),
         GM_TEST(teeth_far_from_their_path_of_contact_are_refused),
         GM_TEST(tips_that_do_not_reach_each_other_are_refused),
@@ -1052,6 +1251,11 @@ int main(int argc, char **argv) {
         GM_TEST(few_teeth_without_shift_are_undercut),
         GM_TEST(thin_and_pointed_tips_are_warned_of),
         GM_TEST(a_start_below_the_root_form_is_warned_of),
+        GM_TEST(the_rack_that_is_given_cuts_the_root),
+        GM_TEST(the_assumed_rack_suits_the_mates_tip),
+        GM_TEST(small_tip_clearances_are_warned_of),
+        GM_TEST(a_tip_alteration_beside_a_tip_is_not_used),
+        GM_TEST(a_little_negative_backlash_is_that_of_rounded_shifts),
         GM_TEST(short_paths_are_warned_of),
     };
     return gm_test_main("unit.pair", tests, GM_TEST_COUNT(tests), argc, argv);

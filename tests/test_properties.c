@@ -761,7 +761,7 @@ static void spur_jumps_where_a_pair_enters_and_helical_does_not(void) {
     const double delta = 5e-6;
     const double x = spur.backlash / 2 + delta;
     /* A drive pair leaves when the pinion's tip arrives: phase_origin + r_bp phi = tip roll length. */
-    const double event = (spur.pinion.tip_roll_length - spur.phase_origin) / r_bp;
+    const double event = (spur.pinion.tip_roll_length - spur.phase_origin[GM_DRIVE]) / r_bp;
     const double aside = 1e-9 / r_bp;
     const gm_penetration before = at(&spur, NULL, NULL, event - aside, x);
     const gm_penetration after = at(&spur, NULL, NULL, event + aside, x);
@@ -780,7 +780,7 @@ static void spur_jumps_where_a_pair_enters_and_helical_does_not(void) {
     params.backlash = 60e-6;
     params.helix_angle = 1e-4;
     const gm_pair helical = make_pair(&params);
-    const double last = helical.pinion.tip_roll_length - helical.phase_origin;
+    const double last = helical.pinion.tip_roll_length - helical.phase_origin[GM_DRIVE];
     double previous = NAN;
     double first = 0.0;
     for (int k = -10; k <= 20; k++) {

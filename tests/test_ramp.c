@@ -338,7 +338,7 @@ static void edges_along_the_lines_of_contact_are_none(void) {
         GM_ASSERT_INT(gm_position_from_pinion_angle(&pair, 0.003 * k, x, 0.0, &position), GM_OK);
         /* The edge is on line 0 itself, which has t2 = t2_0 + climb t1, and then beside it. */
         const double t2 =
-            (pair.phase_origin + position.phase - pair.pinion.start_roll_length) / roll;
+            (pair.phase_origin[GM_DRIVE] + position.phase - pair.pinion.start_roll_length) / roll;
         const double beside = k % 2 == 0 ? 0.0 : 0.01;
         const gm_flank_ramp ramp = {-rise * (t2 - beside), -rise * climb, rise};
         set_ramps(&flanks, &ramp, 1);
@@ -351,7 +351,8 @@ static void edges_along_the_lines_of_contact_are_none(void) {
         const double path[2] = {pair.line_of_action + 20.0 * UM - pair.wheel.tip_roll_length,
                                 pair.pinion.tip_roll_length};
         for (int i = -4; i <= 4; i++) {
-            const double rho = pair.phase_origin + position.phase + i * pair.transverse_base_pitch;
+            const double rho =
+                pair.phase_origin[GM_DRIVE] + position.phase + i * pair.transverse_base_pitch;
             const double from = fmax(0.0, (path[0] - rho) / pair.face_advance);
             const double to = fmin(1.0, (path[1] - rho) / pair.face_advance);
             const double lacks = rise * (i * pair.transverse_base_pitch / roll + beside);

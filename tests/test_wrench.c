@@ -175,6 +175,46 @@ static void spur_wrench_acts_at_mid_face(void) {
     GM_ASSERT_REL(w.pinion_moment[1], pair.face_width / 2 * w.pinion_force[0], 1e-13);
 }
 
+/* A wider pinion that begins earlier moves z = 0 away from the common face, and with it the point of the moments. */
+static void the_common_face_may_begin_later(void) {
+    gm_pair_params params = reference_params((double)NAN);
+    const double begin = 2e-3;
+    params.wheel_face_width = 20e-3;
+    params.pinion_face_width = 20e-3 + 2.0 * begin;
+    const gm_pair wide = make_pair(&params);
+    params.pinion_face_width = 20e-3;
+    const gm_pair narrow = make_pair(&params);
+    GM_ASSERT_ABS(wide.face_start, begin, 1e-17);
+    const double turned = begin * tan(narrow.base_helix_angle);
+    for (int i = 0; i < 20; i++) {
+        gm_test_context("position %d", i);
+        gm_position of_wide, of_narrow;
+        gm_wrench got, same;
+        const double angle = 0.07 * i;
+        const double x = i % 2 ? 60e-6 : -60e-6;
+        GM_ASSERT_INT(gm_position_from_pinion_angle(&wide, angle, x, 0.0, &of_wide), GM_OK);
+        GM_ASSERT_INT(gm_position_from_pinion_angle(
+                          &narrow, angle + turned / narrow.pinion.base_radius, x, 0.0, &of_narrow),
+                      GM_OK);
+        GM_ASSERT_INT(gm_wrench_3d_at(&wide, NULL, NULL, &of_wide, 1e8, 0.0, &got), GM_OK);
+        GM_ASSERT_INT(gm_wrench_3d_at(&narrow, NULL, NULL, &of_narrow, 1e8, 0.0, &same), GM_OK);
+        /* About a point that lies `begin` lower: plus begin e_z cross force. */
+        const double on_wheel[3] = {same.wheel_moment[0] - begin * same.wheel_force[1],
+                                    same.wheel_moment[1] + begin * same.wheel_force[0],
+                                    same.wheel_moment[2]};
+        const double on_pinion[3] = {same.pinion_moment[0] - begin * same.pinion_force[1],
+                                     same.pinion_moment[1] + begin * same.pinion_force[0],
+                                     same.pinion_moment[2]};
+        GM_ASSERT(fabs(same.wheel_force[1]) > 100.0);
+        for (int k = 0; k < 3; k++) {
+            /* The origin of the lines is certain to some 1e-17 m of the face's 12 mm on the line of action. */
+            GM_ASSERT_ABS(got.wheel_force[k], same.wheel_force[k], 1e-8);
+            GM_ASSERT_ABS(got.wheel_moment[k], on_wheel[k], 1e-9);
+            GM_ASSERT_ABS(got.pinion_moment[k], on_pinion[k], 1e-9);
+        }
+    }
+}
+
 /* Per flank max(0, K p + D rate): a side that parts fast gives nothing, the other all the same. */
 static void teeth_do_not_pull(void) {
     gm_pair_params params = reference_params(REFERENCE_FACE_WIDTH);
@@ -243,6 +283,7 @@ int main(int argc, char **argv) {
         GM_TEST(each_line_of_contact_pushes_where_it_is),
         GM_TEST(right_handed_driving_pinion_is_pushed_along_z),
         GM_TEST(spur_wrench_acts_at_mid_face),
+        GM_TEST(the_common_face_may_begin_later),
         GM_TEST(teeth_do_not_pull),
         GM_TEST(null_pointers_are_refused),
         GM_TEST(absurd_stiffness_and_damping_are_refused),

@@ -130,7 +130,7 @@ static void find_knots(const gm_cache *cache, double knots[KNOTS]) {
     insert_knot(knots, &count, p_bt);
     for (int corner = 0; corner < CORNERS; ++corner) {
         const double origin =
-            pair->phase_origin + (corner % 2 == 0 ? 0.0 : sign * pair->face_advance);
+            pair->phase_origin[cache->side] + (corner % 2 == 0 ? 0.0 : sign * pair->face_advance);
         const double ends[2] = {(corner < 2 ? low.lower : low.upper) - margin,
                                 (corner < 2 ? high.lower : high.upper) + margin};
         for (int end = 0; end < 2; ++end) {

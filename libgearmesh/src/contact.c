@@ -81,7 +81,7 @@ static void find_ends(const gm_pair *pair, const limits *range, gmi_lines *lines
 
 void gmi_lines_find(const gm_pair *pair, int side, const gm_position *position, gmi_lines *lines) {
     const double direction = side == GM_DRIVE ? 1.0 : -1.0;
-    lines->origin = pair->phase_origin + direction * position->phase;
+    lines->origin = pair->phase_origin[side] + direction * position->phase;
     lines->advance = direction * pair->face_advance;
     lines->delta = gmi_ideal_penetration(pair, side, position->offset);
     const limits range = find_limits(pair, lines->delta);
@@ -132,7 +132,7 @@ void gmi_side_sum_ideal(const gm_pair *pair, int side, const gm_position *positi
     const limits range = find_limits(pair, delta);
     const double advance = direction * pair->face_advance;
     const double start =
-        pair->phase_origin + direction * position->phase + (advance < 0.0 ? advance : 0.0);
+        pair->phase_origin[side] + direction * position->phase + (advance < 0.0 ? advance : 0.0);
     const double cover = fabs(advance);
     const double below = range.lower - start;
     const double above = range.upper - start;

@@ -74,7 +74,8 @@ typedef struct gmi_meshing {
         [2]; /* [enum gm_role] where the active profile starts at this distance (m) */
     double path_start, path_end;     /* at zero penetration, from the pinion's tangent point (m) */
     double transverse_contact_ratio; /* (1) */
-    double phase_origin; /* rho_p of tooth 0 at phi_p = 0 where the common face begins (m) */
+    double
+        phase_origin[2]; /* [side] rho_p of tooth 0 at phi_p = 0 where the common face begins (m) */
     double working_pitch_radius[2]; /* [enum gm_role] (m) */
     double tip_clearance[2];        /* [enum gm_role] from this gear's tip to the mate's root (m) */
 } gmi_meshing;

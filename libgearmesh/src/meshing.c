@@ -60,10 +60,13 @@ int gmi_meshing_find(const gm_pair *pair, double center_distance, gmi_meshing *m
     meshing->transverse_contact_ratio =
         (meshing->path_end - meshing->path_start) / pair->transverse_base_pitch;
 
-    /* Zero angles refer to z = 0; the lines of contact begin where the common face does. */
-    meshing->phase_origin =
-        pinion->base_radius * (meshing->working_pressure_angle + pinion->base_half_thickness) +
-        pair->face_start * (pair->face_advance / pair->face_width);
+    /* Zero angles refer to z = 0; the lines of contact begin where the common face does. On the coast side, the mirror
+     * image, they advance the other way. */
+    const double at_zero =
+        pinion->base_radius * (meshing->working_pressure_angle + pinion->base_half_thickness);
+    const double advance = pair->face_start * (pair->face_advance / pair->face_width);
+    meshing->phase_origin[GM_DRIVE] = at_zero + advance;
+    meshing->phase_origin[GM_COAST] = at_zero - advance;
 
     /* On the centre line. */
     const double spread = center_distance / base_sum; /* 1 / cos(alpha_wt) */

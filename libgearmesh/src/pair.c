@@ -506,7 +506,8 @@ static problem derive_path(gm_pair *pair) {
     pair->path_end = nominal.path_end;
     pair->transverse_contact_ratio = nominal.transverse_contact_ratio;
     pair->total_contact_ratio = pair->transverse_contact_ratio + pair->overlap_ratio;
-    pair->phase_origin = nominal.phase_origin;
+    pair->phase_origin[GM_DRIVE] = nominal.phase_origin[GM_DRIVE];
+    pair->phase_origin[GM_COAST] = nominal.phase_origin[GM_COAST];
     pair->pinion_working_pitch_radius = nominal.working_pitch_radius[GM_PINION];
     pair->wheel_working_pitch_radius = nominal.working_pitch_radius[GM_WHEEL];
     pair->pinion_tip_clearance = nominal.tip_clearance[GM_PINION];
@@ -526,7 +527,7 @@ static problem derive_path(gm_pair *pair) {
 
 /* Absurd thicknesses and distances put the flanks of the teeth at zero angles far from where they meet. */
 static problem check_place(const gm_pair *pair, const gm_pair_params *p) {
-    if (fabs(pair->phase_origin - pair->path_start) <=
+    if (fabs(pair->phase_origin[GM_DRIVE] - pair->path_start) <=
         LARGEST_PLACE * pair->transverse_base_pitch) {
         return no_problem;
     }
@@ -553,7 +554,8 @@ static problem check_finite(const gm_pair *pair) {
         pair->line_of_action,
         pair->face_advance,
         pair->backlash,
-        pair->phase_origin,
+        pair->phase_origin[GM_DRIVE],
+        pair->phase_origin[GM_COAST],
         pair->pinion_tip_clearance,
         pair->wheel_tip_clearance,
     };
@@ -667,7 +669,7 @@ static gm_pair pair_nan(void) {
         .overlap_ratio = nan,
         .total_contact_ratio = nan,
         .backlash = nan,
-        .phase_origin = nan,
+        .phase_origin = {nan, nan},
         .pinion_working_pitch_radius = nan,
         .wheel_working_pitch_radius = nan,
         .pinion_tip_clearance = nan,

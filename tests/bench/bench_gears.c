@@ -265,7 +265,7 @@ static void count_pieces(bench_gears *gears, const gm_position *position,
         (params->profile_nodes - 1) / (pair->wheel.tip_roll_length - pair->wheel.start_roll_length);
     for (int k = -20; k <= 20; ++k) {
         const double origin =
-            pair->phase_origin + position->phase + k * pair->transverse_base_pitch;
+            pair->phase_origin[GM_DRIVE] + position->phase + k * pair->transverse_base_pitch;
         const double at_lower = (lower - origin) / pair->face_advance;
         const double at_upper = (upper - origin) / pair->face_advance;
         const double from = fmax(0.0, fmin(at_lower, at_upper));

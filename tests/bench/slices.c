@@ -81,7 +81,8 @@ double slices_sum(const gm_pair *pair, const gm_flanks *pinion, const gm_flanks 
         const double t1 = (slice + 0.5) * per_slices;
         const double v1 = t1 * (s.pinion->face_nodes - 1);
         const face_place place = {(int)v1, v1 - (int)v1};
-        const double origin = pair->phase_origin + position->phase + pair->face_advance * t1;
+        const double origin =
+            pair->phase_origin[GM_DRIVE] + position->phase + pair->face_advance * t1;
         int first = -pair->pinion.teeth / 2;
         int last = first + pair->pinion.teeth - 1;
         if (pairs == SLICES_TOUCHING) {

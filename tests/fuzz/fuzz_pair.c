@@ -31,6 +31,17 @@ static void take_params(fuzz_bytes *bytes, int how, gm_pair_params *params) {
         &params->helix_angle,
         &params->center_distance,
         &params->face_width,
+        &params->pinion_face_width,
+        &params->wheel_face_width,
+        &params->axial_offset,
+        &params->pinion_rack_addendum,
+        &params->wheel_rack_addendum,
+        &params->pinion_rack_dedendum,
+        &params->wheel_rack_dedendum,
+        &params->pinion_rack_fillet_radius,
+        &params->wheel_rack_fillet_radius,
+        &params->pinion_tip_alteration,
+        &params->wheel_tip_alteration,
         &params->pinion_profile_shift,
         &params->wheel_profile_shift,
         &params->backlash,
@@ -82,6 +93,32 @@ static void take_params(fuzz_bytes *bytes, int how, gm_pair_params *params) {
     }
     if (given & 128) {
         params->pinion_normal_thickness = m * fuzz_between(bytes, 0.5, 2.5);
+    }
+
+    const uint8_t drawn = fuzz_byte(bytes);
+    if (drawn & 1) {
+        params->pinion_rack_addendum = fuzz_between(bytes, 0.0, 2.0);
+    }
+    if (drawn & 2) {
+        params->wheel_rack_dedendum = fuzz_between(bytes, 0.0, 2.5);
+    }
+    if (drawn & 4) {
+        params->pinion_rack_fillet_radius = fuzz_between(bytes, 0.0, 1.0);
+    }
+    if (drawn & 8) {
+        params->wheel_tip_alteration = fuzz_between(bytes, -1.0, 0.5);
+    }
+    if (drawn & 16) {
+        params->pinion_face_width = m * fuzz_between(bytes, 0.01, 40.0);
+    }
+    if (drawn & 32) {
+        params->wheel_face_width = m * fuzz_between(bytes, 0.01, 40.0);
+    }
+    if (drawn & 64) {
+        params->axial_offset = m * fuzz_between(bytes, -20.0, 20.0);
+    }
+    if (drawn & 128) {
+        params->face_width = (double)NAN;
     }
 }
 

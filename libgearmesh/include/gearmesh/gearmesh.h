@@ -250,8 +250,9 @@ typedef struct gm_pair {
     double overlap_ratio;             /**< eps_beta >= 0, of the common face (1) */
     double total_contact_ratio;       /**< eps_gamma (1) */
     double backlash;                  /**< transverse, along the line of action (m) */
-    double phase_origin; /**< rho_p of tooth 0 at phi_p = 0 where the common face begins
-                                           = r_bp (alpha_wt + psi_bp) + face_start tan(beta_b) (m) */
+    /** [enum gm_flank_side] rho_p of tooth 0 at phi_p = 0 where the common face begins (m):
+     *  r_bp (alpha_wt + psi_bp) + face_start tan(beta_b) for the drive side, minus for the coast side. */
+    double phase_origin[2];
     double pinion_working_pitch_radius; /**< r_wp = r_bp / cos(alpha_wt) (m) */
     double wheel_working_pitch_radius;  /**< r_ww (m) */
     double pinion_tip_clearance;        /**< c_p, from the pinion's tip to the wheel's root, on the
