@@ -6,6 +6,7 @@
 load 'flanks_style.gp'
 
 data = 'pitch.dat'
+along = pitch_is_arc ? '' : ' cos(α_t)'
 set xrange [-0.7:teeth - 0.3]
 set format x '%.0f'
 if (teeth <= 20) { set xtics 1 }
@@ -14,7 +15,7 @@ set offsets 0, 0, graph 0.05, graph 0.05
 set xzeroaxis lt 1 lw 1.0 lc rgb '#606060'
 set grid ytics lt 1 lw 0.6 lc rgb '#d0d0d0'
 set border 3
-set key horizontal right enhanced samplen 1.5 font ',12'
+set key horizontal right enhanced samplen 1.5 width (pitch_is_arc ? -2 : -9) font ',11'
 set style fill solid 0.85 noborder
 set boxwidth 0.36
 
@@ -27,10 +28,11 @@ do for [format in 'png svg'] {
     set tmargin at screen 0.825
     set bmargin at screen 0.525
     set label 1 title_text at screen 0.025, screen 0.96 left font ',17' noenhanced
-    set label 2 sprintf('%d teeth; + material added on that flank, transverse along the line of action', teeth) \
+    set label 2 sprintf('%d teeth; + material added on that flank, transverse, ', teeth) \
+            . (pitch_is_arc ? 'arc at the reference circle' : 'along the line of action') \
         at screen 0.025, screen 0.92 left font ',11' textcolor rgb grey noenhanced
     set label 3 'Single pitch deviation' at screen 0.025, screen 0.865 left font ',14'
-    set ylabel 'f_{pi}' . um
+    set ylabel 'f_{pi}' . along . um
     set key at screen 0.975, screen 0.868
     set yrange [*:*]
     if (flat_single) { set yrange [-1:1] }
@@ -43,7 +45,7 @@ do for [format in 'png svg'] {
     set bmargin at screen 0.10
     set label 3 'Cumulative pitch deviation' at screen 0.025, screen 0.44
     set xlabel 'tooth'
-    set ylabel 'F_{pi}' . um
+    set ylabel 'F_{pi}' . along . um
     set key at screen 0.975, screen 0.443
     set yrange [*:*]
     if (flat_total) { set yrange [low_drive_um - 1:low_drive_um + 1] }

@@ -51,7 +51,7 @@ do for [format in 'png svg'] {
             set arrow from first -width, first line + 0 to first width, first line + 0 nohead back \
                 lw (rim ? 1.0 : 0.5) lc rgb (rim ? '#909090' : '#d8d8d8')
         }
-        set label "tooth\nF\nfH\nff" at first 0, screen from_top(top + 448) center font ',11' textcolor rgb grey
+        set label "tooth\nrange\nslope\nform" at first 0, screen from_top(top + 448) center font ',11' textcolor rgb grey
         load kind . '_texts.gp' # numbers of each trace
         plot for [side in 'drive coast'] file(kind, side . '_area') using 1:2 with filledcurves closed \
                 fs transparent solid 0.18 noborder lc rgb value(side . '_colour'), \

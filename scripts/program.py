@@ -48,10 +48,13 @@ def require(*packages):
 
 
 def _other_pythons():
-    """Each python3 of the search path and that of the system, but not the one that runs."""
+    """Each python3 of the search path and that of the system, but not the one that runs.
+
+    By name: that of an environment is a link to the one of the system, but finds other packages.
+    """
     folders = [*os.environ.get("PATH", "").split(os.pathsep), *os.defpath.split(os.pathsep)]
     found = [shutil.which("python3", path=folder) for folder in folders if os.path.isabs(folder)]
-    return [python for python in dict.fromkeys(found) if python and not os.path.samefile(python, sys.executable)]
+    return [python for python in dict.fromkeys(found) if python and python != sys.executable]
 
 
 def _has(python, packages):

@@ -24,7 +24,7 @@ unset key
 
 set label title_text at screen 0.025, screen 0.96 left font ',17' noenhanced
 set label 'Peak-to-peak transmission error over torque; grey: the range searched' \
-    . (has_band ? ', blue band: ' . band_text : '') at screen 0.025, screen 0.92 left font ',12' textcolor rgb grey
+    . (has_band ? ', bands: ' . band_text : '') at screen 0.025, screen 0.92 left font ',12' textcolor rgb grey
 if (range_high > range_low) {
     set object rectangle from first range_low, graph 0 to first range_high, graph 1 behind fillcolor rgb '#eeeeee' \
         fillstyle solid noborder
@@ -44,10 +44,10 @@ do for [i = 1:2] {
 do for [format in 'png svg'] {
     eval terminal(format, 'relief', 1400, 1000)
     set output picture . '.' . format
-    plot for [n in (has_band ? 'band' : '')] curves index 2 using 1:2:3 with filledcurves \
-            fs transparent solid 0.22 noborder lc rgb colours[2], \
-        for [n in (has_band && range_low == range_high ? 'bar' : '')] curves index 2 using 1:2:2:3 with yerrorbars \
-            lw 4 pt 0 lc rgb '#90b8d8', \
+    plot for [i = 1:2 * has_band] curves index i + 1 using 1:2:3 with filledcurves \
+            fs transparent solid 0.22 noborder lc rgb colours[i], \
+        for [i = 1:2 * (has_band && range_low == range_high)] curves index i + 1 using 1:2:2:3 with yerrorbars \
+            lw 4 pt 0 lc rgb colours[i], \
         for [i = 1:2] curves index i - 1 using 1:2 with lines lw widths[i] lc rgb colours[i]
     unset output
 }

@@ -183,21 +183,29 @@ def _read_csv(path):
     """The same of a CSV."""
     provenance, names, head_lines = read_head(path)
     used = [names.index(name) for name in _wanted(path, names)]
-    if _is_empty_below(path, head_lines):
-        return [[]], provenance, None
     if _is_cut_off(path):
         raise RunError(f"{path}: its last line must have an end (the file is cut off)")
+    if _count_rows(path, names, head_lines) == 0:
+        return [[]], provenance, None
     try:
-        table = np.loadtxt(path, delimiter=",", comments="#", skiprows=head_lines, usecols=used, ndmin=2, encoding="utf-8")
+        table = np.loadtxt(path, delimiter=",", skiprows=head_lines, usecols=used, ndmin=2, encoding="utf-8")
     except ValueError as error:
         raise RunError(_bad_row(path, names, used, head_lines) or f"{path}: {program.first_line_of(error)}") from error
     return [np.ascontiguousarray(column) for column in table.T], provenance, _incomplete_reason(path)
 
 
-def _is_empty_below(path, head_lines):
-    """Whether there is no row, of which numpy would warn."""
+def _count_rows(path, names, head_lines):
+    """Number of rows below the head; each must have as many fields as the header."""
+    rows = 0
     with open(path, encoding="utf-8", errors="replace") as file:
-        return not any(line.strip() and not line.startswith("#") for line in itertools.islice(file, head_lines, None))
+        for number, line in enumerate(itertools.islice(file, head_lines, None), start=head_lines + 1):
+            if line.startswith("#") or not line.strip():
+                continue
+            rows += 1
+            if line.count(",") != len(names) - 1:
+                raise RunError(f"{path}:{number}: must have {len(names)} columns, as the header has "
+                               f"(got {line.count(',') + 1})")
+    return rows
 
 
 def _is_cut_off(path):
@@ -215,12 +223,13 @@ def _bad_row(path, names, used, head_lines):
             if number <= head_lines or fields == [""]:
                 continue
             if len(fields) != len(names):
-                return f"{path}:{number}: must have {len(names)} columns, as the header has (got {len(fields)})"
+                return None
             for column in used:
                 try:
                     float(fields[column])
                 except ValueError:
-                    return f"{path}:{number}: {names[column]}: must be a number (got '{program.shown(fields[column][:40])}')"
+                    got = program.shown(fields[column][:40])
+                    return f"{path}:{number}: {names[column]}: must be a number (got '{got}')"
     return None
 
 

@@ -231,9 +231,13 @@ class Summary(Folder):
         lines, errors = self.lines_of("gear.csv", "pitch.csv")
         self.assertEqual(errors, "")
         self.assertIn("5 teeth", lines[0])
-        drive = "drive f_p 7.500 um (tooth 0 against 4) F_p 7.500 um (tooth 4 to 0)"
-        coast = "coast f_p 1.750 um (tooth 3 against 2) F_p 1.750 um (tooth 3 to 0)"
+        drive = "drive f_p cos(alpha_t) 7.500 um (tooth 0 against 4) F_p cos(alpha_t) 7.500 um (tooth 4 to 0)"
+        coast = "coast f_p cos(alpha_t) 1.750 um (tooth 3 against 2) F_p cos(alpha_t) 1.750 um (tooth 3 to 0)"
         self.assertEqual([line.split() for line in lines[-2:]], [drive.split(), coast.split()])
+        # As arcs at the reference circle, which f_p and F_p of ISO 1328-1 are: cos(alpha_t) = 0.8.
+        lines, _ = self.lines_of("gear.csv", "pitch.csv", "--pressure-angle", "36.8698976458440")
+        drive = "drive f_p 9.375 um (tooth 0 against 4) F_p 9.375 um (tooth 4 to 0)"
+        self.assertEqual(lines[-2].split(), drive.split())
 
     def test_single_and_total_pitch_of_an_eccentricity(self):
         """A sine of amplitude a: F_p = 2 a, f_p = 2 a sin(pi / z)."""

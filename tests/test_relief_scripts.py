@@ -302,7 +302,11 @@ class Relief(Case):
 
     def worst_um(self, text):
         """Last line of the table: before, after, after within the tolerance."""
-        return [float(value) for value in re.search(r"\n +worst +(\S+) +(\S+) +(\S+)\n", text).groups()]
+        before, _, after, after_within = self.worst_row(text)
+        return before, after, after_within
+
+    def worst_row(self, text):
+        return [float(value) for value in re.search(r"\n +worst +(\S+) +(\S+) +(\S+) +(\S+)\n", text).groups()]
 
     def search(self, params, *arguments):
         result = self.accepted("relief", params, "--output", "r", "--no-pictures", *arguments)
@@ -399,6 +403,36 @@ class Relief(Case):
         contact_ratio = (LENGTH_UM + DEFLECTION_UM + base_pitch_um) / base_pitch_um
         self.assertAlmostEqual(within, DEFLECTION_UM / 2 + 2 / (2 * contact_ratio), delta=0.02)
 
+    def test_the_tolerance_is_told_for_the_design_before_too(self):
+        """Ideal flanks with a wheel 2 um off in its profile slope, which is then all that the tolerance can do."""
+        none = ["--set", "modifications.pinion_tip_relief_um=0", "--set", "modifications.wheel_tip_relief_um=0"]
+        text, _ = self.search(SPUR, *none, "--vary", "pinion_profile_slope_um=0:0.01", "--torques", f"{DESIGN_NM}",
+                              "--starts", "1")
+        self.assertRegex(text, r"before / um +before \+-2 um +after / um +after \+-2 um")
+        before, before_within, after, after_within = self.worst_row(text)
+        self.assertGreater(before_within, before + 0.5)
+        self.assertEqual((before_within, before), (after_within, after))  # the file's own is kept
+        # Before, with a relief; after, without: each has its own tolerance.
+        text, _ = self.search(SPUR, *self.ELSEWHERE, *self.AMOUNTS, "--torques", f"{DESIGN_NM}", "--starts", "1")
+        before, before_within, after, after_within = self.worst_row(text)
+        self.assertGreater(before_within, before)
+        self.assertGreater(before_within, after_within + 5)
+        self.assertIn(f"{before_within:.4g}"[:4], self.read("r_relief.csv"))
+
+    def test_variables_without_bounds_have_those_of_the_load(self):
+        deflection_um = math.ceil(DEFLECTION_UM - 0.01)
+        result = self.accepted("relief", SPUR, "--output", "r", "--no-pictures", "--torques", f"{DESIGN_NM}", "--starts", "1",
+                               "--vary", "pinion_tip_relief_um", "--vary", "wheel_profile_slope_um", "--tolerance", "0")
+        self.assertRegex(result.stdout, rf"pinion_tip_relief_um .* 0 to {2 * deflection_um}\b")
+        self.assertRegex(result.stdout, rf"wheel_profile_slope_um .* -{deflection_um} to {deflection_um}\b")
+
+    def test_a_relief_without_a_range_gets_its_range_searched(self):
+        result = self.accepted("relief", HELICAL, "--output", "r", "--no-pictures", "--torques", "10:20:2", "--starts", "1",
+                               "--vary", "pinion_tip_relief_um=0:4", "--vary", "wheel_root_relief_um=0:3", "--tolerance", "0")
+        self.assertIn("pinion_tip_relief: the file says no range", result.stdout)
+        for name in ("pinion_tip_relief_length_mm", "wheel_root_relief_length_mm"):
+            self.assertRegex(result.stdout, rf"(?m)^  {name} ")
+
     def test_mean_objective_is_lower_in_the_mean_and_higher_at_the_worst(self):
         numbers = {}
         for objective in ("worst", "mean"):
@@ -470,6 +504,7 @@ class Relief(Case):
             (["--vary", "pinion_tip_relief_um=3"], ["KEY=FROM:TO"]),
             (["--vary", "pinion_tip_relief_um=0:9:3"], ["KEY=FROM:TO"]),
             (["--vary", "pinion_tip_relief_um=0:9", "--vary", "pinion_tip_relief_um=0:9"], ["twice"]),
+            (["--vary", "gears.backlash_um"], ["--vary gears.backlash_um: its bounds must be given"]),
             (["--vary", "load.mean_Nm=50:90"], ["--vary load.mean_Nm: is not what a gear is made to", "--torques"]),
             (["--vary", "analysis.positions=5:90"], ["--vary analysis.positions: is not what a gear is made to"]),
             (["--vary", "pinion_tip_releif_um=0:9"], ["modifications.pinion_tip_releif_um: unknown key"]),

@@ -1,0 +1,400 @@
+#!/usr/bin/env python3
+# SPDX-FileCopyrightText: The gearmesh authors
+# SPDX-License-Identifier: BSD-3-Clause
+"""
+What comes to the scripts from outside: names that are commands to gnuplot, locales, packages, and files that are broken.
+
+    test_scripts_outside.py GEARSIM [-v] [name of a test]...
+"""
+import contextlib
+import html
+import importlib.machinery
+import importlib.util
+import io
+import os
+import random
+import re
+import shutil
+import subprocess
+import sys
+import tempfile
+import unittest
+from unittest import mock
+
+sys.dont_write_bytecode = True
+ROOT = os.path.abspath(os.path.join(os.path.dirname(os.path.abspath(__file__)), os.pardir))
+SCRIPTS = os.path.join(ROOT, "scripts")
+sys.path.insert(0, SCRIPTS)
+import program  # noqa: E402
+
+program.require("numpy", "scipy", "h5py")
+
+import h5py  # noqa: E402
+import numpy as np  # noqa: E402
+
+GEARSIM = None
+SPUR = os.path.join(ROOT, "data", "relief", "params.ini")
+FLANKS = "tooth,flank,t1,t2,deviation_um\n" + "".join(
+    f"{tooth},{flank},{t1},{t2},{tooth + t1 * t2}\n"
+    for tooth in (0, 1, 2) for flank in ("drive", "coast") for t1 in (0, 0.5, 1) for t2 in (0, 0.5, 1)
+)
+PITCH = "tooth,flank,deviation_um\n" + "".join(f"{tooth},*,{value}\n" for tooth, value in enumerate([0, 1.5, -1]))
+TRACES = "tooth,flank,trace,face_mm,roll_length_mm,deviation_um\n" + "".join(
+    f"1,{flank},profile,8,{10 + i},{0.5 * i}\n" for flank in ("left", "right") for i in range(5)
+) + "".join(f"1,left,helix,{2 + 3 * i},12,{-0.5 * i}\n" for i in range(5))
+HEAD = "# gearsim\n# gears.pinion_teeth = 20\n# gears.wheel_teeth = 31\n# eigenfrequency_Hz = 300\n"
+COLUMNS = ("time_s", "pinion_speed_rpm", "pinion_angle_rad", "contact_force_N")
+
+# Names of files and folders, and titles: each plants a file named `planted` where gnuplot runs it.
+FOREIGN = (
+    "|touch planted",
+    "<touch planted",
+    "< touch planted",
+    "a|touch planted;b",
+    "`touch planted`",
+    "$(touch planted)",
+    "it's 100 % \"q\" `touch planted`",
+    "x'; system('touch planted'); y = 'z",
+    'x"; system("touch planted"); y = "z',
+    "two\nsystem('touch planted')",
+    "end\\",
+    "-n",
+    "--output",
+    "µm ° ² 歯車",
+    "@palette_of_steps {a} _x^y",
+    "%d %s %n",
+)
+
+
+def run_up(duration_s=4.0, rate_Hz=2048.0):
+    """Columns of a run from 600 to 3000 rpm with the force of tooth order 1."""
+    time_s = np.arange(int(duration_s * rate_Hz)) / rate_Hz
+    speed_rpm = 600.0 + 2400.0 * time_s / duration_s
+    angle_rad = (600.0 * time_s + 1200.0 * time_s**2 / duration_s) * np.pi / 30.0
+    return [time_s, speed_rpm, angle_rad, 100.0 + np.cos(20 * angle_rad) + 0.1 * np.sin(7 * angle_rad)]
+
+
+def run_text(rows=None):
+    file = io.StringIO()
+    np.savetxt(file, np.column_stack(run_up())[:rows], "%.10g", ",")
+    return HEAD + ",".join(COLUMNS) + "\n" + file.getvalue()
+
+
+def module_of(script):
+    loader = importlib.machinery.SourceFileLoader(script, os.path.join(SCRIPTS, script))
+    module = importlib.util.module_from_spec(importlib.util.spec_from_loader(script, loader))
+    loader.exec_module(module)
+    return module
+
+
+MODULES = {script: module_of(script) for script in ("campbell", "flanks", "harris", "relief")}
+
+
+class Case(unittest.TestCase):
+    def setUp(self):
+        folder = tempfile.TemporaryDirectory()
+        self.addCleanup(folder.cleanup)
+        self.addCleanup(os.chdir, ROOT)
+        self.folder = folder.name
+        os.chdir(self.folder)
+
+    def write(self, name, content):
+        with open(name, "wb") as file:
+            file.write(content if isinstance(content, bytes) else content.encode("utf-8"))
+
+    def call(self, script, *arguments):
+        """main() of a script in this process: exit status, standard output, standard error."""
+        stdout, stderr = io.StringIO(), io.StringIO()
+        given = mock.patch.object(sys, "argv", [script, *arguments])
+        with given, contextlib.redirect_stdout(stdout), contextlib.redirect_stderr(stderr):
+            try:
+                status = program.run(MODULES[script].work, MODULES[script].arguments)
+            except SystemExit as end:
+                status = end.code
+        return status, stdout.getvalue(), stderr.getvalue()
+
+    def drawn(self, *call):
+        status, stdout, stderr = self.call(*call)
+        self.assertEqual((status, stderr), (0, ""), call)
+        return stdout
+
+    def refused(self, *call):
+        """Exit status 2 with a message in the grammar of all, and nothing drawn; returns the message."""
+        status, _, stderr = self.call(*call)
+        self.assertEqual(status, 2, (call, stderr))
+        self.assertRegex(stderr, r"^\w+: ", call)
+        self.assertNotIn("Traceback", stderr)
+        self.assertLess(len(stderr), 2000)
+        self.assertEqual([name for name in os.listdir(".") if name.endswith((".png", ".svg"))], [])
+        return stderr
+
+    def assert_nothing_planted(self):
+        for folder, _, files in os.walk(self.folder):
+            self.assertNotIn("planted", files, folder)
+
+
+class ForeignNames(Case):
+    def calls(self, name):
+        """Each script as it is called with this name for its input, its title and what it writes."""
+        self.write("run.csv", run_text())
+        self.write("flanks.csv", FLANKS)
+        self.write("traces.csv", TRACES)
+        quick = ["--gearsim", GEARSIM, "--torques", "20:40:2", "--set", "analysis.positions=5"]
+        title = ["--title=" + name]
+        return [
+            ("campbell", "run.csv", title),
+            ("flanks", "flanks.csv", title),
+            ("flanks", "traces.csv", title),
+            ("harris", SPUR, [*quick, *title, "--vary", "pinion_tip_relief_um=0:20:2"]),
+            ("relief", SPUR, [*quick, *title, "--vary", "pinion_tip_relief_um=0:20", "--starts", "1", "--tolerance", "0"]),
+        ]
+
+    def test_no_name_and_no_title_runs_a_command(self):
+        for number, name in enumerate(FOREIGN):
+            os.mkdir(str(number))
+            os.chdir(str(number))
+            os.mkdir(name)
+            # gearsim for one of the names only, as the others go the same way.
+            for script, source, options in self.calls(name)[: 5 if number in (0, 9) else 3]:
+                shutil.copy(source, name + ".csv")
+                # Half of the names for a folder, the others for files.
+                output, folder = (os.path.join(".", name, "x"), name) if number % 2 else (name, ".")
+                self.drawn(script, *options, "--output=" + output, "--", name + ".csv")
+                self.assertTrue([file for file in os.listdir(folder) if file.endswith(".svg")], name)
+                self.assertEqual([file for file in os.listdir(".") if file.startswith(".gearmesh_")], [])
+            self.assert_nothing_planted()
+            os.chdir(self.folder)
+
+    def test_a_name_becomes_the_title_as_it_is(self):
+        name = "it's 100 % \"q\" `a` <b> & _x^y"
+        self.write(name + ".csv", run_text())
+        self.drawn("campbell", name + ".csv")
+        with open(name + ".svg", encoding="utf-8") as file:
+            svg = file.read()
+        texts = [html.unescape(text) for text in re.findall(r"<text>([^<]*)</text>", svg)]
+        self.assertIn(name, texts)
+
+    def test_names_that_are_no_text_can_be_drawn(self):
+        name = b"caf\xe9 \xff.csv"
+        with open(name, "wb") as file:
+            file.write(FLANKS.encode())
+        result = subprocess.run([sys.executable, os.path.join(SCRIPTS, "flanks"), name], capture_output=True)
+        self.assertEqual((result.returncode, result.stderr), (0, b""))
+        self.assertIn(b"caf\xe9 \xff_topography.png", os.listdir(os.fsencode(self.folder)))
+
+    def test_files_of_the_folder_are_no_start_up_files(self):
+        self.write(".gnuplot", "system('touch planted')\n")
+        self.write("style.gp", "system('touch planted')\n")
+        self.write("numpy.py", "open('planted', 'w')\n")
+        self.write("flanks.csv", FLANKS)
+        result = subprocess.run(
+            [sys.executable, os.path.join(SCRIPTS, "flanks"), "flanks.csv"],
+            env={**os.environ, "HOME": self.folder}, capture_output=True, text=True)
+        self.assertEqual((result.returncode, result.stderr), (0, ""))
+        self.assert_nothing_planted()
+
+
+class Locales(Case):
+    def test_pictures_are_the_same_in_every_locale(self):
+        self.write("flanks.csv", FLANKS)
+        self.write("pitch.csv", PITCH)
+        self.write("run.csv", run_text())
+        shown = {}
+        for locale in ("C", "POSIX", "C.UTF-8", "de_DE.UTF-8", "de_DE.ISO-8859-1", "xx_YY"):
+            environment = {key: value for key, value in os.environ.items() if not key.startswith(("LC_", "LANG"))}
+            for script, names in (("flanks", ["flanks.csv", "pitch.csv"]), ("campbell", ["run.csv"])):
+                result = subprocess.run(
+                    [sys.executable, os.path.join(SCRIPTS, script), *names, "--title", "x"],
+                    env={**environment, "LC_ALL": locale}, capture_output=True)
+                self.assertEqual((result.returncode, result.stderr), (0, b""), locale)
+                for name in sorted(os.listdir(".")):
+                    if name.endswith(".svg"):
+                        with open(name, "rb") as file:
+                            self.assertEqual(shown.setdefault(name, file.read()), shown[name])
+                            file.seek(0)
+                            self.assertEqual(file.read(), shown[name], (locale, name))
+        self.assertIn("µm".encode(), shown["flanks_topography.svg"])
+        self.assertIn("α".encode(), shown["flanks_pitch.svg"])
+
+
+class Packages(Case):
+    def call_with(self, path, *arguments, **environment):
+        """A script under the python3 that a search path has first."""
+        return subprocess.run(
+            [os.path.join(SCRIPTS, "flanks"), *arguments], capture_output=True, text=True,
+            env={**os.environ, "PATH": path, "PYTHONDONTWRITEBYTECODE": "1", **environment})
+
+    def test_a_python_without_numpy_hands_on_to_one_that_has_it(self):
+        self.write("flanks.csv", FLANKS)
+        without = self.python_without_packages()
+        result = self.call_with(os.pathsep.join([without, os.path.dirname(sys.executable), os.environ["PATH"]]),
+                                "flanks.csv", "--no-pictures")
+        self.assertEqual((result.returncode, result.stderr), (0, ""))
+        self.assertIn("drive", result.stdout)
+
+    def test_what_is_missing_is_named(self):
+        without = self.python_without_packages()
+        code = "import sys; sys.path.insert(0, sys.argv[1]); import program; program._other_pythons = list; " \
+               "program.require('numpy')"
+        result = subprocess.run([os.path.join(without, "python3"), "-c", code, SCRIPTS], capture_output=True, text=True)
+        self.assertEqual(result.returncode, 2)
+        self.assertIn("numpy (Debian: python3-numpy)", result.stderr)
+        self.assertEqual(len(result.stderr.splitlines()), 1)
+
+    def python_without_packages(self):
+        """A folder with a python3 that finds no packages but its own: an empty environment."""
+        subprocess.run([sys.executable, "-m", "venv", "--without-pip", "without"], check=True)
+        return os.path.abspath("without/bin")
+
+    def test_missing_gnuplot_is_named(self):
+        self.write("flanks.csv", FLANKS)
+        with mock.patch.dict(os.environ, {"PATH": self.folder}):
+            status, _, stderr = self.call("flanks", "flanks.csv")
+        self.assertEqual(status, 1)
+        self.assertIn("gnuplot is not installed (Debian: gnuplot-nox)", stderr)
+        self.assertEqual(os.listdir("."), ["flanks.csv"])
+
+    def test_nobody_reads_what_is_printed(self):
+        self.write("flanks.csv", FLANKS)
+        read_end, write_end = os.pipe()
+        os.close(read_end)
+        result = subprocess.run([sys.executable, os.path.join(SCRIPTS, "flanks"), "flanks.csv", "--no-pictures"],
+                                stdout=write_end, stderr=subprocess.PIPE, text=True)
+        os.close(write_end)
+        self.assertEqual((result.returncode, result.stderr), (1, ""))
+
+    def test_help_has_an_example_and_options_are_checked(self):
+        for script in MODULES:
+            status, stdout, stderr = self.call(script, "--help")
+            self.assertEqual((status, stderr), (0, ""))
+            self.assertIn("Exit status:", stdout)
+            self.assertRegex(stdout, rf"(?m)^    scripts/{script} ")
+            self.assertEqual(self.call(script)[0], 2)
+            self.assertEqual(self.call(script, "--no-such-option", "x")[0], 2)
+            self.assertIn("there is no such folder", self.call(script, "run.csv", "--output", "no/where")[2])
+
+
+class BrokenFiles(Case):
+    def test_broken_runs_are_refused_by_name(self):
+        good = run_text(400)
+        lines = good.splitlines(keepends=True)
+        header = lines.index(",".join(COLUMNS) + "\n")
+        for text, message in (
+            ("", "no header"),
+            (HEAD, "no header"),
+            ("\n", "no column"),
+            ("# only\n", "no header"),
+            (good[: len(good) // 2], "cut off|must have 4 columns"),
+            (good[:-1], "cut off"),
+            ("".join(lines[: header + 1]), "two rows or more"),
+            ("".join(lines[: header + 2]), "two rows or more"),
+            (good.replace("contact_force_N", "force"), "contact_force_N"),
+            (good + "nan,nan,nan,nan\n", "finite number"),
+            (good + "0.05,700,inf,1\n", "finite number"),
+            (good + "1,2,3\n", r"x.csv:\d+: must have 4 columns"),
+            (good + "1,2,3,x\n", r"x.csv:\d+: contact_force_N: must be a number \(got 'x'\)"),
+            (good + "1,2,3,4,5\n", r"x.csv:\d+: must have 4 columns"),
+            (good + "1,2,3,1e400\n", "finite number"),
+            (good.replace(",6", ";6", 1), "columns|number"),
+            ("\0" * 5000, "no column"),
+            (bytes(range(256)) * 40, "no column|header"),
+            (good.replace("gears.pinion_teeth = 20", "gears.pinion_teeth = 9999999999999999999999"), "pinion_teeth"),
+            (good.replace("gears.pinion_teeth = 20", "gears.pinion_teeth = ²"), "pinion_teeth"),
+            (re.sub(r"(?m)^(\d[^,]*),[^,]*,", r"\1,0,", good), "stands still"),
+        ):
+            self.write("x.csv", text)
+            self.assertRegex(self.refused("campbell", "x.csv"), message, text[:80])
+        self.assertRegex(self.refused("campbell", "nowhere.csv"), "nowhere.csv")
+        self.assertRegex(self.refused("campbell", "."), "cannot be read")
+
+    def test_broken_hdf5_is_refused_by_name(self):
+        def make(**changed):
+            with h5py.File("x.h5", "w") as file:
+                for name, column in zip(COLUMNS, run_up()):
+                    column = changed.get(name, column)
+                    if isinstance(column, str):
+                        file.create_group(name)
+                    elif column is not None:
+                        file[name] = column
+                file.attrs["gears.pinion_teeth"], file.attrs["gears.wheel_teeth"] = changed.get("teeth", ("20", "31"))
+
+        make()
+        with open("x.h5", "rb") as file:
+            whole = file.read()
+        self.assertEqual(self.call("campbell", "x.h5", "--no-pictures")[0], 0)
+        for changed, message in (
+            ({"time_s": None}, "no column time_s"),
+            ({"time_s": "group"}, "time_s: must be a column of numbers"),
+            ({"time_s": np.zeros((4, 4))}, "time_s: must be a column of numbers"),
+            ({"time_s": np.array([b"a", b"b"])}, "time_s: must be a column of numbers"),
+            ({"time_s": np.zeros(3)}, "same length"),
+            ({"time_s": np.zeros(8192)}, "evenly spaced"),
+            ({"contact_force_N": np.full(8192, np.nan)}, "finite number"),
+            ({"teeth": (b"x", np.arange(3))}, "pinion_teeth"),
+        ):
+            make(**changed)
+            self.assertIn(message, self.refused("campbell", "x.h5"))
+        for cut in (9, 100, 2000, len(whole) // 2):
+            self.write("x.h5", whole[:cut])
+            self.assertIn("x.h5", self.refused("campbell", "x.h5"))
+
+    def test_broken_reference_and_parameter_files(self):
+        self.write("run.csv", run_text())
+        self.write("x.csv", "nothing\n")
+        self.refused("campbell", "run.csv", "--reference", "x.csv")
+        self.refused("campbell", "run.csv", "--reference", "nowhere.csv")
+        for content in ("", "[gears", "\0\0", "[gears]\npinion_teeth = x\n"):
+            self.write("x.ini", content)
+            for script in ("harris", "relief"):
+                self.assertIn("x.ini", self.refused(script, "x.ini", "--gearsim", GEARSIM))
+
+    def mutated(self, text, random_):
+        """The text with some bytes changed, taken out, put in twice, or cut off."""
+        data = bytearray(text.encode())
+        for _ in range(random_.randint(1, 4)):
+            at = random_.randrange(len(data) or 1)
+            kind = random_.randrange(7)
+            if kind == 0:
+                data[at : at + 1] = bytes([random_.randrange(256)])
+            elif kind == 1:
+                del data[at : at + random_.randint(1, 60)]
+            elif kind == 2:
+                data[at:at] = data[at : at + random_.randint(1, 200)]
+            elif kind == 3:
+                del data[at:]
+            elif kind == 4:
+                data[at:at] = random_.choice([b"nan", b"-", b"1e999", b",", b"\n", b"#", b"*", b"\r", b"\xff", b"\0", b"e"])
+            elif kind == 5:
+                lines = bytes(data).split(b"\n")
+                random_.shuffle(lines)
+                data = bytearray(b"\n".join(lines))
+            else:
+                data[at : at + 1] = random_.choice([b"0", b"9", b".", b";", b" ", b"-1"])
+        return bytes(data)
+
+    def test_mutated_files_are_drawn_or_refused(self):
+        """Hundreds of broken files: a result or a message, never an exception and never a warning of a library."""
+        random_ = random.Random(1)
+        run = run_text(700)
+        with mock.patch.object(MODULES["campbell"].gnuplot, "draw"):
+            for _ in range(100):
+                self.write("x.csv", self.mutated(run, random_))
+                status, _, stderr = self.call("campbell", "x.csv", "--no-pictures")
+                self.assertIn(status, (0, 2), stderr)
+                self.assertNotIn("Traceback", stderr)
+                self.assertNotIn("Warning", stderr)
+        for text, options in ((FLANKS, []), (TRACES, []), (FLANKS, ["pitch.csv"])):
+            for _ in range(150):
+                self.write("x.csv", self.mutated(text, random_))
+                self.write("pitch.csv", self.mutated(PITCH, random_))
+                status, _, stderr = self.call("flanks", "x.csv", *options, "--no-pictures")
+                self.assertIn(status, (0, 2), stderr)
+                self.assertNotIn("Traceback", stderr)
+                self.assertNotIn("Warning", stderr)
+
+
+if __name__ == "__main__":
+    if len(sys.argv) < 2:
+        sys.exit(f"usage: {sys.argv[0]} GEARSIM [-v] [name of a test]...")
+    GEARSIM = os.path.abspath(sys.argv.pop(1))
+    unittest.main()
