@@ -187,6 +187,23 @@ static void both_ends_of_all_traces_can_be_left_out(void) {
     end();
 }
 
+/* If too little is left, the message says what is left, not what the file reaches over. */
+static void too_much_left_out_is_told_with_what_is_left(void) {
+    for (int face = GM_FACE_I; face <= GM_FACE_II; ++face) {
+        begin();
+        gm_test_context("face %d", face);
+        setup.datum_face = face;
+        options.remove_spikes = 1;
+        rough_state = 6.0;
+        gm_trace *trace = add_trace(1, GM_TRACE_HELIX, 0.0, 201, crowned, -56.0, 0.3, 1e-3);
+        fill(trace, 0, 50, 0.0); /* a quarter, and a fifth may be missing */
+        GM_ASSERT_INT(build(), GM_IO_ERR_FORMAT);
+        assert_error(&error, "traces.csv", trace->line[0], "(got 4.375 to 17.5 mm)",
+                     "must reach from 0 to 17.5 mm");
+        end();
+    }
+}
+
 /* A filter or a new sampling smears the edge of what was filled in. */
 static void a_smeared_edge_is_a_step_all_the_same(void) {
     for (int width = 1; width <= 3; ++width) {
@@ -366,6 +383,7 @@ int main(int argc, char **argv) {
     static const gm_test tests[] = {
         GM_TEST(one_filled_stretch_is_told_by_tooth_and_place),
         GM_TEST(both_ends_of_all_traces_can_be_left_out),
+        GM_TEST(too_much_left_out_is_told_with_what_is_left),
         GM_TEST(a_smeared_edge_is_a_step_all_the_same),
         GM_TEST(ends_of_computed_traces_are_told),
         GM_TEST(a_trace_of_nothing_but_fillings_is_refused),

@@ -100,6 +100,7 @@ static int read_row(const gmi_table *table, int teeth, gmi_row *row) {
     if (status == GM_IO_OK) {
         status = gmi_table_number(table, COLUMN_DEVIATION, MICRO, &row->value);
     }
+
     row->line = table->line;
     row->slot = gmi_slot(tooth, side);
     return status;
@@ -218,6 +219,7 @@ static int check_sizes(const gm_deviations *deviations, gm_io_error *error) {
     if (status != GM_IO_OK) {
         return status;
     }
+
     if (deviations->face_nodes < GMI_SMALLEST_NODES || deviations->face_nodes > GMI_LARGEST_NODES ||
         deviations->profile_nodes < GMI_SMALLEST_NODES ||
         deviations->profile_nodes > GMI_LARGEST_NODES) {
@@ -226,6 +228,7 @@ static int check_sizes(const gm_deviations *deviations, gm_io_error *error) {
             "deviations: must be on 2 to %d nodes along each direction (got %d x %d)",
             GMI_LARGEST_NODES, deviations->face_nodes, deviations->profile_nodes);
     }
+
     if (deviations->set_count < 0 || (deviations->set_count > 0 && deviations->sets == NULL)) {
         return gmi_error_set(
             error, GM_IO_ERR_OPTION, 0,
@@ -245,6 +248,7 @@ static int check_set(const gm_deviations *deviations, int index, gm_io_error *er
                              index, deviations->teeth - 1, set->tooth, set->side,
                              set->values ? "" : " without values");
     }
+
     for (size_t node = 0; node < node_count(deviations); ++node) {
         if (!isfinite(set->values[node])) {
             return gmi_error_set(

@@ -48,6 +48,7 @@ static void count_positions(positions *seen, const gmi_rows *rows, int slot, int
         if (row->slot != slot) {
             continue;
         }
+
         const double position = row->position[axis];
         ++seen->histogram[bucket_of(position)];
         if (seen->lowest == NULL || position < seen->lowest->position[axis]) {
@@ -116,6 +117,7 @@ static int check_axis(const positions *seen, int nodes, int axis, gm_io_error *e
                              "position %s = %s)",
                              name, axis_name[axis], position_text(number, low));
     }
+
     if (low > GMI_POSITION_TOLERANCE || high < 1.0 - GMI_POSITION_TOLERANCE) {
         const int is_low = low > GMI_POSITION_TOLERANCE;
         return gmi_error_set(
@@ -123,6 +125,7 @@ static int check_axis(const positions *seen, int nodes, int axis, gm_io_error *e
             "%s: must be a grid from 0 to 1 (got %s = %s as %s position)", name, axis_name[axis],
             position_text(number, is_low ? low : high), is_low ? "first" : "last");
     }
+
     if (nodes < 2 || nodes > GMI_LARGEST_NODES) {
         return gmi_error_set(error, GM_IO_ERR_FORMAT, seen->lowest->line,
                              "%s: positions %s must be 2 to %d uniform ones from 0 to 1 (got some "

@@ -191,6 +191,7 @@ int gmi_pitch_check(const gm_pitch *pitch, gm_io_error *error) {
         return gmi_error_set(error, GM_IO_ERR_NULL, 0,
                              "pitch deviations: no array must be NULL (got one that is)");
     }
+
     for (int tooth = 0; tooth < pitch->teeth; ++tooth) {
         if (!isfinite(pitch->drive[tooth]) || !isfinite(pitch->coast[tooth])) {
             return gmi_error_set(

@@ -54,6 +54,7 @@ static int read_characters(gmi_table *table, int c, size_t *length) {
                 GMI_LINE_LENGTH);
         }
     }
+
     return ferror(table->file) ? gmi_error_file(table->error, table->line, "read", errno) : 0;
 }
 
@@ -355,6 +356,7 @@ int gmi_table_tooth(const gmi_table *table, int column, int teeth, int *tooth) {
         *tooth = GMI_ALL;
         return GM_IO_OK;
     }
+
     int value = 0;
     if (!parse_whole_number(field, &value) || value >= teeth) {
         char quoted[GMI_QUOTE_SIZE];

@@ -71,6 +71,7 @@ int gmi_design_make(gmi_design *design, const gm_modifications *modifications,
     if (status != GM_IO_OK || rest.count == 0) {
         return status;
     }
+
     design->values = calloc(node_count(design), sizeof *design->values);
     if (design->values == NULL) {
         return gmi_error_memory(error);

@@ -182,6 +182,7 @@ static int set_pitch(const builder *build, int side, const double *deviation, co
         if (!set[tooth]) {
             continue;
         }
+
         const int status = gm_flanks_set_pitch(build->flanks, side, tooth,
                                                build->options->scale * deviation[tooth]);
         if (status != GM_OK) {
@@ -383,6 +384,7 @@ int gm_flanks_build(gm_flanks *flanks, void **memory, int teeth, const gm_deviat
     if (flanks == NULL || memory == NULL) {
         return gmi_error_null(error);
     }
+
     gm_flanks_options defaults;
     gm_flanks_options_default(&defaults);
     builder build = {.flanks = flanks,

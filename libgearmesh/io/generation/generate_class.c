@@ -116,6 +116,7 @@ static int solve_positions(positions *of) {
     if (total_with(of, low) > of->total) {
         return 0;
     }
+
     for (int i = 0; i < HALVINGS; ++i) {
         const double middle = 0.5 * (low + high);
         if (total_with(of, middle) <= of->total) {
@@ -217,6 +218,7 @@ static mixture as_far_as_fits(const trace *of, mixture from, mixture to) {
     if (fits(of, to)) {
         return to;
     }
+
     double low = 0.0;
     double high = 1.0;
     for (int i = 0; i < HALVINGS; ++i) {
@@ -263,6 +265,8 @@ static double full_form(const trace *of) {
     while (values_of(of, (mixture){0.0, high}).form < of->limit.form) {
         high *= 2.0;
     }
+
+    /* Then halve between an amount that is within the limit and one that is beyond. */
     for (int i = 0; i < HALVINGS; ++i) {
         const double middle = 0.5 * (low + high);
         if (values_of(of, (mixture){0.0, middle}).form <= of->limit.form) {

@@ -75,6 +75,8 @@ static int check_trace(const gmi_generator *make, const char *name, const gm_tra
     if (!(count->low >= 0.0 && count->low <= count->high && isfinite(count->high))) {
         return fail(make, name, "numbers of waves from low to high, not below 0");
     }
+
+    /* A wave of no amplitude needs no nodes. */
     if (trace->wave.high > 0.0 && GMI_NODES_PER_WAVE * count->high > nodes - 1) {
         return gmi_error_set(make->error, GM_IO_ERR_OPTION, 0,
                              "%s: must have %d nodes per wave (got too many waves for %d nodes)",

@@ -57,6 +57,7 @@ static int place_point(builder *build, int row) {
                              "is in line %ld; are there two teeth with this number?)",
                              point->tooth, gmi_flank_word(point->flank), first->line);
     }
+
     if (!(fabs(point->value) < 1.0)) { /* no overflow on the way to a message */
         return gmi_error_set(build->error, GM_IO_ERR_FORMAT, point->line,
                              "the pitch of tooth %d: must be a deviation, of some um (got one that "
@@ -329,6 +330,7 @@ int gm_measured_pitch_build(gm_pitch *pitch, gm_measured_pitch_report *report,
     if (pitch == NULL || measured == NULL || measurement == NULL || pair == NULL) {
         return gmi_error_null(error);
     }
+
     builder build;
     memset(&build, 0, sizeof build);
     build.measured = measured;

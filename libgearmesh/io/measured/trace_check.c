@@ -99,6 +99,7 @@ int gmi_remove_spikes(gmi_measured *trace, const gm_traces_options *options, dou
         if (marks[k] > 0.0 && !options->remove_spikes) {
             return fail_spike(trace, k, marks[k], error);
         }
+
         if (marks[k] > 0.0) {
             ++report->spikes;
             continue;

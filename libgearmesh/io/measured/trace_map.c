@@ -129,6 +129,8 @@ static int map_place(const gmi_mapping *map, const gm_trace *trace, double *at) 
     if (*at > 0.0) {
         return fail_roll(map, trace, 0, trace->at, trace->at);
     }
+
+    /* Below the start of the active profile no flank is modelled. */
     char name[GMI_TRACE_NAME_SIZE];
     char got[GMI_NUMBER_SIZE];
     char low[GMI_NUMBER_SIZE];
@@ -166,6 +168,15 @@ static int map_points(const gmi_mapping *map, const gm_trace *trace, gmi_measure
     return GM_IO_OK;
 }
 
+/* The length in the file that t stands for: what map_points() has done, undone. */
+static double length_of(const gmi_mapping *map, const gmi_measured *trace, double t) {
+    const gm_gear *gear = map->gear;
+    if (trace->kind == GM_TRACE_PROFILE) {
+        return gear->start_roll_length + t * (gear->tip_roll_length - gear->start_roll_length);
+    }
+    return (trace->turned ? 1.0 - t : t) * gear->face_width;
+}
+
 /* What a trace leaves out at its ends is held, up to a limit. */
 static int check_cover(const gmi_mapping *map, const gmi_measured *trace) {
     const double from = trace->t[0];
@@ -175,10 +186,13 @@ static int check_cover(const gmi_mapping *map, const gmi_measured *trace) {
         return GM_IO_OK;
     }
 
-    /* The message gives the lengths as they stand in the file. */
+    /* The message gives the lengths as they stand in the file, of the points that are left. */
+    const double first = length_of(map, trace, trace->turned ? to : from);
+    const double last = length_of(map, trace, trace->turned ? from : to);
     const gm_trace *raw = trace->from;
     const int profile = raw->kind == GM_TRACE_PROFILE;
     const double full = profile ? map->gear->tip_roll_length : map->gear->face_width;
+
     char name[GMI_TRACE_NAME_SIZE];
     char got[2][GMI_NUMBER_SIZE];
     char right[2][GMI_NUMBER_SIZE];
@@ -193,9 +207,8 @@ static int check_cover(const gmi_mapping *map, const gmi_measured *trace) {
         gmi_trace_name(name, raw),
         gmi_number_text(right[0], profile ? map->gear->start_roll_length : 0.0, 3, 5),
         gmi_number_text(right[1], full, 3, 5), profile ? "roll length" : "from the datum face",
-        gmi_number_text(share, limit, 0, 3), gmi_number_text(got[0], raw->position[0], 3, 5),
-        gmi_number_text(got[1], raw->position[raw->count - 1], 3, 5),
-        gmi_length_hint(raw->position[raw->count - 1], full));
+        gmi_number_text(share, limit, 0, 3), gmi_number_text(got[0], first, 3, 5),
+        gmi_number_text(got[1], last, 3, 5), gmi_length_hint(last, full));
 }
 
 static int map_trace(const gmi_mapping *map, const gm_trace *trace, gmi_measured *to) {

@@ -171,6 +171,7 @@ static void report_constant(builder *build, int kind) {
             ++varying;
             continue;
         }
+
         ++constant;
         first = index < first ? index : first;
     }
@@ -340,6 +341,8 @@ static int check_flank(const builder *build, int begin, int profiles, int helice
             "%s: must be one of at most %d of a kind on its flank (got %d profiles and %d helices)",
             gmi_trace_name(name, trace->from), GMI_MAX_TRACES, profiles, helices);
     }
+
+    /* Helices alone have no levels that fit each other: nothing crosses them. */
     if (profiles == 0 && helices > 1) {
         return gmi_error_set(build->error, GM_IO_ERR_FORMAT, gmi_measured_line(trace),
                              "%s: must have a profile trace beside it, or be the only helix trace "
@@ -479,6 +482,8 @@ int gm_traces_build(gm_deviations *deviations, gm_traces_report *report, const g
     if (deviations == NULL || traces == NULL || measurement == NULL || pair == NULL) {
         return gmi_error_null(error);
     }
+
+    /* What all steps share. */
     builder build;
     memset(&build, 0, sizeof build);
     build.traces = traces;
@@ -491,6 +496,8 @@ int gm_traces_build(gm_deviations *deviations, gm_traces_report *report, const g
         build.options = *options;
     }
     build.error = error;
+
+    /* The mapping fills its part of the same report. */
     build.map = (gmi_mapping){.measurement = measurement,
                               .pair = pair,
                               .gear = build.gear,

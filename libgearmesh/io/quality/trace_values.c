@@ -43,6 +43,8 @@ gmi_line gmi_trace_mean_line(const double *trace, int nodes, const gmi_range *ra
     const double length = range->to - range->from;
     const double middle = 0.5 * (range->from + range->to);
     moments of = {0.0, 0.0};
+
+    /* Piece by piece: from the begin of the range to its first node, from node to node, and to its end. */
     double t0 = range->from;
     double f0 = trace_at(trace, nodes, t0);
     for (int node = 1; node < nodes && node_at(node, nodes) < range->to; ++node) {
