@@ -540,7 +540,7 @@ class Parts(unittest.TestCase):
                 text = file.read()
             self.assertIn("type = dynamic", text)  # what the file is for stays
             self.assertIn("mean_Nm = 7 ", text)
-            path = re.search(r"(?m)^pinion = (\S+)", text)[1]
+            path = re.search(r"(?m)^pinion = (.+\.csv)", text)[1]
             beside = os.path.join(os.path.dirname(REAL_FLANKS), "pinion_flanks.csv")
             self.assertTrue(os.path.samefile(os.path.join(folder, path), beside))
             check = subprocess.run([GEARSIM, os.path.join(folder, "x.ini"), "--check"], capture_output=True, text=True)

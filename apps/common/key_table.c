@@ -232,7 +232,7 @@ static int check_range(const key_spec *key, double value, const char *text, char
 }
 
 static int assign_number(const key_spec *key, double *target, const char *text, char *fault) {
-    double value;
+    double value = 0.0;
 
     if (read_number(text, &value, fault) || check_range(key, value, text, fault)) {
         return 1;
@@ -242,7 +242,7 @@ static int assign_number(const key_spec *key, double *target, const char *text, 
 }
 
 static int assign_count(const key_spec *key, int *target, const char *text, char *fault) {
-    double value;
+    double value = 0.0;
 
     if (read_number(text, &value, fault)) {
         return 1;

@@ -267,7 +267,7 @@ static int keep_old(result_file *file) {
     int error = EEXIST;
 
     for (int i = 0; i < OLD_NAMES && error == EEXIST; ++i) {
-        char ending[NUMBER_SIZE];
+        char ending[sizeof part_ending + NUMBER_SIZE];
         snprintf(ending, sizeof ending, "%s.%d", part_ending, i);
         char *name = with_ending(file->path, ending);
         error = name != NULL ? name_old(file->path, name) : ENOMEM;

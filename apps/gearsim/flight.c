@@ -128,15 +128,15 @@ static double noise_acceleration(const gear_model *model) {
 static flight flight_from(const gear_model *model, double time, const double state[],
                           long *evaluations) {
     const load_signal *load = &model->load;
-    const flight free = {
+    flight free = {
         .model = model,
         .start = model_motion(model, time, state),
         .acceleration = model->drive_to_offset + model->torque_to_offset * load->mean,
         .noise_acceleration = noise_acceleration(model),
         .pinion_acceleration = model->drive_to_offset / model->gears->pair.pinion.base_radius,
-        .evaluations = evaluations,
     };
 
+    free.evaluations = evaluations;
     return free;
 }
 
