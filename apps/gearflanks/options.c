@@ -2,6 +2,7 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 
 #include "options.h"
+#include "command_line.h"
 #include "paths.h"
 #include "result_file.h"
 #include "scatter.h"
@@ -65,6 +66,7 @@ static const char help[] =
     "                         [they are errors]\n"
     "\n"
     "  --help, --version\n"
+    "  --                     all that follows is no option\n"
     "\n"
     "Options may be written `--option value` or `--option=value`. Paths are relative to the "
     "working\n"
@@ -82,11 +84,6 @@ void options_print_help(FILE *stream) {
     fprintf(stream, "%s\n", usage);
     fputs(help, stream);
     key_table_print(&scatter_keys, stream);
-}
-
-static int refuse(const flanks_options *options, const char *text, const char *what) {
-    message_of_program(options->messages, "%s%s\n%s", text, what, usage);
-    return EXIT_BAD_INPUT;
 }
 
 /* ---------------------------------------------------------------------------------------------
@@ -145,6 +142,7 @@ static int split(const char *text, char mark, char parts[2][32]) {
 
 typedef struct parsing {
     flanks_options *options;
+    command_line line;
     int has_gear;
     int has_share;
     const char *odd[FLANKS_TASKS]; /* an option that a task has no use for, NULL = none */
@@ -259,24 +257,46 @@ static int take_held(parsing *state, const char *value) {
     return parse_number(value, &state->options->from_traces.held_limit);
 }
 
-static void take_evaluate(parsing *state) {
+static int take_evaluate(parsing *state, const char *value) {
+    (void)value;
     state->options->task = FLANKS_EVALUATE;
+    return 1;
 }
 
-static void take_teeth(parsing *state) {
+static int take_teeth(parsing *state, const char *value) {
+    (void)value;
     state->options->teeth = 1;
+    return 1;
 }
 
-static void take_transverse(parsing *state) {
+static int take_transverse(parsing *state, const char *value) {
+    (void)value;
     state->options->measurement.transverse = 1;
+    return 1;
 }
 
-static void take_hollow(parsing *state) {
+static int take_hollow(parsing *state, const char *value) {
+    (void)value;
     state->options->from_traces.hollow = 1;
+    return 1;
 }
 
-static void take_remove_spikes(parsing *state) {
+static int take_remove_spikes(parsing *state, const char *value) {
+    (void)value;
     state->options->from_traces.remove_spikes = 1;
+    return 1;
+}
+
+static int take_help(parsing *state, const char *value) {
+    (void)value;
+    state->options->task = FLANKS_HELP;
+    return 1;
+}
+
+static int take_version(parsing *state, const char *value) {
+    (void)value;
+    state->options->task = FLANKS_VERSION;
+    return 1;
 }
 
 /* Tasks that have a use for an option. */
@@ -288,43 +308,41 @@ enum use {
 };
 
 static const struct {
-    const char *name;
-    int (*take)(parsing *state, const char *value);
+    option_spec spec;
+    int (*take)(parsing *state, const char *value); /* 0 = the value is wrong */
     int use;
-    const char *right; /* what would be right */
-} valued[] = {
-    {"--gear", take_gear, FOR_EACH, "pinion or wheel"},
-    {"--flanks", take_deviations, FOR_EACH, "a file name"},
-    {"--pitch", take_pitch, FOR_EACH, "a file name"},
-    {"--class", take_class, FOR_MAKING, "1 to 11"},
-    {"--scatter", take_scatter, FOR_MAKING, "a file name"},
-    {"--seed", take_seed, FOR_MAKING, "0 to 18446744073709551615"},
-    {"--share", take_share, FOR_MAKING, "0.8 to 0.99"},
-    {"--nodes", take_nodes, FOR_MAKING | FOR_MEASURED, "such as 21x31"},
-    {"--wave", take_wave, FOR_MAKING, "ORDER:UM such as 67:0.5, at most 100 times"},
-    {"--traces", take_traces, FOR_MEASURED, "a file name"},
-    {"--measured-pitch", take_measured_pitch, FOR_MEASURED, "a file name"},
-    {"--datum-face", take_datum_face, FOR_MEASURED, "I or II"},
-    {"--count", take_count, FOR_MEASURED, "clockwise or counterclockwise"},
-    {"--first-number", take_first_number, FOR_MEASURED, "0 or 1"},
-    {"--first-tooth", take_first_tooth, FOR_MEASURED, "a tooth of the gear, 0 or more"},
-    {"--pitch-diameter", take_pitch_diameter, FOR_MEASURED, "a diameter in mm"},
-    {"--held", take_held, FOR_MEASURED, "0 to 0.45"},
+} options_known[] = {
+    {{"--gear", "pinion or wheel"}, take_gear, FOR_EACH},
+    {{"--flanks", "a file name"}, take_deviations, FOR_EACH},
+    {{"--pitch", "a file name"}, take_pitch, FOR_EACH},
+    {{"--class", "1 to 11"}, take_class, FOR_MAKING},
+    {{"--scatter", "a file name"}, take_scatter, FOR_MAKING},
+    {{"--seed", "0 to 18446744073709551615"}, take_seed, FOR_MAKING},
+    {{"--share", "0.8 to 0.99"}, take_share, FOR_MAKING},
+    {{"--nodes", "such as 21x31"}, take_nodes, FOR_MAKING | FOR_MEASURED},
+    {{"--wave", "ORDER:UM such as 67:0.5, at most 100 times"}, take_wave, FOR_MAKING},
+    {{"--traces", "a file name"}, take_traces, FOR_MEASURED},
+    {{"--measured-pitch", "a file name"}, take_measured_pitch, FOR_MEASURED},
+    {{"--datum-face", "I or II"}, take_datum_face, FOR_MEASURED},
+    {{"--count", "clockwise or counterclockwise"}, take_count, FOR_MEASURED},
+    {{"--first-number", "0 or 1"}, take_first_number, FOR_MEASURED},
+    {{"--first-tooth", "a tooth of the gear, 0 or more"}, take_first_tooth, FOR_MEASURED},
+    {{"--pitch-diameter", "a diameter in mm"}, take_pitch_diameter, FOR_MEASURED},
+    {{"--held", "0 to 0.45"}, take_held, FOR_MEASURED},
+    {{"--evaluate", NULL}, take_evaluate, FOR_EVALUATING},
+    {{"--teeth", NULL}, take_teeth, FOR_EVALUATING},
+    {{"--transverse", NULL}, take_transverse, FOR_MEASURED},
+    {{"--hollow", NULL}, take_hollow, FOR_MEASURED},
+    {{"--remove-spikes", NULL}, take_remove_spikes, FOR_MEASURED},
+    {{"--help", NULL}, take_help, FOR_EACH},
+    {{"--version", NULL}, take_version, FOR_EACH},
 };
 
-enum { VALUED_COUNT = sizeof valued / sizeof valued[0] };
+enum { OPTION_COUNT = sizeof options_known / sizeof options_known[0] };
 
-static const struct {
-    const char *name;
-    void (*take)(parsing *state);
-    int use;
-} flags[] = {
-    {"--evaluate", take_evaluate, FOR_EVALUATING},         {"--teeth", take_teeth, FOR_EVALUATING},
-    {"--transverse", take_transverse, FOR_MEASURED},       {"--hollow", take_hollow, FOR_MEASURED},
-    {"--remove-spikes", take_remove_spikes, FOR_MEASURED},
-};
-
-enum { FLAG_COUNT = sizeof flags / sizeof flags[0] };
+static const option_spec *option_at(int which) {
+    return &options_known[which].spec;
+}
 
 /* Notes for which tasks an option is odd. */
 static void note_use(parsing *state, const char *name, int use) {
@@ -335,70 +353,37 @@ static void note_use(parsing *state, const char *name, int use) {
     }
 }
 
-static int find_valued(const char *text) {
-    const size_t length = strcspn(text, "=");
+static enum option_result take_option(void *user, int which, char *value) {
+    parsing *state = user;
 
-    for (int i = 0; i < VALUED_COUNT; ++i) {
-        if (strlen(valued[i].name) == length && strncmp(valued[i].name, text, length) == 0) {
-            return i;
-        }
+    if (!options_known[which].take(state, value)) {
+        return OPTION_WRONG;
     }
-    return -1;
+    note_use(state, options_known[which].spec.name, options_known[which].use);
+
+    /* --help and --version win over whatever follows. */
+    return state->options->task >= FLANKS_HELP ? OPTION_LAST : OPTION_TAKEN;
 }
 
-/* Takes a flag; 0 = there is none of this name. */
-static int take_flag(parsing *state, const char *text) {
-    for (int i = 0; i < FLAG_COUNT; ++i) {
-        if (strcmp(text, flags[i].name) == 0) {
-            flags[i].take(state);
-            note_use(state, flags[i].name, flags[i].use);
-            return 1;
-        }
-    }
-    return 0;
-}
+/* ---------------------------------------------------------------------------------------------
+ * What must fit together
+ * ------------------------------------------------------------------------------------------- */
 
-/* Takes the option at texts[*index], and its value from there or from the next text. */
-static int take_option(parsing *state, int count, char *const texts[], int *index) {
-    const char *text = texts[*index];
-    const char *value = strchr(text, '=');
-    const int which = find_valued(text);
-
-    if (which < 0) {
-        return take_flag(state, text) ? 0 : refuse(state->options, "unknown option ", text);
-    }
-    if (value == NULL && *index + 1 >= count) {
-        return refuse(state->options, "a value is missing behind ", text);
-    }
-    value = value != NULL ? value + 1 : texts[++*index];
-    if (!valued[which].take(state, value)) {
-        message_of_program(state->options->messages, "%s: must be %s (got '%s')",
-                           valued[which].name, valued[which].right, value);
-        return EXIT_BAD_INPUT;
-    }
-    note_use(state, valued[which].name, valued[which].use);
-    return 0;
-}
-
-static int take_parameters(parsing *state, const char *path) {
-    if (state->options->parameters != NULL) {
-        return refuse(state->options, "a second INI file, expected one: ", path);
-    }
-    state->options->parameters = path;
-    return *path != '\0' ? 0 : refuse(state->options, "the name of the INI file is empty", "");
+static int refuse(const parsing *state, const char *text, const char *what) {
+    return command_line_refuse(&state->line, text, what);
 }
 
 static int check_way(const parsing *state) {
     const flanks_options *options = state->options;
 
     if (options->generate.quality_class == 0 && options->scatter == NULL) {
-        return refuse(state->options, "--class or --scatter is missing", "");
+        return refuse(state, "--class or --scatter is missing", "");
     }
     if (options->generate.quality_class != 0 && options->scatter != NULL) {
-        return refuse(state->options, "--class and --scatter exclude each other", "");
+        return refuse(state, "--class and --scatter exclude each other", "");
     }
     if (state->has_share && options->scatter != NULL) {
-        return refuse(state->options, "not together with --scatter: ", "--share");
+        return refuse(state, "not together with --scatter: ", "--share");
     }
     return 0;
 }
@@ -415,19 +400,20 @@ static int check_place(const flanks_options *options, const char *output) {
 }
 
 /* Two files are written, and none of those that are read. */
-static int check_outputs(const flanks_options *options) {
+static int check_outputs(const parsing *state) {
+    const flanks_options *options = state->options;
     const char *const inputs[] = {options->parameters, options->scatter, options->traces,
                                   options->measured_pitch};
     const char *const outputs[] = {options->deviations, options->pitch};
 
     if (outputs[0] != NULL && outputs[1] != NULL && is_same_place(outputs[0], outputs[1])) {
-        return refuse(options, "--flanks and --pitch are the same file: ", outputs[0]);
+        return refuse(state, "--flanks and --pitch are the same file: ", outputs[0]);
     }
     for (int i = 0; i < 2; ++i) {
         for (int k = 0; k < 4; ++k) {
             if (outputs[i] != NULL && inputs[k] != NULL &&
                 result_file_would_replace(outputs[i], inputs[k])) {
-                return refuse(options, "an input would be overwritten: ", inputs[k]);
+                return refuse(state, "an input would be overwritten: ", inputs[k]);
             }
         }
     }
@@ -443,38 +429,42 @@ static int check_making(const parsing *state) {
     const int status = check_way(state);
 
     if (status == 0 && (state->options->deviations == NULL || state->options->pitch == NULL)) {
-        return refuse(state->options, "--flanks and --pitch are both needed to make flanks", "");
+        return refuse(state, "--flanks and --pitch are both needed to make flanks", "");
     }
-    return status == 0 ? check_outputs(state->options) : status;
+    return status == 0 ? check_outputs(state) : status;
 }
 
 /* What was measured and what is written belong together. */
-static int check_measured(const flanks_options *options) {
+static int check_measured(const parsing *state) {
+    const flanks_options *options = state->options;
+
     if ((options->traces != NULL) != (options->deviations != NULL)) {
-        return refuse(options, "--traces and --flanks go together: missing is ",
+        return refuse(state, "--traces and --flanks go together: missing is ",
                       options->traces != NULL ? "--flanks" : "--traces");
     }
     if ((options->measured_pitch != NULL) != (options->pitch != NULL)) {
-        return refuse(options, "--measured-pitch and --pitch go together: missing is ",
+        return refuse(state, "--measured-pitch and --pitch go together: missing is ",
                       options->pitch != NULL ? "--measured-pitch" : "--pitch");
     }
     if (options->measurement.datum_face == 0) {
-        return refuse(options, "--datum-face is missing", "");
+        return refuse(state, "--datum-face is missing", "");
     }
     if (options->measurement.counting == 0) {
-        return refuse(options, "--count is missing", "");
+        return refuse(state, "--count is missing", "");
     }
-    return check_outputs(options);
+    return check_outputs(state);
 }
 
-static int refuse_odd(const flanks_options *options, const char *option) {
-    if (options->task == FLANKS_EVALUATE) {
-        return refuse(options, "not together with --evaluate: ", option);
+static int refuse_odd(const parsing *state, const char *option) {
+    const enum flanks_task task = state->options->task;
+
+    if (task == FLANKS_EVALUATE) {
+        return refuse(state, "not together with --evaluate: ", option);
     }
-    if (options->task == FLANKS_MEASURED) {
-        return refuse(options, "not together with --traces or --measured-pitch: ", option);
+    if (task == FLANKS_MEASURED) {
+        return refuse(state, "not together with --traces or --measured-pitch: ", option);
     }
-    return refuse(options,
+    return refuse(state,
                   strcmp(option, "--teeth") == 0
                       ? "only together with --evaluate: "
                       : "only together with --traces or --measured-pitch: ",
@@ -485,16 +475,16 @@ static int check(const parsing *state) {
     const flanks_options *options = state->options;
 
     if (options->parameters == NULL) {
-        return refuse(state->options, "an INI file is missing", "");
+        return refuse(state, "an INI file is missing", "");
     }
     if (!state->has_gear) {
-        return refuse(state->options, "--gear is missing", "");
+        return refuse(state, "--gear is missing", "");
     }
     if (state->odd[options->task] != NULL) {
-        return refuse_odd(options, state->odd[options->task]);
+        return refuse_odd(state, state->odd[options->task]);
     }
     if (options->task == FLANKS_MEASURED) {
-        return check_measured(options);
+        return check_measured(state);
     }
     return options->task == FLANKS_MAKE ? check_making(state) : 0;
 }
@@ -507,21 +497,22 @@ int options_parse(flanks_options *options, int count, char *const texts[], messa
     gm_traces_options_default(&options->from_traces);
     options->generate.waves = options->waves;
 
-    /* --help and --version win over whatever follows. */
-    parsing state = {.options = options};
-    int status = 0;
-    for (int i = 1; i < count && status == 0; ++i) {
-        if (strcmp(texts[i], "--help") == 0 || strcmp(texts[i], "--version") == 0) {
-            options->task = texts[i][2] == 'h' ? FLANKS_HELP : FLANKS_VERSION;
-            return 0;
-        }
-        status = texts[i][0] == '-' ? take_option(&state, count, texts, &i)
-                                    : take_parameters(&state, texts[i]);
+    parsing state = {.options = options,
+                     .line = {.count = OPTION_COUNT,
+                              .option = option_at,
+                              .take = take_option,
+                              .user = &state,
+                              .usage = usage,
+                              .messages = messages}};
+    const int status = command_line_read(&state.line, count, texts);
+    if (status != 0 || options->task >= FLANKS_HELP) {
+        return status;
     }
 
+    options->parameters = state.line.file;
     if (options->task == FLANKS_MAKE &&
         (options->traces != NULL || options->measured_pitch != NULL)) {
         options->task = FLANKS_MEASURED;
     }
-    return status == 0 ? check(&state) : status;
+    return check(&state);
 }

@@ -2,6 +2,7 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 
 #include "arguments.h"
+#include "command_line.h"
 #include "keys.h"
 #include "memory.h"
 
@@ -50,114 +51,94 @@ static const char options_help[] =
     "not use are accepted with a warning; --geometry needs [gears] alone and opens no flank file:\n"
     "\n";
 
-enum option_value { NO_VALUE, TAKES_VALUE };
+/* ---------------------------------------------------------------------------------------------
+ * Options
+ * ------------------------------------------------------------------------------------------- */
 
-typedef struct option {
-    const char *name;
-    enum option_value value;
-    enum task task; /* TASK_RUN = leaves the task as it is */
-} option;
+/* What is known so far, and the command line that it is read from. */
+typedef struct parsing {
+    arguments *args;
+    command_line line;
+} parsing;
 
-static const option options[] = {
-    {"--set", TAKES_VALUE, TASK_RUN},        {"--output", TAKES_VALUE, TASK_RUN},
-    {"--quiet", NO_VALUE, TASK_RUN},         {"--check", NO_VALUE, TASK_CHECK},
-    {"--geometry", NO_VALUE, TASK_GEOMETRY}, {"--help", NO_VALUE, TASK_HELP},
-    {"--version", NO_VALUE, TASK_VERSION},
+static enum option_result take_override(parsing *state, char *value) {
+    arguments *args = state->args;
+
+    args->overrides[args->request.override_count++] = value;
+    return OPTION_TAKEN;
+}
+
+static enum option_result take_output(parsing *state, char *value) {
+    state->args->request.output_file = value;
+    return OPTION_TAKEN;
+}
+
+static enum option_result take_quiet(parsing *state, char *value) {
+    (void)value;
+    state->line.messages->quiet = 1;
+    return OPTION_TAKEN;
+}
+
+static enum option_result take_task(parsing *state, enum task task) {
+    if (state->args->task != TASK_RUN && state->args->task != task) {
+        (void)command_line_refuse(&state->line, "--check and --geometry exclude each other", "");
+        return OPTION_FAULT;
+    }
+    state->args->task = task;
+    return OPTION_TAKEN;
+}
+
+static enum option_result take_check(parsing *state, char *value) {
+    (void)value;
+    return take_task(state, TASK_CHECK);
+}
+
+static enum option_result take_geometry(parsing *state, char *value) {
+    (void)value;
+    return take_task(state, TASK_GEOMETRY);
+}
+
+static enum option_result take_help(parsing *state, char *value) {
+    (void)value;
+    state->args->task = TASK_HELP;
+    return OPTION_LAST;
+}
+
+static enum option_result take_version(parsing *state, char *value) {
+    (void)value;
+    state->args->task = TASK_VERSION;
+    return OPTION_LAST;
+}
+
+static const struct {
+    option_spec spec;
+    enum option_result (*take)(parsing *state, char *value);
+} options[] = {
+    {{"--set", "section.key=value"}, take_override},
+    {{"--output", "a file name"}, take_output},
+    {{"--quiet", NULL}, take_quiet},
+    {{"--check", NULL}, take_check},
+    {{"--geometry", NULL}, take_geometry},
+    {{"--help", NULL}, take_help},
+    {{"--version", NULL}, take_version},
 };
 
 enum { OPTION_COUNT = sizeof options / sizeof options[0] };
 
-static int refuse(const arguments *args, const char *text, const char *what) {
-    message_of_program(args->request.messages, "%s%s\n%s", text, what, usage);
-    return EXIT_BAD_INPUT;
+static const option_spec *option_at(int which) {
+    return &options[which].spec;
 }
 
-/* The option of this name, up to a `=`; NULL = none. */
-static const option *find_option(const char *text) {
-    const size_t length = strcspn(text, "=");
-
-    for (int i = 0; i < OPTION_COUNT; ++i) {
-        if (strlen(options[i].name) == length && strncmp(options[i].name, text, length) == 0) {
-            return &options[i];
-        }
-    }
-    return NULL;
+static enum option_result take_option(void *user, int which, char *value) {
+    return options[which].take(user, value);
 }
 
-static void take_value(arguments *args, const option *given, char *value) {
-    if (strcmp(given->name, "--output") == 0) {
-        args->request.output_file = value;
-    } else {
-        args->overrides[args->request.override_count++] = value;
-    }
-}
-
-static int take_flag(arguments *args, const option *given) {
-    if (given->task == TASK_RUN) {
-        args->request.messages->quiet = 1;
-        return 0;
-    }
-    if (args->task != TASK_RUN && args->task != given->task) {
-        return refuse(args, "--check and --geometry exclude each other", "");
-    }
-    args->task = given->task;
-    return 0;
-}
-
-static int take_file(arguments *args, const char *path) {
-    if (args->request.path != NULL) {
-        return refuse(args, "a second INI file, expected one: ", path);
-    }
-    if (*path == '\0') {
-        return refuse(args, "the name of the INI file is empty", "");
-    }
-    args->request.path = path;
-    return 0;
-}
-
-/* Takes the option at texts[*index], and its value from there or from the next text. */
-static int take_option(arguments *args, int count, char *const texts[], int *index) {
-    const option *given = find_option(texts[*index]);
-    char *value = strchr(texts[*index], '=');
-
-    if (given == NULL) {
-        return refuse(args, "unknown option ", texts[*index]);
-    }
-    if (given->value == NO_VALUE) {
-        return value == NULL ? take_flag(args, given)
-                             : refuse(args, "no value expected: ", texts[*index]);
-    }
-    if (value == NULL && *index + 1 >= count) {
-        return refuse(args, "a value is missing behind ", given->name);
-    }
-    take_value(args, given, value != NULL ? value + 1 : texts[++*index]);
-    return 0;
-}
+/* ---------------------------------------------------------------------------------------------
+ * The whole
+ * ------------------------------------------------------------------------------------------- */
 
 static int is_informative(enum task task) {
     return task == TASK_HELP || task == TASK_VERSION;
-}
-
-static int take_all(arguments *args, int count, char *const texts[]) {
-    int only_files = 0;
-    int status = 0;
-
-    for (int i = 1; i < count && status == 0; ++i) {
-        if (!only_files && strcmp(texts[i], "--") == 0) {
-            only_files = 1;
-        } else if (!only_files && texts[i][0] == '-' && texts[i][1] != '\0') {
-            status = take_option(args, count, texts, &i);
-        } else {
-            status = take_file(args, texts[i]);
-        }
-        if (is_informative(args->task)) {
-            return 0; /* whatever follows */
-        }
-    }
-    if (status == 0 && args->request.path == NULL) {
-        status = refuse(args, "no INI file given", "");
-    }
-    return status;
 }
 
 int arguments_parse(arguments *args, int count, char *const texts[], message_sink *messages) {
@@ -168,7 +149,19 @@ int arguments_parse(arguments *args, int count, char *const texts[], message_sin
         return message_no_memory(messages);
     }
 
-    const int status = take_all(args, count, texts);
+    parsing state = {.args = args,
+                     .line = {.count = OPTION_COUNT,
+                              .option = option_at,
+                              .take = take_option,
+                              .user = &state,
+                              .usage = usage,
+                              .messages = messages}};
+    int status = command_line_read(&state.line, count, texts);
+    if (status == 0 && state.line.file == NULL && !is_informative(args->task)) {
+        status = command_line_refuse(&state.line, "no INI file given", "");
+    }
+
+    args->request.path = state.line.file;
     args->request.overrides = args->overrides;
     args->request.purpose = args->task == TASK_GEOMETRY ? CONFIG_FOR_GEOMETRY : CONFIG_FOR_RUN;
     if (status != 0) {

@@ -72,7 +72,7 @@ static int try_gearflanks(const command_line *line) {
     if (options.task == FLANKS_MAKE) {
         FUZZ_CLAIM(isfinite(options.generate.share));
         FUZZ_CLAIM(options.generate.wave_count >= 0 &&
-                   options.generate.wave_count <= FLANKS_MOST_WAVES);
+                   options.generate.wave_count <= GM_FLANK_WAVES_MAX);
         for (int i = 0; i < options.generate.wave_count; ++i) {
             FUZZ_CLAIM(isfinite(options.waves[i].amplitude));
         }
