@@ -18,6 +18,7 @@ static inline config case_config(enum mesh_model model, enum drive_kind drive) {
         .gears = reference_params(REFERENCE_FACE_WIDTH),
         .model = model,
         .stiffness = REFERENCE_STIFFNESS,
+        .simple_stiffness = (double)NAN,
         .damping = REFERENCE_DAMPING,
         .pinion_inertia = case_pinion_inertia,
         .wheel_inertia = case_wheel_inertia,
@@ -34,13 +35,36 @@ static inline config case_config(enum mesh_model model, enum drive_kind drive) {
     return conf;
 }
 
+/* Spring and damper of the simple model [the same eigenfrequency and damping ratio as the 3D model]. */
+static inline double case_spring(const gear_mesh *gears) {
+    return REFERENCE_STIFFNESS * gears->pair.transverse_contact_ratio;
+}
+
+static inline double case_damper(const gear_mesh *gears) {
+    return REFERENCE_DAMPING * gears->pair.transverse_contact_ratio;
+}
+
+/* Meshes of the whole test program; closed at its end. */
+enum { CASE_MESHES = 256 };
+static gear_mesh case_meshes[CASE_MESHES];
+static int case_mesh_count;
+
+static inline void case_meshes_close(void) {
+    while (case_mesh_count > 0) {
+        gear_mesh_close(&case_meshes[--case_mesh_count]);
+    }
+}
+
 /* Ideal flanks. */
 static inline gear_mesh case_mesh(const config *conf) {
-    gear_mesh gears = {.pinion_flanks = NULL};
-    gm_pair_init(&gears.pair, &conf->gears);
-    gears.simple_stiffness = conf->stiffness * gears.pair.transverse_contact_ratio;
-    gears.simple_damping = conf->damping * gears.pair.transverse_contact_ratio;
-    return gears;
+    if (case_mesh_count == 0) {
+        atexit(case_meshes_close);
+    }
+    gear_mesh *gears = &case_meshes[case_mesh_count++];
+    config silent = *conf;
+    silent.purpose = CONFIG_FOR_FLANKS; /* without warnings of the drawing, which would name keys */
+    GM_ASSERT_INT(gear_mesh_open(gears, &silent), 0);
+    return *gears;
 }
 
 #endif /* GEARSIM_CASE_H */

@@ -155,7 +155,7 @@ static double *any_table(uint64_t *seed, int face_nodes, int profile_nodes, doub
 
 static void fill_side(random_flanks *f, uint64_t *seed, int side, int tables, int face_nodes,
                       int profile_nodes, double amplitude, double factor, long double exact) {
-    const int teeth = f->flanks.teeth;
+    const int teeth = gm_flanks_teeth(f->flanks);
     for (int k = 0; k < tables; k++) {
         /* One table: mostly for all teeth. As many as teeth: one each. Else: all, then some. */
         const int tooth = tables == teeth ? k
@@ -164,7 +164,7 @@ static void fill_side(random_flanks *f, uint64_t *seed, int side, int tables, in
                               : gm_test_integer(seed, 0, teeth - 1);
         double *values = any_table(seed, face_nodes, profile_nodes, amplitude / factor);
         f->tables[side][f->table_count[side]++] = values;
-        GM_ASSERT_INT(gm_flanks_set_table(&f->flanks, side, tooth, values, factor), GM_OK);
+        GM_ASSERT_INT(gm_flanks_set_table(f->flanks, side, tooth, values, factor), GM_OK);
         for (int t = 0; t < teeth; t++) {
             if (tooth == GM_ALL_TEETH || tooth == t) {
                 f->model.table[side][t] = (model_table){face_nodes, profile_nodes, values, exact};
@@ -174,7 +174,7 @@ static void fill_side(random_flanks *f, uint64_t *seed, int side, int tables, in
     if (chance(seed, 40)) {
         for (int t = 0; t < teeth; t++) {
             const double pitch = gm_test_uniform(seed, -amplitude, amplitude);
-            GM_ASSERT_INT(gm_flanks_set_pitch(&f->flanks, side, t, pitch), GM_OK);
+            GM_ASSERT_INT(gm_flanks_set_pitch(f->flanks, side, t, pitch), GM_OK);
             f->model.pitch[side][t] = pitch;
         }
     }
@@ -228,7 +228,7 @@ static void set_ramps(random_flanks *f, uint64_t *seed, int side, double amplitu
             (model_ramp){exact, ramps[k].offset, ramps[k].per_t1, ramps[k].per_t2};
     }
     f->model.ramp_count[side] = count;
-    GM_ASSERT_INT(gm_flanks_set_ramps(&f->flanks, side, ramps, count, factor), GM_OK);
+    GM_ASSERT_INT(gm_flanks_set_ramps(f->flanks, side, ramps, count, factor), GM_OK);
 }
 
 void random_flanks_make(random_flanks *f, uint64_t *seed, const gm_pair *pair, int wheel,
@@ -317,7 +317,7 @@ int random_case_make(random_case *c, uint64_t *seed, int with_flanks) {
     for (int g = 0; g < 2 && status == GM_OK; g++) {
         if (with_flanks && chance(seed, 80)) {
             random_flanks_make(&c->flanks[g], seed, &c->pair, g, c->amplitude);
-            c->use[g] = &c->flanks[g].flanks;
+            c->use[g] = c->flanks[g].flanks;
             c->model_use[g] = &c->flanks[g].model;
         }
     }

@@ -15,7 +15,7 @@
 
 /** Flanks of one gear in both forms. */
 typedef struct random_flanks {
-    gm_flanks flanks;
+    gm_flanks *flanks;
     model_flanks model;
     void *memory;
     double *tables[2][200]; /**< node values that model.table points into */

@@ -11,6 +11,7 @@
 
 #include "gearmesh/gearmesh.h"
 #include "gm_test.h"
+#include "plain_mesh.h"
 
 #define REFERENCE_STIFFNESS  1.05e8  /**< K of one tooth pair (N/m) */
 #define REFERENCE_DAMPING    844.361 /**< D of one tooth pair (N s/m) */
@@ -42,7 +43,7 @@ GM_TEST_UNUSED static gm_penetration at(const gm_pair *pair, const gm_flanks *pi
     gm_position position;
     gm_penetration result;
     GM_ASSERT_INT(gm_position_from_pinion_angle(pair, pinion_angle, offset, 0.0, &position), GM_OK);
-    GM_ASSERT_INT(gm_penetration_3d_at(pair, pinion, wheel, &position, &result), GM_OK);
+    GM_ASSERT_INT(penetration_3d_at(pair, pinion, wheel, &position, &result), GM_OK);
     return result;
 }
 

@@ -2,6 +2,7 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 
 /* Designed modifications in prepared flanks: alone, on top of files, and what they do to a pair of gears. */
+#include "internal.h" /* what the objects hold */
 #include "io_test.h"
 #include "reference_gear.h"
 
@@ -16,8 +17,7 @@ static double values[2][FACE_NODES * PROFILE_NODES];
 static gm_deviation_set sets[2];
 static gm_deviations deviations;
 static gm_flanks_options options;
-static gm_flanks flanks;
-static void *memory;
+static gm_flanks *flanks;
 static gm_flanks_report report;
 static gm_io_error error;
 
@@ -45,16 +45,16 @@ static void add_set(int tooth, int side) {
 }
 
 static int build(int with_file) {
-    return gm_flanks_build(&flanks, &memory, pair.pinion.teeth, with_file ? &deviations : NULL,
-                           NULL, &options, &report, &error);
+    return gm_flanks_build(&flanks, pair.pinion.teeth, with_file ? &deviations : NULL, NULL,
+                           &options, &report, &error);
 }
 
 static void end(void) {
-    gm_flanks_memory_free(memory);
-    memory = NULL;
+    gm_flanks_free(flanks);
+    flanks = NULL;
 }
 
-static double node_of(const gm_flank_tables *side, int tooth, int face, int profile) {
+static double node_of(const gmi_tables *side, int tooth, int face, int profile) {
     const int place =
         (side->table[tooth] * side->face_nodes + face) * side->profile_nodes + profile;
     return side->values[4 * place];
@@ -72,7 +72,7 @@ static double of_file(int set, double t1, double t2) {
 }
 
 /* What is left at a point of a flank by the ramps of its side. */
-static double ramps_at(const gm_flank_tables *side, double t1, double t2) {
+static double ramps_at(const gmi_tables *side, double t1, double t2) {
     double sum = 0.0;
     for (int k = 0; k < side->ramp_count; k++) {
         const gm_flank_ramp *ramp = &side->ramps[k];
@@ -82,7 +82,7 @@ static double ramps_at(const gm_flank_tables *side, double t1, double t2) {
 }
 
 /* Every node of a tooth, less ramps, is file * scale + design, times the normal factor; set -1 = no file. */
-static void nodes_are(const gm_flank_tables *side, int tooth, int set, double file_scale) {
+static void nodes_are(const gmi_tables *side, int tooth, int set, double file_scale) {
     double worst = 0.0;
     for (int face = 0; face < side->face_nodes; face++) {
         for (int profile = 0; profile < side->profile_nodes; profile++) {
@@ -100,7 +100,7 @@ static void nodes_are(const gm_flank_tables *side, int tooth, int set, double fi
 }
 
 /* Largest distance of a side's flank from the design between the nodes: the flank is the table and the ramps. */
-static double distance_from_design(const gm_flank_tables *side) {
+static double distance_from_design(const gmi_tables *side) {
     enum { STEPS = 211 };
     double worst = 0.0;
     for (int i = 0; i <= STEPS; ++i) {
@@ -130,11 +130,11 @@ static void the_report_says_what_holds_the_design_and_how_well(void) {
     options.modification_tolerance = 0.05 * UM;
     GM_ASSERT_INT(build(0), GM_IO_OK);
     GM_ASSERT_INT(report.drive.ramps, 1);
-    GM_ASSERT_INT(report.drive.face_nodes, flanks.drive.face_nodes);
-    GM_ASSERT_INT(report.drive.profile_nodes, flanks.drive.profile_nodes);
+    GM_ASSERT_INT(report.drive.face_nodes, flanks->side[GM_DRIVE].face_nodes);
+    GM_ASSERT_INT(report.drive.profile_nodes, flanks->side[GM_DRIVE].profile_nodes);
 
     /* A bound that holds and is not far off: tables of parabolas are worst in the middle of a cell. */
-    const double found = distance_from_design(&flanks.drive);
+    const double found = distance_from_design(&flanks->side[GM_DRIVE]);
     GM_ASSERT(report.drive.error <= options.modification_tolerance);
     GM_ASSERT(found <= report.drive.error * (1 + 1e-9) && found > 0.2 * report.drive.error);
 
@@ -163,15 +163,15 @@ static void a_design_alone_takes_one_table_for_all_teeth_of_its_side(void) {
     const gm_modifications rest = {list + 1, 2, &pair.pinion, pair.face_width};
     gm_modifications_grid grid;
     GM_ASSERT_INT(gm_modifications_grid_find(&rest, 2, 2, 1e-8, &grid), GM_OK);
-    GM_ASSERT_INT(flanks.drive.count, 1);
-    GM_ASSERT_INT(flanks.drive.ramp_count, 1);
-    GM_ASSERT_INT(flanks.coast.ramp_count, 0);
-    GM_ASSERT_INT(flanks.drive.table[44], 0);
-    GM_ASSERT_INT(flanks.drive.face_nodes, grid.face_nodes);
-    GM_ASSERT_INT(flanks.drive.profile_nodes, grid.profile_nodes);
-    GM_ASSERT_INT(flanks.coast.capacity, 0);
-    GM_ASSERT_INT(flanks.coast.table[0], -1);
-    nodes_are(&flanks.drive, 7, -1, 0.0);
+    GM_ASSERT_INT(flanks->side[GM_DRIVE].count, 1);
+    GM_ASSERT_INT(flanks->side[GM_DRIVE].ramp_count, 1);
+    GM_ASSERT_INT(flanks->side[GM_COAST].ramp_count, 0);
+    GM_ASSERT_INT(flanks->side[GM_DRIVE].table[44], 0);
+    GM_ASSERT_INT(flanks->side[GM_DRIVE].face_nodes, grid.face_nodes);
+    GM_ASSERT_INT(flanks->side[GM_DRIVE].profile_nodes, grid.profile_nodes);
+    GM_ASSERT_INT(flanks->side[GM_COAST].capacity, 0);
+    GM_ASSERT_INT(flanks->side[GM_COAST].table[0], -1);
+    nodes_are(&flanks->side[GM_DRIVE], 7, -1, 0.0);
     end();
 }
 
@@ -182,20 +182,20 @@ static void linear_reliefs_alone_need_no_table(void) {
     design.count = 2;
     options.normal_factor = 1.25;
     GM_ASSERT_INT(build(0), GM_IO_OK);
-    GM_ASSERT_INT(flanks.drive.capacity, 0);
-    GM_ASSERT_INT(flanks.drive.ramp_count, 2);
+    GM_ASSERT_INT(flanks->side[GM_DRIVE].capacity, 0);
+    GM_ASSERT_INT(flanks->side[GM_DRIVE].ramp_count, 2);
     for (int k = 0; k <= 100; k++) {
         const double t1 = 0.1 * (k % 11), t2 = 0.01 * k;
-        GM_ASSERT_ABS(ramps_at(&flanks.drive, t1, t2),
+        GM_ASSERT_ABS(ramps_at(&flanks->side[GM_DRIVE], t1, t2),
                       1.25 * gm_modifications_value(&design, t1, t2), 1e-14 * 50 * UM);
     }
     end();
     /* and leave the tables of a file as they are */
     add_set(-1, -1);
     GM_ASSERT_INT(build(1), GM_IO_OK);
-    GM_ASSERT_INT(flanks.drive.face_nodes, FACE_NODES);
-    GM_ASSERT_INT(flanks.drive.profile_nodes, PROFILE_NODES);
-    nodes_are(&flanks.drive, 2, 0, 1.0);
+    GM_ASSERT_INT(flanks->side[GM_DRIVE].face_nodes, FACE_NODES);
+    GM_ASSERT_INT(flanks->side[GM_DRIVE].profile_nodes, PROFILE_NODES);
+    nodes_are(&flanks->side[GM_DRIVE], 2, 0, 1.0);
     end();
 }
 
@@ -205,10 +205,10 @@ static void each_side_has_a_design_and_a_grid_of_its_own(void) {
     const gm_modifications other = {&twist, 1, &pair.pinion, pair.face_width};
     options.coast_modifications = &other;
     GM_ASSERT_INT(build(0), GM_IO_OK);
-    GM_ASSERT_INT(flanks.coast.face_nodes, 2);
-    GM_ASSERT_INT(flanks.coast.profile_nodes, 2);
-    GM_ASSERT_REL(node_of(&flanks.coast, 0, 1, 1), 0.75 * UM, 1e-15);
-    GM_ASSERT(flanks.drive.profile_nodes > 2);
+    GM_ASSERT_INT(flanks->side[GM_COAST].face_nodes, 2);
+    GM_ASSERT_INT(flanks->side[GM_COAST].profile_nodes, 2);
+    GM_ASSERT_REL(node_of(&flanks->side[GM_COAST], 0, 1, 1), 0.75 * UM, 1e-15);
+    GM_ASSERT(flanks->side[GM_DRIVE].profile_nodes > 2);
     end();
 }
 
@@ -216,7 +216,7 @@ static void an_empty_design_is_none(void) {
     begin();
     design.count = 0;
     GM_ASSERT_INT(build(0), GM_IO_OK);
-    GM_ASSERT_INT(flanks.drive.capacity, 0);
+    GM_ASSERT_INT(flanks->side[GM_DRIVE].capacity, 0);
     end();
 }
 
@@ -227,12 +227,12 @@ static void a_design_is_added_to_the_tables_of_a_file(void) {
     options.scale = -2.0;
     options.normal_factor = 1.17;
     GM_ASSERT_INT(build(1), GM_IO_OK);
-    GM_ASSERT_INT((flanks.drive.face_nodes - 1) % (FACE_NODES - 1), 0);
-    GM_ASSERT_INT((flanks.drive.profile_nodes - 1) % (PROFILE_NODES - 1), 0);
-    nodes_are(&flanks.drive, 0, 0, -2.0);
-    nodes_are(&flanks.drive, 3, 1, -2.0);
-    GM_ASSERT_INT(flanks.coast.face_nodes, FACE_NODES); /* no design there */
-    GM_ASSERT_INT(flanks.coast.profile_nodes, PROFILE_NODES);
+    GM_ASSERT_INT((flanks->side[GM_DRIVE].face_nodes - 1) % (FACE_NODES - 1), 0);
+    GM_ASSERT_INT((flanks->side[GM_DRIVE].profile_nodes - 1) % (PROFILE_NODES - 1), 0);
+    nodes_are(&flanks->side[GM_DRIVE], 0, 0, -2.0);
+    nodes_are(&flanks->side[GM_DRIVE], 3, 1, -2.0);
+    GM_ASSERT_INT(flanks->side[GM_COAST].face_nodes, FACE_NODES); /* no design there */
+    GM_ASSERT_INT(flanks->side[GM_COAST].profile_nodes, PROFILE_NODES);
     end();
 }
 
@@ -240,13 +240,13 @@ static void teeth_without_a_set_have_the_design_alone(void) {
     begin();
     add_set(3, GM_DRIVE);
     GM_ASSERT_INT(build(1), GM_IO_OK);
-    GM_ASSERT_INT(flanks.drive.count, 2);
-    nodes_are(&flanks.drive, 3, 0, 1.0);
-    nodes_are(&flanks.drive, 4, -1, 0.0);
+    GM_ASSERT_INT(flanks->side[GM_DRIVE].count, 2);
+    nodes_are(&flanks->side[GM_DRIVE], 3, 0, 1.0);
+    nodes_are(&flanks->side[GM_DRIVE], 4, -1, 0.0);
     end();
     begin(); /* deviations without a set at all */
     GM_ASSERT_INT(build(1), GM_IO_OK);
-    nodes_are(&flanks.drive, 0, -1, 0.0);
+    nodes_are(&flanks->side[GM_DRIVE], 0, -1, 0.0);
     end();
 }
 
@@ -257,12 +257,13 @@ static void the_nodes_of_a_file_are_kept_exactly(void) {
     design.count = 1;
     add_set(-1, -1);
     GM_ASSERT_INT(build(1), GM_IO_OK);
-    const int per_face = (flanks.drive.face_nodes - 1) / (FACE_NODES - 1);
-    const int per_profile = (flanks.drive.profile_nodes - 1) / (PROFILE_NODES - 1);
+    const int per_face = (flanks->side[GM_DRIVE].face_nodes - 1) / (FACE_NODES - 1);
+    const int per_profile = (flanks->side[GM_DRIVE].profile_nodes - 1) / (PROFILE_NODES - 1);
     for (int face = 0; face < FACE_NODES; face++) {
         for (int profile = 0; profile < 3; profile++) { /* t2 <= 0.5 */
-            GM_ASSERT(same_bits(node_of(&flanks.drive, 9, face * per_face, profile * per_profile),
-                                values[0][face * PROFILE_NODES + profile] + 0.0));
+            GM_ASSERT(same_bits(
+                node_of(&flanks->side[GM_DRIVE], 9, face * per_face, profile * per_profile),
+                values[0][face * PROFILE_NODES + profile] + 0.0));
         }
     }
     GM_ASSERT(per_profile > 1);
@@ -275,7 +276,7 @@ static void the_profile_window_acts_on_the_file_only(void) {
     options.profile_from = 2.0; /* beside the flank: nothing is left of the file */
     options.profile_to = 3.0;
     GM_ASSERT_INT(build(1), GM_IO_OK);
-    nodes_are(&flanks.drive, 5, 0, 0.0);
+    nodes_are(&flanks->side[GM_DRIVE], 5, 0, 0.0);
     end();
 }
 
@@ -286,8 +287,7 @@ static void the_profile_window_acts_on_the_file_only(void) {
 static void refused(const char *value, const char *right) {
     GM_ASSERT_INT(build(0), GM_IO_ERR_OPTION);
     assert_error(&error, "", 0, value, right);
-    GM_ASSERT(memory == NULL);
-    GM_ASSERT(flanks.teeth == 0 && flanks.drive.values == NULL);
+    GM_ASSERT(flanks == NULL);
 }
 
 static void designs_that_cannot_be_are_refused(void) {
@@ -351,12 +351,12 @@ static gm_modification long_relief(double amount) {
     return relief;
 }
 
-static gm_flanks flanks_of(const gm_gear *gear, const gm_modification *relief, void **place) {
+static gm_flanks *flanks_of(const gm_gear *gear, const gm_modification *relief) {
     const gm_modifications tips = {relief, 1, gear, pair.face_width};
-    gm_flanks built;
+    gm_flanks *built;
     gm_flanks_options_default(&options);
     options.drive_modifications = &tips;
-    GM_ASSERT_INT(gm_flanks_build(&built, place, gear->teeth, NULL, NULL, &options, NULL, &error),
+    GM_ASSERT_INT(gm_flanks_build(&built, gear->teeth, NULL, NULL, &options, NULL, &error),
                   GM_IO_OK);
     return built;
 }
@@ -368,8 +368,8 @@ static double variation(const gm_flanks *pinion, const gm_flanks *wheel, double 
     for (int k = 0; k < STEPS; k++) {
         const double angle = 6.283185307179586 * k / STEPS / pair.pinion.teeth;
         double offset = 0.0;
-        GM_ASSERT_INT(gm_static_equilibrium(&pair, pinion, wheel, angle, REFERENCE_STIFFNESS,
-                                            force * pair.wheel.base_radius, &offset, NULL),
+        GM_ASSERT_INT(equilibrium(&pair, pinion, wheel, angle, REFERENCE_STIFFNESS,
+                                  force * pair.wheel.base_radius, &offset, NULL),
                       GM_OK);
         least = fmin(least, offset);
         most = fmax(most, offset);
@@ -379,22 +379,21 @@ static double variation(const gm_flanks *pinion, const gm_flanks *wheel, double 
 
 static void long_tip_relief_takes_the_transmission_error_of_its_load_away(void) {
     const double amount = 20 * UM;
-    void *places[2];
     pair = spur_pair();
     GM_ASSERT(pair.transverse_contact_ratio > 1.3 && pair.transverse_contact_ratio < 1.9);
     const gm_modification relief = long_relief(amount);
-    const gm_flanks pinion = flanks_of(&pair.pinion, &relief, &places[0]);
-    const gm_flanks wheel = flanks_of(&pair.wheel, &relief, &places[1]);
+    gm_flanks *pinion = flanks_of(&pair.pinion, &relief);
+    gm_flanks *wheel = flanks_of(&pair.wheel, &relief);
     const double force = design_force(amount);
 
     /* What remains are roundings of lengths of some millimetres. */
-    GM_ASSERT_ABS(variation(&pinion, &wheel, force), 0.0, 1e-15);
-    GM_ASSERT_REL(variation(&pinion, &wheel, 0.5 * force), 0.25 * amount, 0.01);
-    GM_ASSERT_REL(variation(&pinion, &wheel, 2.0 * force), 0.5 * amount, 0.01);
+    GM_ASSERT_ABS(variation(pinion, wheel, force), 0.0, 1e-15);
+    GM_ASSERT_REL(variation(pinion, wheel, 0.5 * force), 0.25 * amount, 0.01);
+    GM_ASSERT_REL(variation(pinion, wheel, 2.0 * force), 0.5 * amount, 0.01);
     /* and without any relief delta steps between F / K and F / (2 K) */
     GM_ASSERT_REL(variation(NULL, NULL, force), 0.5 * amount, 1e-3);
-    gm_flanks_memory_free(places[0]);
-    gm_flanks_memory_free(places[1]);
+    gm_flanks_free(pinion);
+    gm_flanks_free(wheel);
 }
 
 /* ---------------------------------------------------------------------------------------------
@@ -406,9 +405,8 @@ static void long_tip_relief_takes_the_transmission_error_of_its_load_away(void) 
 
 static double offset_at(const gm_flanks *pinion, double angle, double torque) {
     double offset = (double)NAN;
-    GM_ASSERT_INT(gm_static_equilibrium(&pair, pinion, NULL, angle, REFERENCE_STIFFNESS, torque,
-                                        &offset, NULL),
-                  GM_OK);
+    GM_ASSERT_INT(
+        equilibrium(&pair, pinion, NULL, angle, REFERENCE_STIFFNESS, torque, &offset, NULL), GM_OK);
     return offset;
 }
 
@@ -423,15 +421,14 @@ static void the_same_design_on_the_other_flank_is_its_mirror_image(void) {
     const gm_modifications of = {uneven, 4, &pair.pinion, pair.face_width};
     gm_flanks_options_default(&options);
     options.drive_modifications = options.coast_modifications = &of;
-    GM_ASSERT_INT(
-        gm_flanks_build(&flanks, &memory, pair.pinion.teeth, NULL, NULL, &options, NULL, &error),
-        GM_IO_OK);
+    GM_ASSERT_INT(gm_flanks_build(&flanks, pair.pinion.teeth, NULL, NULL, &options, NULL, &error),
+                  GM_IO_OK);
     double largest = 0.0;
     for (int k = 0; k < 40; k++) {
         const double angle = 6.283185307179586 * (k + 0.37) / 40 / pair.pinion.teeth;
-        const double forward = offset_at(&flanks, angle, 20.0);
+        const double forward = offset_at(flanks, angle, 20.0);
         /* x is found to a rounding of the path, some millimetres */
-        GM_ASSERT_ABS(offset_at(&flanks, -angle, -20.0), -forward, 1e-15);
+        GM_ASSERT_ABS(offset_at(flanks, -angle, -20.0), -forward, 1e-15);
         largest = fmax(largest, fabs(forward - offset_at(NULL, angle, 20.0)));
     }
     GM_ASSERT(largest > UM); /* the design is felt */

@@ -2,6 +2,7 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 
 /* Flanks from the contents of files: which set serves which tooth, scale, normal factor, profile window. */
+#include "internal.h" /* what the objects hold */
 #include "io_test.h"
 
 enum { TEETH = 5, FACE_NODES = 3, PROFILE_NODES = 11, NODES = 33, MOST_SETS = 8 };
@@ -16,8 +17,7 @@ static int drive_set[TEETH];
 static int coast_set[TEETH];
 static gm_pitch pitch;
 
-static gm_flanks flanks;
-static void *memory;
+static gm_flanks *flanks;
 static gm_flanks_options options;
 static gm_io_error error;
 
@@ -42,21 +42,21 @@ static void add_set(int tooth, int side, double level) {
 }
 
 static int build(const gm_deviations *of, const gm_pitch *with) {
-    return gm_flanks_build(&flanks, &memory, TEETH, of, with, &options, NULL, &error);
+    return gm_flanks_build(&flanks, TEETH, of, with, &options, NULL, &error);
 }
 
 static void end(void) {
-    gm_flanks_memory_free(memory);
-    memory = NULL;
+    gm_flanks_free(flanks);
+    flanks = NULL;
 }
 
-static const gm_flank_tables *tables(int side) {
-    return side == GM_DRIVE ? &flanks.drive : &flanks.coast;
+static const gmi_tables *tables(int side) {
+    return side == GM_DRIVE ? &flanks->side[GM_DRIVE] : &flanks->side[GM_COAST];
 }
 
 /* Prepared value of a node; NaN if the tooth is ideal. */
 static double node_value(int side, int tooth, int face, int profile) {
-    const gm_flank_tables *of = tables(side);
+    const gmi_tables *of = tables(side);
     const int table = of->table[tooth];
     if (table < 0) {
         return (double)NAN;
@@ -71,13 +71,13 @@ static double node_value(int side, int tooth, int face, int profile) {
 static void nothing_given_makes_ideal_flanks(void) {
     begin();
     GM_ASSERT_INT(build(NULL, NULL), GM_IO_OK);
-    GM_ASSERT_INT(flanks.teeth, TEETH);
-    GM_ASSERT_INT(flanks.drive.count, 0);
-    GM_ASSERT_INT(flanks.drive.table[3], -1);
-    GM_ASSERT_REL(flanks.coast.pitch[3], 0.0, 0.0);
+    GM_ASSERT_INT(flanks->teeth, TEETH);
+    GM_ASSERT_INT(flanks->side[GM_DRIVE].count, 0);
+    GM_ASSERT_INT(flanks->side[GM_DRIVE].table[3], -1);
+    GM_ASSERT_REL(flanks->side[GM_COAST].pitch[3], 0.0, 0.0);
     end();
     GM_ASSERT_INT(build(&deviations, NULL), GM_IO_OK); /* deviations without a set */
-    GM_ASSERT_INT(flanks.coast.table[0], -1);
+    GM_ASSERT_INT(flanks->side[GM_COAST].table[0], -1);
     end();
 }
 
@@ -85,8 +85,8 @@ static void every_node_arrives_in_its_place(void) {
     begin();
     add_set(2, GM_COAST, 1e-6);
     GM_ASSERT_INT(build(&deviations, NULL), GM_IO_OK);
-    GM_ASSERT_INT(flanks.coast.face_nodes, FACE_NODES);
-    GM_ASSERT_INT(flanks.coast.profile_nodes, PROFILE_NODES);
+    GM_ASSERT_INT(flanks->side[GM_COAST].face_nodes, FACE_NODES);
+    GM_ASSERT_INT(flanks->side[GM_COAST].profile_nodes, PROFILE_NODES);
     for (int face = 0; face < FACE_NODES; face++) {
         for (int profile = 0; profile < PROFILE_NODES; profile++) {
             GM_ASSERT_REL(node_value(GM_COAST, 2, face, profile),
@@ -100,11 +100,11 @@ static void teeth_without_a_set_are_ideal(void) {
     begin();
     add_set(2, GM_COAST, 1e-6);
     GM_ASSERT_INT(build(&deviations, NULL), GM_IO_OK);
-    GM_ASSERT_INT(flanks.drive.capacity, 0);
-    GM_ASSERT_INT(flanks.drive.table[2], -1);
-    GM_ASSERT_INT(flanks.coast.capacity, 1);
-    GM_ASSERT_INT(flanks.coast.table[1], -1);
-    GM_ASSERT_INT(flanks.coast.table[3], -1);
+    GM_ASSERT_INT(flanks->side[GM_DRIVE].capacity, 0);
+    GM_ASSERT_INT(flanks->side[GM_DRIVE].table[2], -1);
+    GM_ASSERT_INT(flanks->side[GM_COAST].capacity, 1);
+    GM_ASSERT_INT(flanks->side[GM_COAST].table[1], -1);
+    GM_ASSERT_INT(flanks->side[GM_COAST].table[3], -1);
     end();
 }
 
@@ -144,12 +144,12 @@ static void a_shared_set_takes_one_place_on_each_side(void) {
     begin();
     add_set(-1, -1, 0.0);
     GM_ASSERT_INT(build(&deviations, NULL), GM_IO_OK);
-    GM_ASSERT_INT(flanks.drive.count, 1);
-    GM_ASSERT_INT(flanks.drive.capacity, 1);
-    GM_ASSERT_INT(flanks.coast.count, 1);
+    GM_ASSERT_INT(flanks->side[GM_DRIVE].count, 1);
+    GM_ASSERT_INT(flanks->side[GM_DRIVE].capacity, 1);
+    GM_ASSERT_INT(flanks->side[GM_COAST].count, 1);
     for (int tooth = 0; tooth < TEETH; tooth++) {
-        GM_ASSERT_INT(flanks.drive.table[tooth], 0);
-        GM_ASSERT_INT(flanks.coast.table[tooth], 0);
+        GM_ASSERT_INT(flanks->side[GM_DRIVE].table[tooth], 0);
+        GM_ASSERT_INT(flanks->side[GM_COAST].table[tooth], 0);
     }
     end();
 }
@@ -160,13 +160,13 @@ static void own_sets_take_a_place_each_beside_the_shared_one(void) {
     add_set(1, GM_DRIVE, 0.0);
     add_set(4, -1, 0.0);
     GM_ASSERT_INT(build(&deviations, NULL), GM_IO_OK);
-    GM_ASSERT_INT(flanks.drive.capacity, 3);
-    GM_ASSERT_INT(flanks.drive.count, 3);
-    GM_ASSERT_INT(flanks.coast.capacity, 2);
-    GM_ASSERT_INT(flanks.coast.count, 2);
-    GM_ASSERT_INT(flanks.drive.table[0], flanks.drive.table[3]);
-    GM_ASSERT(flanks.drive.table[1] != flanks.drive.table[0]);
-    GM_ASSERT(flanks.drive.table[4] != flanks.drive.table[0]);
+    GM_ASSERT_INT(flanks->side[GM_DRIVE].capacity, 3);
+    GM_ASSERT_INT(flanks->side[GM_DRIVE].count, 3);
+    GM_ASSERT_INT(flanks->side[GM_COAST].capacity, 2);
+    GM_ASSERT_INT(flanks->side[GM_COAST].count, 2);
+    GM_ASSERT_INT(flanks->side[GM_DRIVE].table[0], flanks->side[GM_DRIVE].table[3]);
+    GM_ASSERT(flanks->side[GM_DRIVE].table[1] != flanks->side[GM_DRIVE].table[0]);
+    GM_ASSERT(flanks->side[GM_DRIVE].table[4] != flanks->side[GM_DRIVE].table[0]);
     end();
 }
 
@@ -182,12 +182,11 @@ static void the_defaults_change_nothing(void) {
     GM_ASSERT_REL(options.profile_blend, 0.1, 0.0);
     begin();
     add_set(-1, -1, 1e-6);
-    GM_ASSERT_INT(gm_flanks_build(&flanks, &memory, TEETH, &deviations, &pitch, NULL, NULL, NULL),
-                  GM_IO_OK);
+    GM_ASSERT_INT(gm_flanks_build(&flanks, TEETH, &deviations, &pitch, NULL, NULL, NULL), GM_IO_OK);
     GM_ASSERT_REL(node_value(GM_DRIVE, 0, 0, 0), 1e-6, 0.0);
     GM_ASSERT_REL(node_value(GM_DRIVE, 0, 0, 10), 11e-6, 1e-15);
-    GM_ASSERT_REL(flanks.drive.pitch[4], 5e-6, 1e-15);
-    GM_ASSERT_REL(flanks.coast.pitch[4], -10e-6, 1e-15);
+    GM_ASSERT_REL(flanks->side[GM_DRIVE].pitch[4], 5e-6, 1e-15);
+    GM_ASSERT_REL(flanks->side[GM_COAST].pitch[4], -10e-6, 1e-15);
     end();
 }
 
@@ -197,8 +196,8 @@ static void the_scale_multiplies_deviations_and_pitch(void) {
     options.scale = -0.5;
     GM_ASSERT_INT(build(&deviations, &pitch), GM_IO_OK);
     GM_ASSERT_REL(node_value(GM_COAST, 1, 0, 1), -1e-6, 1e-15);
-    GM_ASSERT_REL(flanks.drive.pitch[1], -1e-6, 1e-15);
-    GM_ASSERT_REL(flanks.coast.pitch[1], 2e-6, 1e-15);
+    GM_ASSERT_REL(flanks->side[GM_DRIVE].pitch[1], -1e-6, 1e-15);
+    GM_ASSERT_REL(flanks->side[GM_COAST].pitch[1], 2e-6, 1e-15);
     end();
 }
 
@@ -209,7 +208,7 @@ static void the_normal_factor_multiplies_deviations_but_not_pitch(void) {
     options.scale = 2.0;
     GM_ASSERT_INT(build(&deviations, &pitch), GM_IO_OK);
     GM_ASSERT_REL(node_value(GM_DRIVE, 1, 0, 3), 2.5 * 4e-6, 1e-15);
-    GM_ASSERT_REL(flanks.drive.pitch[1], 2.0 * 2e-6, 1e-15);
+    GM_ASSERT_REL(flanks->side[GM_DRIVE].pitch[1], 2.0 * 2e-6, 1e-15);
     end();
 }
 
@@ -229,8 +228,8 @@ static void weights_are(double from, double to, double blend, const double *weig
             GM_ASSERT_ABS(node_value(side, 2, 1, profile) / plain, weights[profile], 1e-14);
         }
     }
-    GM_ASSERT_REL(flanks.drive.pitch[2], 3e-6, 1e-15); /* never windowed */
-    GM_ASSERT_REL(flanks.coast.pitch[2], -6e-6, 1e-15);
+    GM_ASSERT_REL(flanks->side[GM_DRIVE].pitch[2], 3e-6, 1e-15); /* never windowed */
+    GM_ASSERT_REL(flanks->side[GM_COAST].pitch[2], -6e-6, 1e-15);
     end();
 }
 
@@ -255,8 +254,8 @@ static void pitch_that_is_not_set_is_not_used(void) {
     begin();
     drive_set[2] = 0;
     GM_ASSERT_INT(build(NULL, &pitch), GM_IO_OK);
-    GM_ASSERT_REL(flanks.drive.pitch[2], 0.0, 0.0);
-    GM_ASSERT_REL(flanks.coast.pitch[2], -6e-6, 1e-15);
+    GM_ASSERT_REL(flanks->side[GM_DRIVE].pitch[2], 0.0, 0.0);
+    GM_ASSERT_REL(flanks->side[GM_COAST].pitch[2], -6e-6, 1e-15);
     end();
 }
 
@@ -265,12 +264,10 @@ static void pitch_that_is_not_set_is_not_used(void) {
  * ------------------------------------------------------------------------------------------- */
 
 static void refused(const char *value) {
-    memset(&flanks, 0x55, sizeof flanks);
-    memory = &flanks;
+    flanks = (gm_flanks *)&pitch; /* anything but NULL */
     GM_ASSERT_INT(build(&deviations, &pitch), GM_IO_ERR_OPTION);
     assert_error(&error, "", 0, value, "");
-    GM_ASSERT(memory == NULL);
-    GM_ASSERT(flanks.teeth == 0 && flanks.drive.values == NULL && flanks.coast.pitch == NULL);
+    GM_ASSERT(flanks == NULL);
     end();
 }
 
@@ -306,8 +303,7 @@ static void another_number_of_teeth_is_refused(void) {
     pitch.teeth = TEETH - 1;
     refused("pitch deviations must be for the 5 teeth of the gear (got 4)");
     begin();
-    GM_ASSERT_INT(gm_flanks_build(&flanks, &memory, 2, NULL, NULL, NULL, NULL, &error),
-                  GM_IO_ERR_OPTION);
+    GM_ASSERT_INT(gm_flanks_build(&flanks, 2, NULL, NULL, NULL, NULL, &error), GM_IO_ERR_OPTION);
     assert_error(&error, "", 0, "(got 2)", "teeth: must be from 3 to 100000");
 }
 
@@ -345,11 +341,8 @@ static void two_sets_for_the_same_flank_are_refused(void) {
 
 static void a_call_without_a_required_pointer_is_refused(void) {
     begin();
-    GM_ASSERT_INT(gm_flanks_build(NULL, &memory, TEETH, NULL, NULL, NULL, NULL, NULL),
-                  GM_IO_ERR_NULL);
-    GM_ASSERT_INT(gm_flanks_build(&flanks, NULL, TEETH, NULL, NULL, NULL, NULL, NULL),
-                  GM_IO_ERR_NULL);
-    gm_flanks_memory_free(NULL);
+    GM_ASSERT_INT(gm_flanks_build(NULL, TEETH, NULL, NULL, NULL, NULL, NULL), GM_IO_ERR_NULL);
+    gm_flanks_free(NULL);
     gm_flanks_options_default(NULL);
 }
 
@@ -378,8 +371,8 @@ static void files_become_flanks(void) {
     GM_ASSERT_REL(node_value(GM_DRIVE, 3, 0, 1), 2e-6, 0.0);
     GM_ASSERT_REL(node_value(GM_DRIVE, 4, 0, 1), 6e-6, 0.0);
     GM_ASSERT_REL(node_value(GM_DRIVE, 4, 1, 0), 7e-6, 0.0);
-    GM_ASSERT_REL(flanks.coast.pitch[1], -3e-6, 0.0);
-    GM_ASSERT_REL(flanks.drive.pitch[1], 0.0, 0.0);
+    GM_ASSERT_REL(flanks->side[GM_COAST].pitch[1], -3e-6, 0.0);
+    GM_ASSERT_REL(flanks->side[GM_DRIVE].pitch[1], 0.0, 0.0);
     end();
 }
 

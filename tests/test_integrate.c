@@ -31,8 +31,8 @@ static double oscillator_error(enum solver_method method, double tolerance, long
 
     /* Closed form: exp(-z w0 t) (cos wd t + z w0 / wd sin wd t). */
     const double mobility = pow(gears.pair.wheel.base_radius, 2) / case_wheel_inertia;
-    const double w0 = sqrt(gears.simple_stiffness * mobility);
-    const double decay = 0.5 * gears.simple_damping * mobility;
+    const double w0 = sqrt(case_spring(&gears) * mobility);
+    const double decay = 0.5 * case_damper(&gears) * mobility;
     const double wd = sqrt(w0 * w0 - decay * decay);
 
     integrator *solver = create(&model, method, 0.0, tolerance * micrometre, start);
@@ -120,7 +120,8 @@ static double simple_acceleration(const gear_mesh *gears, const load_signal *loa
                                   double x, double v) {
     const double r_bw = gears->pair.wheel.base_radius;
     const double over = fabs(x) - 0.5 * gears->pair.backlash, sign = x > 0.0 ? 1.0 : -1.0;
-    const double spring = gears->simple_stiffness * over + sign * gears->simple_damping * v;
+    const double spring = gm_mesh_mean_stiffness(gears->prepared) * over +
+                          sign * gm_mesh_mean_damping(gears->prepared) * v;
     const double force = over > 0.0 ? sign * fmax(spring, 0.0) : 0.0;
 
     return (r_bw * load_torque(load, t) - r_bw * r_bw * force) / case_wheel_inertia;

@@ -6,6 +6,7 @@
  * __wrap_... below in place of those of the C library (--wrap), so that here every allocation can fail,
  * what is not freed or closed is seen, and the locale has a decimal comma on any machine.
  */
+#include "internal.h" /* what the objects hold */
 #include "io_test.h"
 #include "reference_gear.h"
 
@@ -132,8 +133,7 @@ static const char pitch_text[] = PITCH_HEADER "*,*,1.5\n2,drive,-0.1234567890123
 static const char *path;
 static gm_deviations deviations;
 static gm_pitch pitch;
-static gm_flanks flanks;
-static void *memory;
+static gm_flanks *flanks;
 static gm_io_error error;
 
 static int read_deviations(void) {
@@ -145,7 +145,7 @@ static int read_pitch(void) {
 }
 
 static int build(void) {
-    return gm_flanks_build(&flanks, &memory, TEETH, &deviations, &pitch, NULL, NULL, &error);
+    return gm_flanks_build(&flanks, TEETH, &deviations, &pitch, NULL, NULL, &error);
 }
 
 /* The same with a crowning and a ramp on both sides. */
@@ -158,7 +158,7 @@ static int build_with_design(void) {
     gm_flanks_options options;
     gm_flanks_options_default(&options);
     options.drive_modifications = options.coast_modifications = &design;
-    return gm_flanks_build(&flanks, &memory, TEETH, &deviations, &pitch, &options, NULL, &error);
+    return gm_flanks_build(&flanks, TEETH, &deviations, &pitch, &options, NULL, &error);
 }
 
 static gm_pair gears;
@@ -220,8 +220,9 @@ static int write_deviations(void) {
 static void free_all(void) {
     gm_deviations_free(&deviations);
     gm_pitch_free(&pitch);
-    gm_flanks_memory_free(memory);
-    memory = NULL;
+    gm_flanks_free(flanks);
+    flanks = NULL;
+    flanks = NULL;
 }
 
 /* Calls with the first, second, third .. allocation failing, until the call needs no more of them. */
@@ -284,10 +285,11 @@ static void building_flanks_survives_any_failed_allocation(void) {
     path = file_of(pitch_text);
     GM_ASSERT_INT(read_pitch(), GM_IO_OK);
     survives_any_failed_allocation(build, 1); /* the flanks */
-    GM_ASSERT_INT(flanks.drive.count, 2);
-    gm_flanks_memory_free(memory);
-    survives_any_failed_allocation(build_with_design, 4); /* also two designs and a table */
-    GM_ASSERT_INT(flanks.coast.face_nodes - 1, 23);       /* 5 um / 23^2 is below 0.01 um */
+    GM_ASSERT_INT(flanks->side[GM_DRIVE].count, 2);
+    gm_flanks_free(flanks);
+    flanks = NULL;
+    survives_any_failed_allocation(build_with_design, 4);     /* also two designs and a table */
+    GM_ASSERT_INT(flanks->side[GM_COAST].face_nodes - 1, 23); /* 5 um / 23^2 is below 0.01 um */
     free_all();
     GM_ASSERT_INT(alive, 0);
 }
@@ -381,9 +383,8 @@ static void refusing_to_write_or_to_build_leaves_nothing_behind(void) {
     gm_flanks_options_default(&options);
     options.scale = 1e308;
     options.normal_factor = 1e308;
-    GM_ASSERT_INT(
-        gm_flanks_build(&flanks, &memory, TEETH, &deviations, &pitch, &options, NULL, &error),
-        GM_IO_ERR_OPTION);
+    GM_ASSERT_INT(gm_flanks_build(&flanks, TEETH, &deviations, &pitch, &options, NULL, &error),
+                  GM_IO_ERR_OPTION);
     pitch.drive[0] = (double)NAN;
     GM_ASSERT_INT(build(), GM_IO_ERR_OPTION);
     GM_ASSERT_INT(gm_pitch_write(&pitch, IO_TEST_PATH("out.csv"), &error), GM_IO_ERR_OPTION);

@@ -52,8 +52,7 @@ static void bodies_obey_newton(void) {
             const double x = offsets[i];
             const double over = fabs(x) - 50e-6;
             const double sign = x > 0.0 ? 1.0 : -1.0;
-            const double spring =
-                gears.simple_stiffness * over + gears.simple_damping * rate * sign;
+            const double spring = case_spring(&gears) * over + case_damper(&gears) * rate * sign;
             const double force = over > 0.0 ? sign * fmax(spring, 0.0) : 0.0;
 
             const double r_bp = gears.pair.pinion.base_radius, r_bw = gears.pair.wheel.base_radius;
@@ -147,10 +146,10 @@ static void jacobian_knows_when_flanks_would_pull(void) {
     set_state(&model, 52e-6, 1e-3, 0.0, 0.0, state);
     model_jacobian(&model, 0.0, state, jacobian);
     const double mobility = pow(gears.pair.wheel.base_radius, 2) / case_wheel_inertia;
-    GM_ASSERT_REL(jacobian[STATE_OFFSET_RATE][STATE_OFFSET_RATE], -gears.simple_damping * mobility,
+    GM_ASSERT_REL(jacobian[STATE_OFFSET_RATE][STATE_OFFSET_RATE], -case_damper(&gears) * mobility,
                   1e-13);
     GM_ASSERT_REL(jacobian[STATE_OFFSET][STATE_OFFSET_RATE],
-                  -gears.simple_stiffness * mobility / model.natural_frequency, 1e-13);
+                  -case_spring(&gears) * mobility / model.natural_frequency, 1e-13);
     model_free(&model);
 }
 
@@ -195,7 +194,7 @@ static void simple_start_is_the_closed_form(void) {
 
     model_init(&model, &conf, &gears);
     GM_ASSERT_INT(model_quasi_static_start(&model, state), GM_OK);
-    GM_ASSERT_REL(state[STATE_OFFSET], 50.0 + 1e6 * force / gears.simple_stiffness, 1e-14);
+    GM_ASSERT_REL(state[STATE_OFFSET], 50.0 + 1e6 * force / case_spring(&gears), 1e-14);
     model_free(&model);
 }
 

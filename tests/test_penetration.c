@@ -5,6 +5,7 @@
  * is judged by test_reference.c, test_sweep.c and test_properties.c. */
 #include "gearmesh/gearmesh.h"
 #include "gm_test.h"
+#include "internal.h" /* what the objects hold */
 #include "random_gears.h"
 #include "reference_gear.h"
 
@@ -39,13 +40,12 @@ static void state_and_position_give_the_same_bits(void) {
         memset(&b, 0, sizeof b);
         GM_ASSERT_INT(gm_penetration_3d(&c.pair, c.use[0], c.use[1], &state, &a), GM_OK);
         GM_ASSERT_INT(gm_position_from_state(&c.pair, &state, &position), GM_OK);
-        GM_ASSERT_INT(gm_penetration_3d_at(&c.pair, c.use[0], c.use[1], &position, &b), GM_OK);
+        GM_ASSERT_INT(penetration_3d_at(&c.pair, c.use[0], c.use[1], &position, &b), GM_OK);
         GM_ASSERT(memcmp(&a, &b, sizeof a) == 0);
 
         /* The sum alone: the same, derivatives NaN. */
         gm_penetration sum;
-        GM_ASSERT_INT(gm_penetration_3d_sum_at(&c.pair, c.use[0], c.use[1], &position, &sum),
-                      GM_OK);
+        GM_ASSERT_INT(penetration_3d_sum_at(&c.pair, c.use[0], c.use[1], &position, &sum), GM_OK);
         GM_ASSERT_NAN(sum.d_pinion_angle);
         GM_ASSERT_NAN(sum.d_wheel_angle);
         /* Another way of adding up may round differently: 1e-13 of the sum. */
@@ -63,7 +63,7 @@ static void state_and_position_give_the_same_bits(void) {
 typedef int evaluation(const gm_pair *pair, const gm_flanks *pinion, const gm_flanks *wheel,
                        const gm_position *position, gm_penetration *result);
 
-static evaluation *const evaluations[] = {gm_penetration_3d_at, gm_penetration_3d_sum_at};
+static evaluation *const evaluations[] = {penetration_3d_at, penetration_3d_sum_at};
 
 static void null_pointers_are_refused(void) {
     const gm_pair pair = reference_pair(REFERENCE_FACE_WIDTH);
@@ -97,9 +97,9 @@ static void null_pointers_are_refused(void) {
     assert_all_nan(&r);
     GM_ASSERT_INT(gm_penetration_simple(&pair, &state, NULL), GM_ERR_NULL);
     memset(&r, 1, sizeof r);
-    GM_ASSERT_INT(gm_penetration_simple_at(NULL, 0.0, 0.0, &r), GM_ERR_NULL);
+    GM_ASSERT_INT(penetration_simple_at(NULL, 0.0, 0.0, &r), GM_ERR_NULL);
     assert_all_nan(&r);
-    GM_ASSERT_INT(gm_penetration_simple_at(&pair, 0.0, 0.0, NULL), GM_ERR_NULL);
+    GM_ASSERT_INT(penetration_simple_at(&pair, 0.0, 0.0, NULL), GM_ERR_NULL);
 }
 
 /* A solver may fill a position itself: no number in it may lead outside the tables. */
@@ -141,13 +141,13 @@ static void positions_out_of_range_are_refused(void) {
         }
         gm_wrench w;
         memset(&w, 1, sizeof w);
-        GM_ASSERT_INT(gm_wrench_3d_at(&pair, NULL, NULL, &wrong[i], 1e8, 1.0, &w), expected[i]);
+        GM_ASSERT_INT(wrench_3d_at(&pair, NULL, NULL, &wrong[i], 1e8, 1.0, &w), expected[i]);
         GM_ASSERT_NAN(w.pinion_force[0]);
         GM_ASSERT_NAN(w.wheel_moment[2]);
     }
     const gm_position good = good_position();
     gm_penetration r;
-    GM_ASSERT_INT(gm_penetration_3d_at(&pair, NULL, NULL, &good, &r), GM_OK);
+    GM_ASSERT_INT(penetration_3d_at(&pair, NULL, NULL, &good, &r), GM_OK);
     GM_ASSERT(r.drive > 0.0);
 }
 
@@ -158,10 +158,10 @@ static void simple_model_refuses_what_is_no_number(void) {
         gm_test_context("%g", bad[k]);
         gm_penetration r;
         memset(&r, 1, sizeof r);
-        GM_ASSERT_INT(gm_penetration_simple_at(&pair, bad[k], 0.0, &r), GM_STATE_NOT_FINITE);
+        GM_ASSERT_INT(penetration_simple_at(&pair, bad[k], 0.0, &r), GM_STATE_NOT_FINITE);
         assert_all_nan(&r);
         memset(&r, 1, sizeof r);
-        GM_ASSERT_INT(gm_penetration_simple_at(&pair, 0.0, bad[k], &r), GM_STATE_NOT_FINITE);
+        GM_ASSERT_INT(penetration_simple_at(&pair, 0.0, bad[k], &r), GM_STATE_NOT_FINITE);
         assert_all_nan(&r);
     }
 }
@@ -190,15 +190,14 @@ static void speeds_are_taken_up_to_1e9(void) {
             GM_ASSERT_NAN(position.offset_rate);
         }
         position = (gm_position){0, 0, 0.0, 0.0, absurd[k]};
-        GM_ASSERT_INT(gm_penetration_3d_at(&pair, NULL, NULL, &position, &r),
-                      GM_STATE_OUT_OF_RANGE);
+        GM_ASSERT_INT(penetration_3d_at(&pair, NULL, NULL, &position, &r), GM_STATE_OUT_OF_RANGE);
         assert_all_nan(&r);
-        GM_ASSERT_INT(gm_wrench_3d_at(&pair, NULL, NULL, &position, 1e8, 1e3, &w),
+        GM_ASSERT_INT(wrench_3d_at(&pair, NULL, NULL, &position, 1e8, 1e3, &w),
                       GM_STATE_OUT_OF_RANGE);
         GM_ASSERT_NAN(w.wheel_force[0]);
-        GM_ASSERT_INT(gm_penetration_simple_at(&pair, 0.0, absurd[k], &r), GM_STATE_OUT_OF_RANGE);
+        GM_ASSERT_INT(penetration_simple_at(&pair, 0.0, absurd[k], &r), GM_STATE_OUT_OF_RANGE);
         assert_all_nan(&r);
-        GM_ASSERT_INT(gm_penetration_simple_at(&pair, k % 2 ? 1.01e18 : -1.7e308, 0.0, &r),
+        GM_ASSERT_INT(penetration_simple_at(&pair, k % 2 ? 1.01e18 : -1.7e308, 0.0, &r),
                       GM_STATE_OUT_OF_RANGE);
         assert_all_nan(&r);
         GM_ASSERT_INT(gm_position_from_pinion_angle(&pair, 0.1, 0.0, absurd[k], &position),
@@ -207,10 +206,10 @@ static void speeds_are_taken_up_to_1e9(void) {
     }
     gm_penetration r;
     gm_position position = {0, 0, 0.0, 0.0, 1e9};
-    GM_ASSERT_INT(gm_penetration_3d_at(&pair, NULL, NULL, &position, &r), GM_OK);
+    GM_ASSERT_INT(penetration_3d_at(&pair, NULL, NULL, &position, &r), GM_OK);
     GM_ASSERT_REL(r.rate, 1e9 * (r.drive_contact + r.coast_contact), 1e-15);
     GM_ASSERT_INT(gm_position_from_pinion_angle(&pair, 0.1, 0.0, -1e9, &position), GM_OK);
-    GM_ASSERT_INT(gm_penetration_simple_at(&pair, -1e18, -1e9, &r), GM_OK);
+    GM_ASSERT_INT(penetration_simple_at(&pair, -1e18, -1e9, &r), GM_OK);
     GM_ASSERT_REL(r.coast, 1e18, 1e-15);
     GM_ASSERT_REL(r.rate, -1e9, 1e-15);
     const gm_state state = {0.1, 0.1 * 45.0 / 41.0, 1e9, -1e9};
@@ -246,7 +245,7 @@ static void evaluation_writes_its_output_alone(void) {
         size_t bytes[2] = {0, 0};
         for (int g = 0; g < 2; g++) {
             if (c.use[g] != NULL) {
-                const gm_flank_tables *s = &c.flanks[g].flanks.drive;
+                const gmi_tables *s = &c.flanks[g].flanks->side[GM_DRIVE];
                 bytes[g] =
                     (size_t)(s->capacity * s->face_nodes * s->profile_nodes) * 4 * sizeof(double);
                 tables[g] = malloc(bytes[g] + 1);
@@ -263,7 +262,8 @@ static void evaluation_writes_its_output_alone(void) {
         GM_ASSERT(memcmp(&before, &c.pair, sizeof before) == 0);
         for (int g = 0; g < 2; g++) {
             if (c.use[g] != NULL) {
-                GM_ASSERT(memcmp(tables[g], c.flanks[g].flanks.drive.values, bytes[g]) == 0);
+                GM_ASSERT(memcmp(tables[g], c.flanks[g].flanks->side[GM_DRIVE].values, bytes[g]) ==
+                          0);
             }
             free(tables[g]);
         }

@@ -131,7 +131,8 @@ static void both_ways_to_a_position_agree(void) {
                   1e-14);
 }
 
-static void half_a_base_pitch_is_the_limit(void) {
+/* A position may be anywhere, as the simple model is; the 3D model ends where a tooth would be skipped. */
+static void half_a_base_pitch_is_the_limit_of_the_3d_model(void) {
     const gm_pair pair = reference_pair(REFERENCE_FACE_WIDTH);
     const double limit = pair.transverse_base_pitch / 2;
     gm_position position;
@@ -140,15 +141,20 @@ static void half_a_base_pitch_is_the_limit(void) {
         GM_ASSERT_INT(
             gm_position_from_pinion_angle(&pair, 0.3, s * limit * (1.0 - 1e-15), 0.0, &position),
             GM_OK);
-        GM_ASSERT_INT(gm_position_from_pinion_angle(&pair, 0.3, s * limit, 0.0, &position),
-                      GM_STATE_OUT_OF_RANGE);
-        GM_ASSERT_NAN(position.offset);
-        GM_ASSERT_NAN(position.phase);
+        gm_penetration r;
+        GM_ASSERT_INT(penetration_3d_at(&pair, NULL, NULL, &position, &r), GM_OK);
+        GM_ASSERT_INT(gm_position_from_pinion_angle(&pair, 0.3, s * limit, 0.0, &position), GM_OK);
+        GM_ASSERT_REL(position.offset, s * limit, 0.0);
+        GM_ASSERT_INT(penetration_3d_at(&pair, NULL, NULL, &position, &r), GM_STATE_OUT_OF_RANGE);
+        GM_ASSERT_NAN(r.penetration);
         const gm_state state = {.pinion_angle = 0.3,
                                 .wheel_angle = (0.3 * pair.pinion.base_radius - s * limit * 1.001) /
                                                pair.wheel.base_radius};
-        GM_ASSERT_INT(gm_position_from_state(&pair, &state, &position), GM_STATE_OUT_OF_RANGE);
-        GM_ASSERT_NAN(position.offset);
+        GM_ASSERT_INT(gm_position_from_state(&pair, &state, &position), GM_OK);
+        GM_ASSERT_ABS(position.offset, s * limit * 1.001, length_rounding(&pair));
+        GM_ASSERT_INT(gm_penetration_3d(&pair, NULL, NULL, &state, &r), GM_STATE_OUT_OF_RANGE);
+        GM_ASSERT_NAN(r.penetration);
+        GM_ASSERT_INT(gm_penetration_simple(&pair, &state, &r), GM_OK);
     }
 }
 
@@ -229,7 +235,7 @@ int main(int argc, char **argv) {
         GM_TEST(tooth_and_phase_are_those_of_the_angle),
         GM_TEST(multiples_of_the_pitch_stay_in_range),
         GM_TEST(both_ways_to_a_position_agree),
-        GM_TEST(half_a_base_pitch_is_the_limit),
+        GM_TEST(half_a_base_pitch_is_the_limit_of_the_3d_model),
         GM_TEST(angles_are_taken_up_to_1e9_rad),
         GM_TEST(numbers_that_are_none_are_refused),
         GM_TEST(null_pointers_are_refused),

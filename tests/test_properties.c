@@ -225,9 +225,9 @@ static int image_ramps(const random_flanks *original, gm_flanks *image, int from
 }
 
 /** Flanks of an image of the gear: teeth renumbered, sides exchanged, face turned round. */
-static int image_flanks(const random_flanks *original, gm_flanks *image, void **memory,
+static int image_flanks(const random_flanks *original, gm_flanks **made, void **memory,
                         tooth_map *map, int exchange_sides, int turn_face) {
-    const int teeth = original->flanks.teeth;
+    const int teeth = gm_flanks_teeth(original->flanks);
     int nodes[2][2] = {{2, 2}, {2, 2}};
     for (int side = 0; side < 2; side++) {
         const model_table *tables = original->model.table[exchange_sides ? 1 - side : side];
@@ -242,7 +242,8 @@ static int image_flanks(const random_flanks *original, gm_flanks *image, void **
                                     teeth, nodes[1][0], nodes[1][1]};
     const size_t size = gm_flanks_size(&sizes);
     *memory = malloc(size);
-    int good = GM_ASSERT_INT(gm_flanks_init(image, &sizes, *memory, size), GM_OK);
+    int good = GM_ASSERT_INT(gm_flanks_init(made, &sizes, *memory, size), GM_OK);
+    gm_flanks *image = *made;
     for (int side = 0; side < 2; side++) {
         const int from = exchange_sides ? 1 - side : side;
         good &= image_ramps(original, image, from, side, turn_face);
@@ -314,7 +315,7 @@ static int compare_with_image(const random_case *c, enum symmetry symmetry) {
     }
 
     const gm_pair pair = make_pair(&params);
-    gm_flanks flanks[2];
+    gm_flanks *flanks[2];
     void *memory[2] = {NULL, NULL};
     const gm_flanks *use[2] = {NULL, NULL};
     for (int gear = 0; gear < 2; gear++) {
@@ -322,7 +323,7 @@ static int compare_with_image(const random_case *c, enum symmetry symmetry) {
         if (c->use[source] != NULL) {
             image_flanks(&c->flanks[source], &flanks[gear], &memory[gear], maps[gear],
                          symmetry == MIRRORED_Y, symmetry == MIRRORED_Z);
-            use[gear] = &flanks[gear];
+            use[gear] = flanks[gear];
         }
     }
 
@@ -450,11 +451,12 @@ static gm_pair hunting_pair(void) {
 }
 
 /** Flanks of `teeth` teeth from a random generator; each its own pitch deviation if `different`. */
-static void *set_flanks(gm_flanks *flanks, int teeth, uint64_t seed, int different) {
+static gm_flanks *make_flanks(int teeth, uint64_t seed, int different) {
     const gm_flanks_params sizes = {teeth, 1, 5, 6, 1, 4, 3};
     const size_t size = gm_flanks_size(&sizes);
     void *memory = malloc(size);
-    GM_ASSERT_INT(gm_flanks_init(flanks, &sizes, memory, size), GM_OK);
+    gm_flanks *flanks;
+    GM_ASSERT_INT(gm_flanks_init(&flanks, &sizes, memory, size), GM_OK);
     double values[30];
     for (int i = 0; i < 30; i++) {
         values[i] = gm_test_uniform(&seed, -1e-6, 1e-6);
@@ -466,7 +468,7 @@ static void *set_flanks(gm_flanks *flanks, int teeth, uint64_t seed, int differe
                           GM_OK);
         }
     }
-    return memory;
+    return flanks;
 }
 
 /** Sum of the drive flanks after n mesh periods from an arbitrary start, in deep contact. */
@@ -485,41 +487,37 @@ static double after_meshes(const gm_pair *pair, const gm_flanks *pinion, const g
 
 static void equal_teeth_repeat_every_pitch(void) {
     const gm_pair pair = hunting_pair();
-    gm_flanks pinion;
-    gm_flanks wheel;
-    void *pinion_memory = set_flanks(&pinion, 45, 1, 0);
-    void *wheel_memory = set_flanks(&wheel, 40, 2, 0);
-    const double first = after_meshes(&pair, &pinion, &wheel, 0);
+    gm_flanks *pinion = make_flanks(45, 1, 0);
+    gm_flanks *wheel = make_flanks(40, 2, 0);
+    const double first = after_meshes(&pair, pinion, wheel, 0);
     GM_ASSERT(first > 1e-6);
     for (int n = -400; n <= 400; n++) {
         gm_test_context("%d pitches", n);
         /* Both angles reach 60 rad: half a unit in the last place each, times 2 touching pairs. */
         const double rounding = 2.2 * 2.0 * 60.0 * 0x1p-53 * pair.pinion.base_radius;
-        GM_ASSERT_ABS(after_meshes(&pair, &pinion, &wheel, n), first, rounding);
+        GM_ASSERT_ABS(after_meshes(&pair, pinion, wheel, n), first, rounding);
     }
-    free(pinion_memory);
-    free(wheel_memory);
+    free(pinion); /* it begins at its memory */
+    free(wheel);
 }
 
 static void different_teeth_repeat_in_the_hunting_period_and_no_shorter_one(void) {
     const gm_pair pair = hunting_pair();
-    gm_flanks pinion;
-    gm_flanks wheel;
-    void *pinion_memory = set_flanks(&pinion, 45, 1, 1);
-    void *wheel_memory = set_flanks(&wheel, 40, 2, 1);
-    const double first = after_meshes(&pair, &pinion, &wheel, 0);
+    gm_flanks *pinion = make_flanks(45, 1, 1);
+    gm_flanks *wheel = make_flanks(40, 2, 1);
+    const double first = after_meshes(&pair, pinion, wheel, 0);
     for (int n = 1; n < 360; n++) {
         gm_test_context("%d pitches", n);
         /* Pitch deviations of about 1 um that differ: nothing agrees to a picometre by chance. */
-        GM_ASSERT(fabs(after_meshes(&pair, &pinion, &wheel, n) - first) > 1e-12);
+        GM_ASSERT(fabs(after_meshes(&pair, pinion, wheel, n) - first) > 1e-12);
     }
     for (int n = -2; n <= 2; n++) {
         gm_test_context("%d hunting periods", n);
         const double rounding = 2.2 * 2.0 * 110.0 * 0x1p-53 * pair.pinion.base_radius;
-        GM_ASSERT_ABS(after_meshes(&pair, &pinion, &wheel, 360 * n), first, rounding);
+        GM_ASSERT_ABS(after_meshes(&pair, pinion, wheel, 360 * n), first, rounding);
     }
-    free(pinion_memory);
-    free(wheel_memory);
+    free(pinion); /* it begins at its memory */
+    free(wheel);
 }
 
 /* ---------------------------------------------------------------------------------------------
@@ -531,12 +529,12 @@ static void uniform_deviation_shifts_the_penetration(void) {
     const double c = 3e-6;
     const double nodes[4] = {c, c, c, c};
     const gm_flanks_params sizes = {45, 1, 2, 2, 0, 0, 0};
-    double memory[256];
-    gm_flanks flanks;
+    double memory[512];
+    gm_flanks *flanks;
     GM_ASSERT(gm_flanks_size(&sizes) <= sizeof memory);
     GM_ASSERT_INT(gm_flanks_init(&flanks, &sizes, memory, sizeof memory), GM_OK);
     GM_ASSERT_INT(
-        gm_flanks_set_table(&flanks, GM_DRIVE, GM_ALL_TEETH, nodes, pair.normal_to_transverse),
+        gm_flanks_set_table(flanks, GM_DRIVE, GM_ALL_TEETH, nodes, pair.normal_to_transverse),
         GM_OK);
     /* errata of the paper: 1 / cos(beta_b) = 1.17371 (printed digits) */
     GM_ASSERT_ABS(pair.normal_to_transverse, 1.17371, 0.5e-5);
@@ -547,7 +545,7 @@ static void uniform_deviation_shifts_the_penetration(void) {
         const double delta = -5e-6 + 0.3e-6 * k;
         const double shifted = delta + c / cos(pair.base_helix_angle);
         const double x = pair.backlash / 2 + delta;
-        const gm_penetration real = at(&pair, &flanks, NULL, angle, x);
+        const gm_penetration real = at(&pair, flanks, NULL, angle, x);
         /* The limits stay those of the ideal flanks at this x: their length from the model. */
         const gm_pair_params params = reference_params(REFERENCE_FACE_WIDTH);
         model_pair model;
@@ -566,18 +564,18 @@ static void uniform_deviation_shifts_the_penetration(void) {
 static void pitch_deviation_is_transverse_and_of_one_tooth(void) {
     const gm_pair pair = reference_pair(REFERENCE_FACE_WIDTH);
     const gm_flanks_params sizes = {41, 0, 0, 0, 0, 0, 0};
-    double memory[256];
-    gm_flanks flanks;
+    double memory[512];
+    gm_flanks *flanks;
     GM_ASSERT(gm_flanks_size(&sizes) <= sizeof memory);
     GM_ASSERT_INT(gm_flanks_init(&flanks, &sizes, memory, sizeof memory), GM_OK);
     const double f = 4e-6;
-    GM_ASSERT_INT(gm_flanks_set_pitch(&flanks, GM_DRIVE, 7, f), GM_OK);
+    GM_ASSERT_INT(gm_flanks_set_pitch(flanks, GM_DRIVE, 7, f), GM_OK);
     const double x = pair.backlash / 2 + 1e-6;
     double lifted = 0.0;
     enum { STEPS = 41 * 40 };
     for (int k = 0; k < STEPS; k++) {
         const double angle = 2.0 * pi * k / STEPS * 41.0 / 45.0;
-        lifted += at(&pair, NULL, &flanks, angle, x).drive - at(&pair, NULL, NULL, angle, x).drive;
+        lifted += at(&pair, NULL, flanks, angle, x).drive - at(&pair, NULL, NULL, angle, x).drive;
     }
     /* Over one turn of the wheel the tooth carries f on a contact length of (g_alpha - delta) / p_bt for
      * one pitch in 41; quadrature as in the test of the roll mean, 40 steps per pitch. */
@@ -721,8 +719,7 @@ static void no_helix_angle_is_too_small(void) {
     params.pinion_tip_radius = 39.0e-3;
     params.wheel_tip_radius = 35.7e-3;
     const gm_pair spur = make_pair(&params);
-    gm_flanks flanks;
-    void *memory = set_flanks(&flanks, 45, 3, 1);
+    gm_flanks *flanks = make_flanks(45, 3, 1);
     static const double angles[] = {1e-13, 1e-16, 1e-20, 1e-100, 1e-300, 1e-308, 1e-312, 5e-324};
     for (size_t i = 0; i < sizeof angles / sizeof angles[0]; i++) {
         for (int hand = -1; hand <= 1; hand += 2) {
@@ -733,7 +730,7 @@ static void no_helix_angle_is_too_small(void) {
                 const double angle = spur.pinion.pitch_angle * (k + 0.37) / 100.0;
                 for (int s = -1; s <= 1; s += 2) {
                     const double x = s * (spur.backlash / 2 + 7e-6);
-                    const gm_flanks *use = k % 2 == 0 ? NULL : &flanks;
+                    const gm_flanks *use = k % 2 == 0 ? NULL : flanks;
                     const gm_penetration exact = at(&spur, use, NULL, angle, x);
                     const gm_penetration got = at(&almost, use, NULL, angle, x);
                     /* No event comes nearer than 1e-4 of a pitch to these positions. */
@@ -745,14 +742,14 @@ static void no_helix_angle_is_too_small(void) {
                         GM_ASSERT_NEAR(got.d_pinion_angle, exact.d_pinion_angle, 1e-9, 0.0) &
                         GM_ASSERT_NEAR(got.d_wheel_angle, exact.d_wheel_angle, 1e-9, 0.0);
                     if (!good) {
-                        free(memory);
+                        free(flanks);
                         return;
                     }
                 }
             }
         }
     }
-    free(memory);
+    free(flanks);
 }
 
 static void spur_jumps_where_a_pair_enters_and_helical_does_not(void) {
@@ -844,7 +841,7 @@ static void mean_stiffness_is_contact_ratio_times_that_of_a_pair(void) {
         sum += at(&pair, NULL, NULL, pair.pinion.pitch_angle * k / 1000.0, x).drive;
     }
     gm_penetration simple;
-    GM_ASSERT_INT(gm_penetration_simple_at(&pair, x, 0.0, &simple), GM_OK);
+    GM_ASSERT_INT(penetration_simple_at(&pair, x, 0.0, &simple), GM_OK);
     GM_ASSERT_REL(sum / 1000.0 / simple.drive, 2.123601, 1e-6); /* errata of the paper */
 }
 

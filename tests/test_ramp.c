@@ -7,15 +7,16 @@
  */
 #include "gearmesh/gearmesh.h"
 #include "gm_test.h"
+#include "internal.h" /* what the objects hold */
 #include "reference_gear.h"
 
 #define UM 1e-6
 
 enum { FACE_NODES = 5, PROFILE_NODES = 21, NODES = FACE_NODES * PROFILE_NODES };
-enum { MEMORY_DOUBLES = 10 * NODES };
+enum { MEMORY_DOUBLES = 10 * NODES + 200 };
 
 /* Of a pinion or wheel, with room for one table on either side, or none. */
-static gm_flanks flanks_of(const gm_pair *pair, int wheel, int tables) {
+static gm_flanks *flanks_of(const gm_pair *pair, int wheel, int tables) {
     static double memory[4][MEMORY_DOUBLES];
     static int next;
     double *place = memory[next++ % 4]; /* the fourth one back is no longer in use */
@@ -26,7 +27,7 @@ static gm_flanks flanks_of(const gm_pair *pair, int wheel, int tables) {
                                     .coast_tables = tables,
                                     .coast_face_nodes = FACE_NODES,
                                     .coast_profile_nodes = PROFILE_NODES};
-    gm_flanks flanks;
+    gm_flanks *flanks;
     GM_ASSERT_INT(gm_flanks_init(&flanks, &sizes, place, sizeof memory[0]), GM_OK);
     return flanks;
 }
@@ -55,10 +56,10 @@ static void same_results(const gm_pair *pair, const gm_flanks *const one[2],
     gm_penetration a, b;
     gm_wrench force_a, force_b;
     GM_ASSERT_INT(gm_position_from_pinion_angle(pair, angle, x, 1e-3, &position), GM_OK);
-    GM_ASSERT_INT(gm_penetration_3d_at(pair, one[0], one[1], &position, &a), GM_OK);
-    GM_ASSERT_INT(gm_penetration_3d_at(pair, other[0], other[1], &position, &b), GM_OK);
-    GM_ASSERT_INT(gm_wrench_3d_at(pair, one[0], one[1], &position, 1e8, 0.0, &force_a), GM_OK);
-    GM_ASSERT_INT(gm_wrench_3d_at(pair, other[0], other[1], &position, 1e8, 0.0, &force_b), GM_OK);
+    GM_ASSERT_INT(penetration_3d_at(pair, one[0], one[1], &position, &a), GM_OK);
+    GM_ASSERT_INT(penetration_3d_at(pair, other[0], other[1], &position, &b), GM_OK);
+    GM_ASSERT_INT(wrench_3d_at(pair, one[0], one[1], &position, 1e8, 0.0, &force_a), GM_OK);
+    GM_ASSERT_INT(wrench_3d_at(pair, other[0], other[1], &position, 1e8, 0.0, &force_b), GM_OK);
     const double share = tolerance / (0.1 * UM); /* reliefs rise by more than that over the flank */
     GM_ASSERT_ABS(a.drive, b.drive, tolerance);
     GM_ASSERT_ABS(a.coast, b.coast, tolerance);
@@ -87,13 +88,13 @@ static void same_results(const gm_pair *pair, const gm_flanks *const one[2],
  */
 static void end_relief_of_spur_gears_is_a_triangle(void) {
     const gm_pair pair = spur_pair();
-    gm_flanks flanks = flanks_of(&pair, 0, 0);
+    gm_flanks *flanks = flanks_of(&pair, 0, 0);
     const double share = 0.3, delta = 7.0 * UM;
     static const double amounts[] = {0.0, 3.0 * UM, 7.0 * UM, 20.0 * UM};
     for (int k = 0; k < 4; k++) {
         const double amount = amounts[k];
         const gm_flank_ramp ramp = {amount, -amount / share, 0.0};
-        set_ramps(&flanks, &ramp, 1);
+        set_ramps(flanks, &ramp, 1);
         const double touching = amount > delta ? share * delta / amount : share;
         const double sum = (1.0 - share) * delta +
                            touching * (amount > delta ? 0.5 * delta : delta - 0.5 * amount);
@@ -101,7 +102,7 @@ static void end_relief_of_spur_gears_is_a_triangle(void) {
             gm_test_context("%g um, step %d", amount / UM, n);
             const double angle = 0.02 * n, x = 0.5 * pair.backlash + delta;
             const double pairs = at(&pair, NULL, NULL, angle, x).drive_contact;
-            const gm_penetration got = at(&pair, &flanks, NULL, angle, x);
+            const gm_penetration got = at(&pair, flanks, NULL, angle, x);
             GM_ASSERT_REL(got.drive, pairs * sum, 1e-10); /* x is rounded: 1e-16 m of 7 um */
             GM_ASSERT_REL(got.drive_contact, pairs * (1.0 - share + touching), 1e-9);
         }
@@ -123,14 +124,14 @@ static void corner_takes_a_pyramid_off_the_mean(void) {
         const double sign = 2.0 * sides[k] - 1.0;
         const gm_flank_ramp corner = {amount - amount * (sides[k] / share_beta + 1.0 / share_alpha),
                                       sign * amount / share_beta, amount / share_alpha};
-        gm_flanks flanks = flanks_of(&pair, 0, 0);
-        set_ramps(&flanks, &corner, 1);
+        gm_flanks *flanks = flanks_of(&pair, 0, 0);
+        set_ramps(flanks, &corner, 1);
         double taken = 0.0;
         for (int n = 0; n < STEPS; n++) {
             const double angle = pair.pinion.pitch_angle * n / STEPS;
             const double x = 0.5 * pair.backlash + 10.0 * UM;
             taken +=
-                (at(&pair, NULL, NULL, angle, x).drive - at(&pair, &flanks, NULL, angle, x).drive) /
+                (at(&pair, NULL, NULL, angle, x).drive - at(&pair, flanks, NULL, angle, x).drive) /
                 STEPS;
         }
         gm_test_context("face %d", k);
@@ -144,7 +145,7 @@ static void corner_takes_a_pyramid_off_the_mean(void) {
 static void ramps_of_both_gears_add_up_in_full_contact(void) {
     const gm_pair pair = reference_pair(REFERENCE_FACE_WIDTH);
     const double delta = 30.0 * UM, x = 0.5 * pair.backlash + delta;
-    gm_flanks pinion = flanks_of(&pair, 0, 0), wheel = flanks_of(&pair, 1, 0);
+    gm_flanks *pinion = flanks_of(&pair, 0, 0), *wheel = flanks_of(&pair, 1, 0);
     /* Tip reliefs whose edges are the same line on the plane of action: rho_w = T0 + delta - rho_p. */
     const double edge = 0.7;
     const double rho = pair.pinion.start_roll_length +
@@ -155,15 +156,15 @@ static void ramps_of_both_gears_add_up_in_full_contact(void) {
     const gm_flank_ramp opposite = {-on_wheel * 15.0 * UM, 0.0, 15.0 * UM};
     const gm_flank_ramp end = {-4.0 * UM, 8.0 * UM, 0.0};
     const gm_flank_ramp of_wheel[] = {opposite, end};
-    set_ramps(&pinion, &tip, 1);
-    set_ramps(&wheel, of_wheel, 2);
+    set_ramps(pinion, &tip, 1);
+    set_ramps(wheel, of_wheel, 2);
     for (int k = 0; k < 50; k++) {
         gm_test_context("step %d", k);
         const double angle = 0.01 * k;
         const double none = at(&pair, NULL, NULL, angle, x).drive;
-        const double by_pinion = none - at(&pair, &pinion, NULL, angle, x).drive;
-        const double by_wheel = none - at(&pair, NULL, &wheel, angle, x).drive;
-        const gm_penetration both = at(&pair, &pinion, &wheel, angle, x);
+        const double by_pinion = none - at(&pair, pinion, NULL, angle, x).drive;
+        const double by_wheel = none - at(&pair, NULL, wheel, angle, x).drive;
+        const gm_penetration both = at(&pair, pinion, wheel, angle, x);
         GM_ASSERT(by_pinion > 0.1 * UM && by_wheel > 0.1 * UM);
         GM_ASSERT_ABS(none - both.drive, by_pinion + by_wheel, 1e-13 * none);
         GM_ASSERT_REL(both.drive_contact, at(&pair, NULL, NULL, angle, x).drive_contact, 1e-13);
@@ -183,8 +184,8 @@ static gm_modification on_grid[] = {
 };
 
 /* Ramps of one flank and a table of some micrometres; or one table that is both. */
-static void make_both(const gm_pair *pair, int wheel, int count, uint64_t *seed, gm_flanks *ramped,
-                      gm_flanks *tabled) {
+static void make_both(const gm_pair *pair, int wheel, int count, uint64_t *seed,
+                      gm_flanks **made_ramped, gm_flanks **made_tabled) {
     gm_modification list[4], rest[4];
     const gm_modifications design = {list, count, wheel ? &pair->wheel : &pair->pinion,
                                      pair->face_width};
@@ -201,8 +202,8 @@ static void make_both(const gm_pair *pair, int wheel, int count, uint64_t *seed,
     GM_ASSERT_INT(gm_modifications_split(&design, ramps, &ramp_count, rest, &rest_count), GM_OK);
     GM_ASSERT_INT(ramp_count, count);
     GM_ASSERT_INT(rest_count, 0);
-    *ramped = flanks_of(pair, wheel, 1);
-    *tabled = flanks_of(pair, wheel, 1);
+    gm_flanks *ramped = *made_ramped = flanks_of(pair, wheel, 1);
+    gm_flanks *tabled = *made_tabled = flanks_of(pair, wheel, 1);
     set_table(ramped, values);
     set_ramps(ramped, ramps, ramp_count);
     GM_ASSERT_INT(gm_modifications_add(&design, FACE_NODES, PROFILE_NODES, values), GM_OK);
@@ -211,13 +212,13 @@ static void make_both(const gm_pair *pair, int wheel, int count, uint64_t *seed,
 
 static void compare_with_tables(const gm_pair *pair, uint64_t seed) {
     for (int count = 1; count <= 4; count++) {
-        gm_flanks ramped[2], tabled[2];
+        gm_flanks *ramped[2], *tabled[2];
         make_both(pair, 0, count, &seed, &ramped[0], &tabled[0]);
         make_both(pair, 1, count, &seed, &ramped[1], &tabled[1]);
         for (int k = 0; k < 60; k++) {
             gm_test_context("%d reliefs, state %d, helix %g", count, k, pair->helix_angle);
-            const gm_flanks *const one[2] = {&ramped[0], k % 3 == 0 ? NULL : &ramped[1]};
-            const gm_flanks *const other[2] = {&tabled[0], k % 3 == 0 ? NULL : &tabled[1]};
+            const gm_flanks *const one[2] = {ramped[0], k % 3 == 0 ? NULL : ramped[1]};
+            const gm_flanks *const other[2] = {tabled[0], k % 3 == 0 ? NULL : tabled[1]};
             const double angle = gm_test_uniform(&seed, -3.0, 3.0);
             /* lengths of some millimetres, rounded: to 1e-17 m, some ten times */
             same_results(pair, one, other, angle, any_offset(&seed, pair), 1e-15);
@@ -252,17 +253,17 @@ static void a_fine_table_of_a_corner_is_off_by_no_more_than_its_bound(void) {
     const size_t size = gm_flanks_size(&sizes);
     void *place = malloc(size);
     double *values = calloc((size_t)(grid.face_nodes * grid.profile_nodes), sizeof *values);
-    gm_flanks tabled, ramped = flanks_of(&pair, 0, 0);
+    gm_flanks *tabled, *ramped = flanks_of(&pair, 0, 0);
     GM_ASSERT_INT(gm_modifications_add(&design, grid.face_nodes, grid.profile_nodes, values),
                   GM_OK);
     GM_ASSERT_INT(gm_flanks_init(&tabled, &sizes, place, size), GM_OK);
-    GM_ASSERT_INT(gm_flanks_set_table(&tabled, GM_DRIVE, GM_ALL_TEETH, values, 1.0), GM_OK);
-    set_ramps(&ramped, ramps, ramp_count);
+    GM_ASSERT_INT(gm_flanks_set_table(tabled, GM_DRIVE, GM_ALL_TEETH, values, 1.0), GM_OK);
+    set_ramps(ramped, ramps, ramp_count);
     double largest = 0.0;
     for (int k = 0; k < 400; k++) {
         const double angle = 0.002 * k, x = 0.5 * pair.backlash + (k % 20) * UM;
-        const gm_penetration exact = at(&pair, &ramped, NULL, angle, x);
-        const double error = at(&pair, &tabled, NULL, angle, x).drive - exact.drive;
+        const gm_penetration exact = at(&pair, ramped, NULL, angle, x);
+        const double error = at(&pair, tabled, NULL, angle, x).drive - exact.drive;
         gm_test_context("step %d", k);
         GM_ASSERT_ABS(error, 0.0, grid.error * (exact.drive_contact + 1e-3));
         largest = fmax(largest, fabs(error));
@@ -286,12 +287,12 @@ static void compare_ramps(const gm_flank_ramp *one, int one_count, const gm_flan
                           int other_count, double tolerance) {
     const gm_pair pair = reference_pair(REFERENCE_FACE_WIDTH);
     uint64_t seed = UINT64_C(81);
-    gm_flanks a = flanks_of(&pair, 0, 0), b = a;
-    set_ramps(&a, one, one_count);
-    set_ramps(&b, other, other_count);
+    gm_flanks *a = flanks_of(&pair, 0, 0), *b = flanks_of(&pair, 0, 0);
+    set_ramps(a, one, one_count);
+    set_ramps(b, other, other_count);
     for (int k = 0; k < 100; k++) {
         gm_test_context("state %d", k);
-        const gm_flanks *const first[2] = {&a, NULL}, *const second[2] = {&b, NULL};
+        const gm_flanks *const first[2] = {a, NULL}, *const second[2] = {b, NULL};
         const double angle = gm_test_uniform(&seed, -3.0, 3.0);
         same_results(&pair, first, second, angle, any_offset(&seed, &pair), tolerance);
     }
@@ -331,7 +332,7 @@ static void edges_along_the_lines_of_contact_are_none(void) {
     const double climb = pair.face_advance / roll;
     const double rise = 40.0 * UM;
     int lower = 0;
-    gm_flanks flanks = flanks_of(&pair, 0, 0);
+    gm_flanks *flanks = flanks_of(&pair, 0, 0);
     for (int k = 0; k < 200; k++) {
         gm_position position;
         const double x = 0.5 * pair.backlash + 20.0 * UM;
@@ -341,11 +342,11 @@ static void edges_along_the_lines_of_contact_are_none(void) {
             (pair.phase_origin[GM_DRIVE] + position.phase - pair.pinion.start_roll_length) / roll;
         const double beside = k % 2 == 0 ? 0.0 : 0.01;
         const gm_flank_ramp ramp = {-rise * (t2 - beside), -rise * climb, rise};
-        set_ramps(&flanks, &ramp, 1);
+        set_ramps(flanks, &ramp, 1);
         gm_test_context("step %d", k);
         gm_penetration got, ideal;
-        GM_ASSERT_INT(gm_penetration_3d_at(&pair, &flanks, NULL, &position, &got), GM_OK);
-        GM_ASSERT_INT(gm_penetration_3d_at(&pair, NULL, NULL, &position, &ideal), GM_OK);
+        GM_ASSERT_INT(penetration_3d_at(&pair, flanks, NULL, &position, &got), GM_OK);
+        GM_ASSERT_INT(penetration_3d_at(&pair, NULL, NULL, &position, &ideal), GM_OK);
         /* Line i is i p_bt behind the edge, and all that touch are longer than nothing. */
         double expected = 0.0;
         const double path[2] = {pair.line_of_action + 20.0 * UM - pair.wheel.tip_roll_length,
@@ -373,18 +374,21 @@ static void edges_along_the_lines_of_contact_are_none(void) {
 
 static void a_cache_has_one_pass_for_ramps_and_follows_them(void) {
     const gm_pair pair = reference_pair(REFERENCE_FACE_WIDTH);
-    gm_flanks pinion = flanks_of(&pair, 0, 0), wheel = flanks_of(&pair, 1, 0);
-    set_ramps(&pinion, some, SOME);
-    set_ramps(&wheel, some, 2);
+    gm_flanks *pinion = flanks_of(&pair, 0, 0), *wheel = flanks_of(&pair, 1, 0);
+    set_ramps(pinion, some, SOME);
+    set_ramps(wheel, some, 2);
     gm_cache_params params;
     gm_cache_params_default(&params);
-    const size_t size = gm_cache_size(&params, &pair, &pinion, &wheel);
+    plain_mesh room;
+    gm_mesh *mesh;
+    GM_ASSERT_INT(plain_mesh_make(&room, &pair, pinion, wheel, 1e8, 0.0, &mesh), GM_OK);
+    const size_t size = gm_cache_size(&params, mesh);
     void *place = malloc(size);
-    gm_cache cache;
+    gm_cache *cache;
     gm_cache_errors errors;
-    GM_ASSERT_INT(gm_cache_init(&cache, &params, &pair, &pinion, &wheel, place, size), GM_OK);
-    GM_ASSERT_INT(cache.passes, 1);
-    GM_ASSERT_INT(gm_cache_error(&cache, 3000, 5, &errors), GM_OK);
+    GM_ASSERT_INT(gm_cache_init(&cache, &params, mesh, place, size), GM_OK);
+    GM_ASSERT_INT(gm_cache_passes(cache), 1);
+    GM_ASSERT_INT(gm_cache_error(cache, 3000, 5, &errors), GM_OK);
     /* The mean sum is some 20 um. Without ramps in either of both it would be off by micrometres. */
     GM_ASSERT(errors.sum_rms < 0.02 * UM);
     GM_ASSERT(errors.sum_largest < 0.2 * UM);

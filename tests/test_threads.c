@@ -4,6 +4,7 @@
 /* Same inputs, same bits, from any thread: four threads share one pair and one set of flanks. */
 #include "gearmesh/gearmesh.h"
 #include "gm_test.h"
+#include "plain_mesh.h"
 #include "random_gears.h"
 
 #include <pthread.h>
@@ -27,13 +28,13 @@ static void *work(void *argument) {
         const double offset = (i % 2 == 0 ? 1.0 : -1.0) * (c->pair.backlash / 2 + 1e-9 * i);
         w->failures +=
             gm_position_from_pinion_angle(&c->pair, angle, offset, 0.1, &position) != GM_OK;
-        w->failures += gm_penetration_3d_at(&c->pair, c->use[0], c->use[1], &position,
-                                            &w->results[i]) != GM_OK;
+        w->failures +=
+            penetration_3d_at(&c->pair, c->use[0], c->use[1], &position, &w->results[i]) != GM_OK;
     }
     w->failures +=
-        gm_wrench_3d_at(&c->pair, c->use[0], c->use[1], &position, 1e8, 1e3, &w->wrench) != GM_OK;
-    w->failures += gm_static_equilibrium(&c->pair, c->use[0], c->use[1], 0.1, 1e8, 20.0,
-                                         &w->equilibrium, NULL) != GM_OK;
+        wrench_3d_at(&c->pair, c->use[0], c->use[1], &position, 1e8, 1e3, &w->wrench) != GM_OK;
+    w->failures +=
+        equilibrium(&c->pair, c->use[0], c->use[1], 0.1, 1e8, 20.0, &w->equilibrium, NULL) != GM_OK;
     return NULL;
 }
 

@@ -151,8 +151,8 @@ static int build_flanks(gear_flanks *flanks, const config *conf, const gm_pair *
     options.drive_modifications = &design->of[GM_DRIVE];
     options.coast_modifications = &design->of[GM_COAST];
     options.modification_tolerance = conf->modification_tolerance;
-    const int status = gm_flanks_build(&flanks->storage, &flanks->memory, task->teeth, deviations,
-                                       pitch, &options, &flanks->report, &error);
+    const int status = gm_flanks_build(&flanks->prepared, task->teeth, deviations, pitch, &options,
+                                       &flanks->report, &error);
     if (status != GM_IO_OK) {
         return refuse_flanks(conf, task, status, &error);
     }
@@ -191,7 +191,7 @@ int gear_flanks_load(gear_flanks *flanks, const config *conf, const gm_pair *pai
 }
 
 void gear_flanks_free(gear_flanks *flanks) {
-    gm_flanks_memory_free(flanks->memory);
+    gm_flanks_free(flanks->prepared);
     memset(flanks, 0, sizeof *flanks);
 }
 

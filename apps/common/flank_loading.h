@@ -11,8 +11,7 @@
 
 /* All zero = ideal. */
 typedef struct gear_flanks {
-    gm_flanks storage;
-    void *memory;            /* what `storage` points into, NULL = the flanks are ideal */
+    gm_flanks *prepared;     /* NULL = ideal */
     gm_flanks_report report; /* what holds the designs */
 } gear_flanks;
 

@@ -5,18 +5,8 @@
 #include "drawing.h"
 
 #include <math.h>
+#include <stdlib.h>
 #include <string.h>
-
-static const double pi = 3.14159265358979323846;
-
-/* Both models shall share eigenfrequency and damping ratio unless told otherwise. */
-static void derive_simple_model(gear_mesh *mesh, const config *conf) {
-    const double contact_ratio = mesh->pair.transverse_contact_ratio;
-
-    mesh->simple_stiffness =
-        isnan(conf->simple_stiffness) ? conf->stiffness * contact_ratio : conf->simple_stiffness;
-    mesh->simple_damping = conf->damping * contact_ratio;
-}
 
 /* Flanks with deviations are evaluated on faces that both begin and end together. */
 static int check_faces(const gear_mesh *mesh, const config *conf) {
@@ -41,20 +31,40 @@ static int check_faces(const gear_mesh *mesh, const config *conf) {
 }
 
 static int load_flanks(gear_mesh *mesh, const config *conf) {
-    gear_flanks *pinion = &mesh->loaded_flanks[GM_PINION];
-    gear_flanks *wheel = &mesh->loaded_flanks[GM_WHEEL];
+    int status = gear_flanks_load(&mesh->flanks[GM_PINION], conf, &mesh->pair, GM_PINION);
 
-    int status = gear_flanks_load(pinion, conf, &mesh->pair, GM_PINION);
     if (status == 0) {
-        status = gear_flanks_load(wheel, conf, &mesh->pair, GM_WHEEL);
+        status = gear_flanks_load(&mesh->flanks[GM_WHEEL], conf, &mesh->pair, GM_WHEEL);
     }
-    if (status == 0 && (pinion->memory != NULL || wheel->memory != NULL)) {
+    if (status == 0 &&
+        (mesh->flanks[GM_PINION].prepared != NULL || mesh->flanks[GM_WHEEL].prepared != NULL)) {
         status = check_faces(mesh, conf);
     }
-
-    mesh->pinion_flanks = pinion->memory != NULL ? &pinion->storage : NULL;
-    mesh->wheel_flanks = wheel->memory != NULL ? &wheel->storage : NULL;
     return status;
+}
+
+/* Pair, flanks and law as one object; none without a stiffness, which only a run requires. */
+static int prepare(gear_mesh *mesh, const config *conf) {
+    gm_mesh_params params;
+
+    gm_mesh_params_default(&params);
+    params.model = conf->model == MODEL_SIMPLE ? GM_MODEL_SIMPLE : GM_MODEL_3D;
+    params.stiffness = conf->stiffness;
+    params.damping = conf->damping;
+    params.simple_stiffness = conf->simple_stiffness;
+
+    const size_t size = gm_mesh_size(&params, &mesh->pair);
+    if (size == 0) {
+        return 0;
+    }
+    void *memory = malloc(size);
+    if (memory == NULL) {
+        return message_no_memory(conf->messages);
+    }
+    return gm_mesh_init(&mesh->prepared, &params, &mesh->pair, mesh->flanks[GM_PINION].prepared,
+                        mesh->flanks[GM_WHEEL].prepared, memory, size) == GM_OK
+               ? 0
+               : EXIT_RUN_FAILED;
 }
 
 int gear_mesh_open(gear_mesh *mesh, const config *conf) {
@@ -67,10 +77,12 @@ int gear_mesh_open(gear_mesh *mesh, const config *conf) {
     if (conf->purpose != CONFIG_FOR_FLANKS) {
         drawing_warn(conf, &mesh->pair);
     }
-    derive_simple_model(mesh, conf);
 
     if (conf->model == MODEL_3D && conf->purpose == CONFIG_FOR_RUN) {
         status = load_flanks(mesh, conf);
+    }
+    if (status == 0) {
+        status = prepare(mesh, conf);
     }
     if (status != 0) {
         gear_mesh_close(mesh);
@@ -79,33 +91,24 @@ int gear_mesh_open(gear_mesh *mesh, const config *conf) {
 }
 
 void gear_mesh_close(gear_mesh *mesh) {
-    gear_flanks_free(&mesh->loaded_flanks[GM_PINION]);
-    gear_flanks_free(&mesh->loaded_flanks[GM_WHEEL]);
+    free(mesh->prepared); /* it begins at its memory */
+    gear_flanks_free(&mesh->flanks[GM_PINION]);
+    gear_flanks_free(&mesh->flanks[GM_WHEEL]);
     memset(mesh, 0, sizeof *mesh);
 }
 
-double gear_mesh_mean_stiffness(const gear_mesh *mesh, const config *conf) {
-    return conf->model == MODEL_SIMPLE ? mesh->simple_stiffness
-                                       : conf->stiffness * mesh->pair.transverse_contact_ratio;
-}
-
 double gear_mesh_eigenfrequency(const gear_mesh *mesh, const config *conf) {
-    const double r_bp = mesh->pair.pinion.base_radius;
-    const double r_bw = mesh->pair.wheel.base_radius;
-    double mobility = r_bw * r_bw / conf->wheel_inertia;
+    const double pinion_inertia = conf->drive == DRIVE_TORQUE ? conf->pinion_inertia : HUGE_VAL;
 
-    if (conf->drive == DRIVE_TORQUE) {
-        mobility += r_bp * r_bp / conf->pinion_inertia;
-    }
-    return sqrt(gear_mesh_mean_stiffness(mesh, conf) * mobility) / (2 * pi);
+    return gm_mesh_eigenfrequency(mesh->prepared, pinion_inertia, conf->wheel_inertia);
 }
 
 int gear_mesh_note(const gear_mesh *mesh, config *conf) {
     const double frequency = gear_mesh_eigenfrequency(mesh, conf);
     int status = 0;
 
-    for (int gear = 0; gear < 2 && status == 0; ++gear) {
-        status = gear_flanks_note(&mesh->loaded_flanks[gear], conf, gear);
+    for (int gear = GM_PINION; gear <= GM_WHEEL && status == 0; ++gear) {
+        status = gear_flanks_note(&mesh->flanks[gear], conf, gear);
     }
     if (status == 0 && isfinite(frequency)) {
         status = config_note(conf, "eigenfrequency_Hz", frequency);

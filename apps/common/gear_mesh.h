@@ -10,21 +10,14 @@
 
 typedef struct gear_mesh {
     gm_pair pair;
-    const gm_flanks *pinion_flanks; /* NULL = ideal */
-    const gm_flanks *wheel_flanks;
-    double simple_stiffness; /* K_simple, N/m: of the simple model */
-    double simple_damping;   /* D_simple = D eps_alpha, N s/m */
-
-    gear_flanks loaded_flanks[2]; /* what the pointers point to */
+    gear_flanks flanks[2]; /* GM_PINION, GM_WHEEL */
+    gm_mesh *prepared;     /* pair, flanks and law as one; NULL where [mesh] gives no stiffness */
 } gear_mesh;
 
 /* Derives the pair, warns of its drawing, and for a run loads the flanks. Returns 0 or an exit code after a message. The
  * mesh must stay where it is. */
 int gear_mesh_open(gear_mesh *mesh, const config *conf);
 void gear_mesh_close(gear_mesh *mesh);
-
-/* K eps_alpha, or K_simple for the simple model; NaN without the keys that it needs (N/m). */
-double gear_mesh_mean_stiffness(const gear_mesh *mesh, const config *conf);
 
 /* Of the wheel on the mesh if the pinion's speed is prescribed, else of both bodies against each other; NaN without the
  * keys that it needs (Hz). */

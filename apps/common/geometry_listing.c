@@ -75,7 +75,7 @@ void geometry_print(const gear_mesh *mesh, const config *conf, FILE *stream) {
     print_pair(&mesh->pair, stream);
     print_teeth(&mesh->pair, stream);
     print_value(stream, "mean_mesh_stiffness_N_per_um",
-                1e-6 * gear_mesh_mean_stiffness(mesh, conf));
+                1e-6 * gm_mesh_mean_stiffness(mesh->prepared));
     print_value(stream, "eigenfrequency_Hz", gear_mesh_eigenfrequency(mesh, conf));
     print_value(stream, "mesh_frequency_per_rpm_Hz", mesh->pair.pinion.teeth / 60.0);
 }

@@ -41,15 +41,15 @@ static double transmission_error(const dynamic_sample *sample) {
 }
 
 static double penetration(const dynamic_sample *sample) {
-    return sample->mesh.penetration * micro;
+    return sample->mesh.contact.penetration * micro;
 }
 
 static double penetration_rate(const dynamic_sample *sample) {
-    return sample->mesh.rate * micro;
+    return sample->mesh.contact.rate * micro;
 }
 
 static double contact_force(const dynamic_sample *sample) {
-    return model_force(sample->model, &sample->mesh);
+    return sample->mesh.force;
 }
 
 static double load(const dynamic_sample *sample) {
@@ -57,7 +57,7 @@ static double load(const dynamic_sample *sample) {
 }
 
 static double pairs_in_contact(const dynamic_sample *sample) {
-    return sample->mesh.drive_pairs + sample->mesh.coast_pairs;
+    return sample->mesh.contact.drive_pairs + sample->mesh.contact.coast_pairs;
 }
 
 /* Angles, time and the pinion's speed grow steadily, pairs are counts: a filter has nothing to do there. */

@@ -15,7 +15,7 @@ typedef struct dynamic_sample {
     const gear_model *model;
     double time; /* s */
     gear_motion motion;
-    gm_penetration mesh; /* only where some column asked for needs it */
+    gm_mesh_result mesh; /* only where some column asked for needs it */
 } dynamic_sample;
 
 /* What a column takes from the mesh; the more, the dearer. */

@@ -43,10 +43,8 @@ typedef struct dynamic_run {
 static int see_mesh(dynamic_run *run, enum column_need need) {
     dynamic_sample *sample = &run->sample;
 
-    int status = model_penetration(&run->model, &sample->motion, &sample->mesh);
-    if (status == GM_OK && need == NEEDS_PAIRS) {
-        status = model_pairs(&run->model, &sample->motion, &sample->mesh);
-    }
+    const int wanted = need == NEEDS_PAIRS ? GM_WANT_PAIRS : GM_WANT_FORCE;
+    const int status = model_evaluate(&run->model, &sample->motion, wanted, &sample->mesh);
     if (status != GM_OK) {
         snprintf(run->why, sizeof run->why, "no contact force at t = %.9g s; the gears: %s",
                  sample->time, gm_status_text(status));

@@ -67,13 +67,13 @@ static double sliding_between(const flight *free, double from, double to) {
 /* Whether a side is free of contact at a time, if x were the one given. A failed evaluation is no freedom. */
 static int side_is_free(const flight *free, int side, double t, double offset) {
     gear_motion motion = free->start;
-    gm_penetration mesh;
+    gm_mesh_result mesh;
 
     motion.pinion_angle = angle_at(free, t);
     motion.offset = offset;
     ++*free->evaluations;
-    return model_penetration(free->model, &motion, &mesh) == GM_OK &&
-           (side == GM_DRIVE ? mesh.drive : mesh.coast) == 0.0;
+    return model_evaluate(free->model, &motion, GM_WANT_FORCE, &mesh) == GM_OK &&
+           (side == GM_DRIVE ? mesh.contact.drive : mesh.contact.coast) == 0.0;
 }
 
 /*

@@ -47,23 +47,21 @@ int lookup_create(gm_cache **cache, const config *conf, const gear_mesh *gears) 
         return 0;
     }
 
-    /* One block: the cache, and behind it its tables, both aligned for double. */
-    const size_t size =
-        gm_cache_size(&params, &gears->pair, gears->pinion_flanks, gears->wheel_flanks);
-    gm_cache *created = size > 0 ? malloc(sizeof *created + size) : NULL;
-
-    if (created == NULL) {
+    const size_t size = gm_cache_size(&params, gears->prepared);
+    void *memory = size > 0 ? malloc(size) : NULL;
+    if (memory == NULL) {
         return EXIT_RUN_FAILED;
     }
-    if (gm_cache_init(created, &params, &gears->pair, gears->pinion_flanks, gears->wheel_flanks,
-                      created + 1, size) != GM_OK) {
-        free(created);
+    if (gm_cache_init(cache, &params, gears->prepared, memory, size) != GM_OK) {
+        free(memory);
         return EXIT_RUN_FAILED;
     }
-    *cache = created;
-    return 0;
+    return gm_mesh_use_cache(gears->prepared, *cache) == GM_OK ? 0 : EXIT_RUN_FAILED;
 }
 
-void lookup_free(gm_cache *cache) {
-    free(cache);
+void lookup_free(gm_cache *cache, const gear_mesh *gears) {
+    if (cache != NULL) {
+        (void)gm_mesh_use_cache(gears->prepared, NULL);
+    }
+    free(cache); /* it begins at its memory */
 }

@@ -10,8 +10,9 @@
 /* Whether these gears can have what is asked for. Returns 0, or EXIT_BAD_INPUT after a message. */
 int lookup_check(const config *conf, const gear_mesh *gears);
 
-/* NULL if the run is not to use one. Returns 0, or EXIT_RUN_FAILED if there is no memory. */
+/* Lets the mesh answer from a cache; NULL if the run is not to use one. Returns 0, or EXIT_RUN_FAILED if there is no
+ * memory. */
 int lookup_create(gm_cache **cache, const config *conf, const gear_mesh *gears);
-void lookup_free(gm_cache *cache);
+void lookup_free(gm_cache *cache, const gear_mesh *gears);
 
 #endif

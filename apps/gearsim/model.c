@@ -43,20 +43,6 @@ static double square(double value) {
     return value * value;
 }
 
-static void init_mesh(gear_model *model, const config *conf) {
-    const gear_mesh *gears = model->gears;
-
-    if (model->mesh == MODEL_SIMPLE) {
-        model->stiffness = gears->simple_stiffness;
-        model->damping = gears->simple_damping;
-        model->mean_stiffness = gears->simple_stiffness;
-    } else {
-        model->stiffness = conf->stiffness;
-        model->damping = conf->damping;
-        model->mean_stiffness = conf->stiffness * gears->pair.transverse_contact_ratio;
-    }
-}
-
 static void init_bodies(gear_model *model, const config *conf) {
     const double r_bp = model->gears->pair.pinion.base_radius;
     const double r_bw = model->gears->pair.wheel.base_radius;
@@ -76,51 +62,15 @@ static void init_bodies(gear_model *model, const config *conf) {
     }
 }
 
-/* The flanks of one side of a gear; NULL = ideal. */
-static const gm_flank_tables *side_of(const gm_flanks *flanks, int side) {
-    if (flanks == NULL) {
-        return NULL;
-    }
-    return side == GM_DRIVE ? &flanks->drive : &flanks->coast;
-}
-
-/* Steepest rise along the profile of any table, over one cell: bilinear between its nodes (m). */
-static double steepest_cell(const gm_flank_tables *tables) {
-    enum { NODE_DOUBLES = 4 }; /* the node's value is the first */
-    const size_t lines = (size_t)tables->count * (size_t)tables->face_nodes;
-    const size_t nodes = (size_t)tables->profile_nodes;
-    double steepest = 0.0;
-
-    for (size_t line = 0; line < lines; ++line) {
-        const double *node = tables->values + line * nodes * NODE_DOUBLES;
-        for (size_t i = 1; i < nodes; ++i) {
-            const double rise = node[i * NODE_DOUBLES] - node[(i - 1) * NODE_DOUBLES];
-            steepest = fmax(steepest, fabs(rise));
-        }
-    }
-    return steepest;
-}
-
 /* Adds what the flanks of one gear can do to meet their mates. */
 static void add_flanks(gear_model *model, int side, const gm_flanks *flanks, const gm_gear *gear) {
-    const gm_flank_tables *tables = side_of(flanks, side);
-    if (tables == NULL) {
+    if (flanks == NULL) {
         return;
     }
-
     model->is_ideal[side] = 0;
-
-    /* Ramps only take material away, so they do not count for the reach. */
-    model->reach[side] += tables->peak;
-
-    double steepest = 0.0;
-    if (tables->count > 0) {
-        steepest = steepest_cell(tables) * (double)(tables->profile_nodes - 1);
-    }
-    for (int i = 0; i < tables->ramp_count; ++i) {
-        steepest += fabs(tables->ramps[i].per_t2);
-    }
-    model->slope[side] += steepest / (gear->tip_roll_length - gear->start_roll_length);
+    model->reach[side] += gm_flanks_peak(flanks, side);
+    model->slope[side] +=
+        gm_flanks_profile_slope(flanks, side) / (gear->tip_roll_length - gear->start_roll_length);
 }
 
 /* Bounds of the flanks for the look ahead in free flight; the simple model has ideal flanks. */
@@ -131,8 +81,8 @@ static void init_flanks(gear_model *model) {
         model->is_ideal[side] = 1;
         model->reach[side] = model->slope[side] = 0.0;
         if (model->mesh == MODEL_3D) {
-            add_flanks(model, side, gears->pinion_flanks, &gears->pair.pinion);
-            add_flanks(model, side, gears->wheel_flanks, &gears->pair.wheel);
+            add_flanks(model, side, gears->flanks[GM_PINION].prepared, &gears->pair.pinion);
+            add_flanks(model, side, gears->flanks[GM_WHEEL].prepared, &gears->pair.wheel);
         }
     }
 }
@@ -144,8 +94,8 @@ static double mobility(const gear_model *model) {
 /* Response with the damping of the mesh itself, so that as little as possible is left to the solver. */
 static int init_response(gear_model *model) {
     const double w0 = model->natural_frequency;
-    const double pairs = model->mean_stiffness / model->stiffness;
-    const double ratio = 0.5 * model->damping * pairs * mobility(model) / w0;
+    const double damping = gm_mesh_mean_damping(model->gears->prepared);
+    const double ratio = 0.5 * damping * mobility(model) / w0;
     const double bounded = fmin(fmax(ratio, smallest_ratio), largest_ratio);
 
     model->noise = NULL;
@@ -165,11 +115,10 @@ int model_init(gear_model *model, const config *conf, const gear_mesh *gears) {
     model->drive = drive_create(conf);
     model->load =
         load_create(conf->mean_load, conf->noise_amplitude, conf->noise_interval, conf->seed);
-    init_mesh(model, conf);
     init_bodies(model, conf);
     init_flanks(model);
 
-    model->natural_frequency = sqrt(model->mean_stiffness * mobility(model));
+    model->natural_frequency = sqrt(gm_mesh_mean_stiffness(gears->prepared) * mobility(model));
     if (init_response(model) != 0 || lookup_create(&model->lookup, conf, gears) != 0) {
         model_free(model);
         return EXIT_RUN_FAILED;
@@ -179,7 +128,7 @@ int model_init(gear_model *model, const config *conf, const gear_mesh *gears) {
 
 void model_free(gear_model *model) {
     response_free(model->noise);
-    lookup_free(model->lookup);
+    lookup_free(model->lookup, model->gears);
     model->noise = NULL;
     model->lookup = NULL;
 }
@@ -187,18 +136,6 @@ void model_free(gear_model *model) {
 /* ---------------------------------------------------------------------------------------------
  * Quasi-static start
  * ------------------------------------------------------------------------------------------- */
-
-/* Smallest |x| for which the spring with backlash carries the force. */
-static double simple_equilibrium(const gear_model *model, double force) {
-    const double clearance = 0.5 * model->gears->pair.backlash;
-    const double compression = fabs(force) / model->stiffness;
-
-    /* Negative backlash: both flanks touch up to |x| = -clearance and push against each other. */
-    const double size =
-        compression < -2.0 * clearance ? 0.5 * compression : clearance + compression;
-
-    return copysign(size, force);
-}
 
 static int equilibrium(const gear_model *model, double force, double *offset) {
     const gear_mesh *gears = model->gears;
@@ -208,13 +145,8 @@ static int equilibrium(const gear_model *model, double force, double *offset) {
         *offset = 0.0;
         return GM_OK;
     }
-    if (model->mesh == MODEL_SIMPLE) {
-        *offset = simple_equilibrium(model, force);
-        return GM_OK;
-    }
-    return gm_static_equilibrium(&gears->pair, gears->pinion_flanks, gears->wheel_flanks, 0.0,
-                                 model->stiffness, force * gears->pair.wheel.base_radius, offset,
-                                 NULL);
+    return gm_static_equilibrium(gears->prepared, 0.0, force * gears->pair.wheel.base_radius,
+                                 (double)NAN, NULL, offset, NULL);
 }
 
 int model_quasi_static_start(const gear_model *model, double state[]) {
@@ -295,97 +227,52 @@ gear_motion model_motion(const gear_model *model, double time, const double stat
     return motion_with(model, time, state, &noise);
 }
 
-/* The one of the library's exact functions that does no more than is asked for. */
-static int exact_penetration(const gear_model *model, const gear_motion *motion, int derivatives,
-                             gm_penetration *penetration) {
-    const gear_mesh *gears = model->gears;
-
-    if (model->mesh == MODEL_SIMPLE) {
-        return gm_penetration_simple_at(&gears->pair, motion->offset, motion->offset_rate,
-                                        penetration);
-    }
-
-    gm_position position;
-    const int status = gm_position_from_pinion_angle(
-        &gears->pair, motion->pinion_angle, motion->offset, motion->offset_rate, &position);
-    if (status != GM_OK) {
-        return status;
-    }
-    return (derivatives ? gm_penetration_3d_at : gm_penetration_3d_sum_at)(
-        &gears->pair, gears->pinion_flanks, gears->wheel_flanks, &position, penetration);
-}
-
-/* From the look-up if there is one. */
-static int penetration_of(const gear_model *model, const gear_motion *motion, int derivatives,
-                          gm_penetration *penetration) {
-    if (model->lookup == NULL) {
-        return exact_penetration(model, motion, derivatives, penetration);
-    }
-
+int model_evaluate(const gear_model *model, const gear_motion *motion, int wanted,
+                   gm_mesh_result *result) {
     gm_position position;
     const int status = gm_position_from_pinion_angle(
         &model->gears->pair, motion->pinion_angle, motion->offset, motion->offset_rate, &position);
-    return status != GM_OK ? status
-                           : gm_cache_penetration_at(model->lookup, &position, penetration);
+
+    return status != GM_OK
+               ? status
+               : gm_mesh_evaluate_at(model->gears->prepared, &position, wanted, NULL, result);
 }
 
-int model_penetration(const gear_model *model, const gear_motion *motion,
-                      gm_penetration *penetration) {
-    return penetration_of(model, motion, 0, penetration);
-}
-
-int model_pairs(const gear_model *model, const gear_motion *motion, gm_penetration *penetration) {
-    if (penetration->drive_pairs >= 0 && penetration->coast_pairs >= 0) {
-        return GM_OK;
-    }
-
-    gm_penetration exact;
-    const int status = exact_penetration(model, motion, 0, &exact);
-    penetration->drive_pairs = exact.drive_pairs;
-    penetration->coast_pairs = exact.coast_pairs;
-    return status;
-}
-
-double model_force(const gear_model *model, const gm_penetration *penetration) {
-    return gm_contact_force(model->stiffness, model->damping, penetration);
-}
-
-static enum mesh_contact contact_of(const gear_model *model, const gm_penetration *penetration,
-                                    double force) {
-    const double touching = penetration->drive_contact + penetration->coast_contact;
+static enum mesh_contact contact_of(const gear_model *model, const gm_mesh_result *mesh) {
+    const double touching = mesh->contact.drive_contact + mesh->contact.coast_contact;
     if (touching == 0.0) {
         return MESH_FREE;
     }
 
     /* Flanks that would have to pull carry nothing either. */
-    const double pairs = model->mean_stiffness / model->stiffness;
-    return force == 0.0 || touching < light_contact * pairs ? MESH_LIGHT : MESH_CARRIES;
+    const double pairs =
+        model->mesh == MODEL_3D ? model->gears->pair.transverse_contact_ratio : 1.0;
+    return mesh->force == 0.0 || touching < light_contact * pairs ? MESH_LIGHT : MESH_CARRIES;
 }
 
 int model_derivative(const gear_model *model, double time, const double state[],
                      double derivative[], enum mesh_contact *contact) {
-    /* Once: next to the mesh it is the dearest part. */
+    /* Evaluated once: after the mesh it costs most. */
     const response_value noise = noise_response(model, time);
     const gear_motion motion = motion_with(model, time, state, &noise);
-    gm_penetration penetration;
-    const int status = model_penetration(model, &motion, &penetration);
+    gm_mesh_result mesh;
+    const int status = model_evaluate(model, &motion, GM_WANT_FORCE, &mesh);
     if (status != GM_OK) {
         return status;
     }
 
     const double w0 = model->natural_frequency;
     const double to_state = 1.0 / (w0 * micrometre);
-    const double force = model_force(model, &penetration);
     const double applied = applied_acceleration(model, time, &noise);
-    *contact = contact_of(model, &penetration, force);
+    *contact = contact_of(model, &mesh);
 
     derivative[STATE_OFFSET] = w0 * state[STATE_OFFSET_RATE];
-    derivative[STATE_OFFSET_RATE] = (applied - mobility(model) * force) * to_state;
+    derivative[STATE_OFFSET_RATE] = (applied - mobility(model) * mesh.force) * to_state;
 
     if (model->states == STATES_MAX) {
         derivative[STATE_PINION_ARC] = w0 * state[STATE_PINION_SPEED];
         derivative[STATE_PINION_SPEED] =
-            (model->drive_to_offset - model->pinion_mobility * force) * to_state;
+            (model->drive_to_offset - model->pinion_mobility * mesh.force) * to_state;
     }
     return GM_OK;
 }
@@ -400,27 +287,15 @@ typedef struct force_gradient {
     double by_arc;         /* dF/d(r_bp phi_p) at fixed x (N/m) */
 } force_gradient;
 
-/*
- * At fixed phi_p a change of x is one of -phi_w; at fixed x, phi_w follows phi_p by r_bp / r_bw. How the
- * touching width, and with it the damping, changes with x is left out: it is of second order in the
- * motion, and Newton's iteration corrects it.
- */
-static force_gradient gradient(const gear_model *model, const gm_penetration *penetration) {
+/* At fixed phi_p a change of x is one of -phi_w; at fixed x, phi_w follows phi_p by r_bp / r_bw. */
+static force_gradient gradient(const gear_model *model, const gm_mesh_result *mesh) {
     const gm_pair *pair = &model->gears->pair;
-    const double k = model->stiffness;
-    const double d = model->damping;
-
-    /* A flank that would have to pull gives no force, and no derivative. */
-    const int drive = k * penetration->drive + d * penetration->drive_rate > 0.0;
-    const int coast = k * penetration->coast + d * penetration->coast_rate > 0.0;
-    const double stiffness = drive || coast ? k : 0.0;
-
+    const double r_bp = pair->pinion.base_radius;
+    const double r_bw = pair->wheel.base_radius;
     const force_gradient result = {
-        .by_offset = -stiffness * penetration->d_wheel_angle / pair->wheel.base_radius,
-        .by_offset_rate = d * ((drive ? penetration->drive_contact : 0.0) +
-                               (coast ? penetration->coast_contact : 0.0)),
-        .by_arc = stiffness * (penetration->d_pinion_angle / pair->pinion.base_radius +
-                               penetration->d_wheel_angle / pair->wheel.base_radius),
+        .by_offset = -mesh->force_by_wheel_angle / r_bw,
+        .by_offset_rate = -mesh->force_by_wheel_speed / r_bw,
+        .by_arc = mesh->force_by_pinion_angle / r_bp + mesh->force_by_wheel_angle / r_bw,
     };
     return result;
 }
@@ -446,14 +321,14 @@ static void coordinate_row(double jacobian[STATES_MAX][STATES_MAX], int row, int
 int model_jacobian(const gear_model *model, double time, const double state[],
                    double jacobian[STATES_MAX][STATES_MAX]) {
     const gear_motion motion = model_motion(model, time, state);
-    gm_penetration penetration;
-    const int status = penetration_of(model, &motion, 1, &penetration);
+    gm_mesh_result mesh;
+    const int status = model_evaluate(model, &motion, GM_WANT_DERIVATIVES, &mesh);
     if (status != GM_OK) {
         return status;
     }
 
     const double w0 = model->natural_frequency;
-    const force_gradient force = gradient(model, &penetration);
+    const force_gradient force = gradient(model, &mesh);
 
     coordinate_row(jacobian, STATE_OFFSET, STATE_OFFSET_RATE, w0);
     speed_row(jacobian, STATE_OFFSET_RATE, model, mobility(model), &force);

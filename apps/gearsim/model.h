@@ -43,9 +43,6 @@ typedef struct gear_model {
     enum mesh_model mesh;
     pinion_drive drive;
     load_signal load;
-    double stiffness;         /* of the mesh model in use (N/m) */
-    double damping;           /* likewise (N s/m) */
-    double mean_stiffness;    /* of the mesh, over all pairs that touch on average (N/m) */
     double pinion_mobility;   /* r_bp^2 / I_p, 0 if its speed is prescribed (1/kg) */
     double wheel_mobility;    /* r_bw^2 / I_w (1/kg) */
     double torque_to_offset;  /* r_bw / I_w: from the load to x'' (1/(kg m)) */
@@ -53,7 +50,7 @@ typedef struct gear_model {
     double natural_frequency; /* w0 (rad/s) */
     double response_decay;    /* zeta w0 of the response (1/s) */
     response *noise;          /* to the noise; NULL: the load is as it is, and u = x */
-    gm_cache *lookup;         /* in place of the 3D model; NULL: the model itself */
+    gm_cache *lookup;         /* that the mesh answers from; NULL: exactly */
     int is_ideal[2];          /* [side] neither flank deviates: the gap depends on x alone */
     double reach[2];          /* [side] highest points of both flanks together (m) */
     double slope[2];          /* [side] steepest rise of both along the profile together (m/m) */
@@ -87,14 +84,9 @@ double model_speed_unit(const gear_model *model);
 
 gear_motion model_motion(const gear_model *model, double time, const double state[]);
 
-/* Penetration of the flanks, without its derivatives. Returns a library status. */
-int model_penetration(const gear_model *model, const gear_motion *motion,
-                      gm_penetration *penetration);
-
-/* Adds the pairs that touch where a look-up has not counted them. Returns a library status. */
-int model_pairs(const gear_model *model, const gear_motion *motion, gm_penetration *penetration);
-
-double model_force(const gear_model *model, const gm_penetration *penetration);
+/* Force and contact of the mesh; wanted: a sum of enum gm_wanted. Returns a library status. */
+int model_evaluate(const gear_model *model, const gear_motion *motion, int wanted,
+                   gm_mesh_result *result);
 
 /* d state / dt, and the contact that it belongs to. Returns a library status: > 0 a smaller step may help,
  * < 0 it cannot. */

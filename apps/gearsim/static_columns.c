@@ -18,12 +18,11 @@ static double transmission_error(const static_position *position) {
 
 /* Touching part of the face width, summed over the pairs and both flanks. */
 static double touching(const static_position *position) {
-    return position->mesh.drive_contact + position->mesh.coast_contact;
+    return position->mesh.contact.drive_contact + position->mesh.contact.coast_contact;
 }
 
-/* dF/dx of a constant stiffness per pair: K times what touches. */
 static double mesh_stiffness(const static_position *position) {
-    return position->conf->stiffness * touching(position) * 1e-6;
+    return gm_mesh_touching_stiffness(position->gears->prepared, &position->mesh) * 1e-6;
 }
 
 /* Along the lines of contact, which lie at the base helix angle to the face width. */
@@ -34,7 +33,7 @@ static double contact_length(const static_position *position) {
 }
 
 static double pairs_in_contact(const static_position *position) {
-    return position->mesh.drive_pairs + position->mesh.coast_pairs;
+    return position->mesh.contact.drive_pairs + position->mesh.contact.coast_pairs;
 }
 
 static double load_torque(const static_position *position) {

@@ -17,7 +17,7 @@ typedef struct static_position {
     double pinion_angle; /* rad */
     double load;         /* N m */
     double offset;       /* x (m) */
-    gm_penetration mesh; /* there */
+    gm_mesh_result mesh; /* there */
 } static_position;
 
 typedef struct static_column {

@@ -65,11 +65,9 @@ static int write_position(const config *conf, const gear_mesh *gears, double ang
     const double guess = before->offset + before->slope * (angle - before->angle);
     static_position position = {
         .conf = conf, .gears = gears, .pinion_angle = angle, .load = before->load};
-    const gm_penetration *mesh = &position.mesh;
 
-    *status = gm_static_equilibrium_near(pair, gears->pinion_flanks, gears->wheel_flanks, angle,
-                                         conf->stiffness, before->load, guess, &position.offset,
-                                         &position.mesh);
+    *status = gm_static_equilibrium(gears->prepared, angle, before->load, guess, NULL,
+                                    &position.offset, &position.mesh);
     if (*status != GM_OK) {
         return EXIT_RUN_FAILED;
     }
@@ -77,8 +75,9 @@ static int write_position(const config *conf, const gear_mesh *gears, double ang
     /* Along the curve of constant force, for the guess at the next position. */
     before->angle = angle;
     before->offset = position.offset;
-    before->slope = pair->pinion.base_radius +
-                    pair->wheel.base_radius * mesh->d_pinion_angle / mesh->d_wheel_angle;
+    before->slope = pair->pinion.base_radius + pair->wheel.base_radius *
+                                                   position.mesh.force_by_pinion_angle /
+                                                   position.mesh.force_by_wheel_angle;
 
     double values[COLUMNS_MAX];
     for (int i = 0; i < static_column_count; ++i) {

@@ -12,9 +12,8 @@
 
 enum { STEPS_PER_SECOND = 20000, STEPS_PER_MESH_CYCLE = 20 };
 
-static const double stiffness = 1.05e8, damping = 844; /* of one pair of teeth (N/m, N s/m) */
-static const double inertia = 2.1e-3, load = 20;       /* of the wheel (kg m2, N m) */
-static const double speed = 139.62634;                 /* of the pinion: 2 pi 1000 / 45 (rad/s) */
+static const double inertia = 2.1e-3, load = 20; /* of the wheel (kg m2, N m) */
+static const double speed = 139.62634;           /* of the pinion: 2 pi 1000 / 45 (rad/s) */
 
 typedef struct motion {
     double pinion_angle; /* (rad) */
@@ -23,18 +22,19 @@ typedef struct motion {
 } motion;
 
 /* One step (semi-implicit Euler); the force of the contact comes back. Status as in gearmesh.h. */
-static int step(const gm_pair *pair, motion *now, double dt, double *force) {
+static int step(const gm_mesh *mesh, motion *now, double dt, double *force) {
+    const gm_pair *pair = gm_mesh_pair(mesh);
     gm_position position;
-    gm_penetration mesh;
+    gm_mesh_result result;
     int status = gm_position_from_pinion_angle(pair, now->pinion_angle, now->offset,
                                                now->offset_rate, &position);
     if (status == GM_OK) {
-        status = gm_penetration_3d_sum_at(pair, NULL, NULL, &position, &mesh);
+        status = gm_mesh_evaluate_at(mesh, &position, GM_WANT_FORCE, NULL, &result);
     }
     if (status != GM_OK) {
         return status;
     }
-    *force = gm_contact_force(stiffness, damping, &mesh);
+    *force = result.force;
 
     const double r_bw = pair->wheel.base_radius;
     now->offset_rate += dt * (load - *force * r_bw) * r_bw / inertia;
@@ -58,6 +58,17 @@ int main(void) {
     gm_pair pair;
     int status = gm_pair_init(&pair, &params);
 
+    /* Ideal flanks; stiffness and damping of one pair of teeth. Prepared before the loop, in memory of our own. */
+    gm_mesh_params law;
+    gm_mesh_params_default(&law);
+    law.stiffness = 1.05e8;
+    law.damping = 844;
+    static double memory[256];
+    gm_mesh *mesh;
+    if (status == GM_OK) {
+        status = gm_mesh_init(&mesh, &law, &pair, NULL, NULL, memory, sizeof memory);
+    }
+
     /* From rest at the middle of the backlash; the load closes it. Half a second, of which the last 100 mesh cycles
      * count: there the mean torque of the contact is the load. */
     const double dt = 1.0 / STEPS_PER_SECOND;
@@ -67,7 +78,7 @@ int main(void) {
     double sum = 0;
     for (int i = 0; i < steps && status == GM_OK; ++i) {
         double force;
-        status = step(&pair, &now, dt, &force);
+        status = step(mesh, &now, dt, &force);
         if (status == GM_OK && i >= steps - counted) {
             sum += force * pair.wheel.base_radius;
         }

@@ -17,17 +17,27 @@ int main(void) {
     params.face_width = 0.0175;
     params.backlash = 100e-6; /* the rest is derived: profile shifts, tip and start radii */
 
-    gm_pair pair; /* once, read-only afterwards */
-    gm_penetration mesh;
-    const gm_state state = {.pinion_angle = 1.25e-3, .wheel_angle = 0, .pinion_speed = 0.01};
+    gm_pair pair;
     int status = gm_pair_init(&pair, &params);
-    if (status == GM_OK) /* NULL: ideal flanks on both gears */
-        status = gm_penetration_3d(&pair, NULL, NULL, &state, &mesh);
+
+    gm_mesh_params law; /* stiffness and damping of one pair of teeth */
+    gm_mesh_params_default(&law);
+    law.stiffness = 1.05e8; /* N/m */
+    law.damping = 844;      /* N s/m */
+
+    static double memory[256]; /* of our own: the library takes none */
+    gm_mesh *mesh; /* prepared once, read-only afterwards; NULL: ideal flanks on both gears */
+    if (status == GM_OK)
+        status = gm_mesh_init(&mesh, &law, &pair, NULL, NULL, memory, sizeof memory);
+
+    const gm_state state = {.pinion_angle = 1.25e-3, .wheel_angle = 0, .pinion_speed = 0.01};
+    gm_mesh_result result;
+    if (status == GM_OK)
+        status = gm_mesh_evaluate(mesh, &state, GM_WANT_DERIVATIVES, NULL, &result);
     if (status != GM_OK)
         return fprintf(stderr, "%s\n", gm_status_text(status)), 1;
 
-    const double K = 1.05e8, D = 844; /* of one pair of teeth: N/m, N s/m */
-    printf("force %.2f N, ", gm_contact_force(K, D, &mesh));
-    printf("by pinion angle %.4g N/rad, %d pairs\n", K * mesh.d_pinion_angle, mesh.drive_pairs);
+    printf("force %.2f N, by pinion angle %.4g N/rad, %d pairs\n", result.force,
+           result.force_by_pinion_angle, result.contact.drive_pairs);
     return 0;
 }

@@ -13,6 +13,7 @@
  * times per base pitch. Columns stand just before and just behind each kink, so that all other cells are smooth. A
  * kink moves with delta where the wheel sets the limit; the cell around it is as wide as it moves, and narrow still.
  */
+#include "cache.h"
 #include "internal.h"
 
 #include <math.h>
@@ -32,8 +33,6 @@ enum { LARGEST_CELLS = 10000 };
 
 #define SMALLEST_DEPTH 1e-10 /* (m) */
 
-static const gmi_side_sum no_contact = {.sum = 0.0};
-
 /* Values of a node; by_delta and mixed are per step of delta, not per metre. */
 enum node { NODE_SUM, NODE_BY_DELTA, NODE_BY_PHASE, NODE_MIXED, NODE_VALUES };
 
@@ -42,8 +41,7 @@ enum node { NODE_SUM, NODE_BY_DELTA, NODE_BY_PHASE, NODE_MIXED, NODE_VALUES };
  * ------------------------------------------------------------------------------------------- */
 
 /* Teeth after which the flanks of a gear repeat: 1 or all. */
-static int period_of(const gm_flanks *flanks, int side, int teeth) {
-    const gm_flank_tables *tables = gmi_flanks_side(flanks, side);
+static int period_of(const gmi_tables *tables, int teeth) {
     for (int tooth = 1; tables != NULL && tooth < teeth; ++tooth) {
         if (tables->table[tooth] != tables->table[0] || tables->pitch[tooth] != tables->pitch[0]) {
             return teeth;
@@ -97,16 +95,6 @@ static field_ends find_field(const gm_pair *pair, double delta) {
         fmax(pair->pinion.start_roll_length, reach - pair->wheel.tip_roll_length),
         fmin(pair->pinion.tip_roll_length, reach - pair->wheel.start_roll_length)};
     return ends;
-}
-
-static double peak_of(const gm_flanks *flanks, int side) {
-    const gm_flank_tables *tables = gmi_flanks_side(flanks, side);
-    return tables == NULL ? 0.0 : tables->peak;
-}
-
-/* At or below this delta no two flanks of a side reach each other. */
-static double lowest_touch(const gm_cache *cache, int side) {
-    return -peak_of(cache->pinion_flanks, side) - peak_of(cache->wheel_flanks, side);
 }
 
 static void insert_knot(double knots[KNOTS], int *count, double phase) {
@@ -192,38 +180,36 @@ static int check_params(const gm_cache_params *params, const gm_pair *pair) {
 }
 
 /* All of the cache but its memory. */
-static int describe(gm_cache *cache, const gm_cache_params *params, const gm_pair *pair,
-                    const gm_flanks *pinion_flanks, const gm_flanks *wheel_flanks) {
-    memset(cache, 0, sizeof *cache);
-    if (params == NULL || pair == NULL) {
+static int describe(gm_cache *cache, const gm_cache_params *params, const gm_mesh *mesh) {
+    if (params == NULL || mesh == NULL) {
         return GM_ERR_NULL;
     }
-    if ((pinion_flanks != NULL && pinion_flanks->teeth != pair->pinion.teeth) ||
-        (wheel_flanks != NULL && wheel_flanks->teeth != pair->wheel.teeth)) {
-        return GM_ERR_TOOTH;
-    }
+    const gm_pair *pair = mesh->pair;
     if (!check_params(params, pair)) {
         return GM_ERR_PARAMETER;
     }
-    if (pair->face_advance == 0.0) {
+    if (pair->face_advance == 0.0 || mesh->model == GM_MODEL_SIMPLE) {
         return GM_ERR_GEOMETRY;
     }
 
-    const int side = params->side;
+    /* Which teeth there are to tell apart. */
+    const gmi_side *side = &mesh->side[params->side];
+    memset(cache, 0, sizeof *cache);
+    cache->mesh = mesh;
     cache->pair = pair;
-    cache->pinion_flanks = pinion_flanks;
-    cache->wheel_flanks = wheel_flanks;
-    cache->side = side;
-    cache->pinion_period = period_of(pinion_flanks, side, pair->pinion.teeth);
-    cache->wheel_period = period_of(wheel_flanks, side, pair->wheel.teeth);
+    cache->side = params->side;
+    cache->pinion_period = period_of(side->pinion, pair->pinion.teeth);
+    cache->wheel_period = period_of(side->wheel, pair->wheel.teeth);
     cache->common = greatest_common_divisor(cache->pinion_period, cache->wheel_period);
+
+    /* The grid over phase and delta. */
     cache->depth = params->depth;
-    cache->lowest = lowest_touch(cache, side);
-    cache->other_lowest = lowest_touch(cache, side == GM_DRIVE ? GM_COAST : GM_DRIVE);
+    cache->lowest = -side->peak;
     cache->nodes = params->depth_cells + 1;
     cache->step = params->depth / (double)params->depth_cells;
     cache->per_step = 1.0 / cache->step;
     cache->columns = place_columns(cache, params->phase_cells, NULL);
+
     /* 1e5 teeth each give 1e10 passes at most: more than fits any memory, but not into an int. */
     const int64_t passes = (int64_t)cache->pinion_period * (cache->wheel_period / cache->common);
     if (passes * cache->columns > INT32_MAX) {
@@ -237,53 +223,54 @@ static size_t all_columns(const gm_cache *cache) {
     return (size_t)cache->passes * (size_t)cache->columns;
 }
 
-/* Bytes: a phase per column, a start per column of every pass, then the nodes. 0 if too many. */
+/* Bytes: the object, a phase per column, a start per column of every pass, then the nodes. 0 if too many. */
 static size_t bytes_of(const gm_cache *cache) {
     const uint64_t column = sizeof(double) + (uint64_t)cache->nodes * NODE_VALUES * sizeof(float);
-    const uint64_t bytes =
-        (uint64_t)cache->columns * sizeof(double) + (uint64_t)all_columns(cache) * column;
+    const uint64_t bytes = sizeof *cache + (uint64_t)cache->columns * sizeof(double) +
+                           (uint64_t)all_columns(cache) * column;
     return bytes <= SIZE_MAX / 2 ? (size_t)bytes : 0;
 }
 
-size_t gm_cache_size(const gm_cache_params *params, const gm_pair *pair,
-                     const gm_flanks *pinion_flanks, const gm_flanks *wheel_flanks) {
+size_t gm_cache_size(const gm_cache_params *params, const gm_mesh *mesh) {
     gm_cache cache;
-    if (describe(&cache, params, pair, pinion_flanks, wheel_flanks) != GM_OK) {
-        return 0;
-    }
-    return bytes_of(&cache);
+    return describe(&cache, params, mesh) == GM_OK ? bytes_of(&cache) : 0;
 }
 
-static int check_memory(const gm_cache *cache, const void *memory, size_t memory_size) {
-    const size_t needed = bytes_of(cache);
-    if (memory == NULL) {
-        return GM_ERR_NULL;
-    }
-    return needed == 0 || memory_size < needed ? GM_ERR_MEMORY : GM_OK;
-}
-
-int gm_cache_init(gm_cache *cache, const gm_cache_params *params, const gm_pair *pair,
-                  const gm_flanks *pinion_flanks, const gm_flanks *wheel_flanks, void *memory,
-                  size_t memory_size) {
+int gm_cache_init(gm_cache **cache, const gm_cache_params *params, const gm_mesh *mesh,
+                  void *memory, size_t memory_size) {
     if (cache == NULL) {
         return GM_ERR_NULL;
     }
-    int status = describe(cache, params, pair, pinion_flanks, wheel_flanks);
-    if (status == GM_OK) {
-        status = check_memory(cache, memory, memory_size);
-    }
+    *cache = NULL;
+    gm_cache described;
+    const int status = describe(&described, params, mesh);
     if (status != GM_OK) {
-        memset(cache, 0, sizeof *cache);
         return status;
     }
-    cache->phases = (double *)memory;
-    cache->starts = cache->phases + cache->columns;
-    cache->values = (float *)(cache->starts + all_columns(cache));
-    (void)place_columns(cache, params->phase_cells, cache->phases);
-    for (size_t column = 0; column < all_columns(cache); ++column) {
-        cache->starts[column] = gmi_nan(); /* not filled */
+    if (memory == NULL) {
+        return GM_ERR_NULL;
     }
+    const size_t needed = bytes_of(&described);
+    if (needed == 0 || memory_size < needed || !gmi_is_aligned(memory)) {
+        return GM_ERR_MEMORY;
+    }
+
+    /* The object, then phases, starts and nodes. */
+    gm_cache *made = (gm_cache *)memory;
+    *made = described;
+    made->phases = (double *)(made + 1);
+    made->starts = made->phases + made->columns;
+    made->values = (float *)(made->starts + all_columns(made));
+    (void)place_columns(made, params->phase_cells, made->phases);
+    for (size_t column = 0; column < all_columns(made); ++column) {
+        made->starts[column] = gmi_nan(); /* not filled */
+    }
+    *cache = made;
     return GM_OK;
+}
+
+int gm_cache_passes(const gm_cache *cache) {
+    return cache == NULL ? 0 : cache->passes;
 }
 
 /* ---------------------------------------------------------------------------------------------
@@ -292,10 +279,13 @@ int gm_cache_init(gm_cache *cache, const gm_cache_params *params, const gm_pair 
 
 static gmi_side_sum exact_at(const gm_cache *cache, gm_position *position, double delta) {
     const double offset = delta + 0.5 * cache->pair->backlash;
+    const gmi_side *side = &cache->mesh->side[cache->side];
     gmi_side_sum sum;
-    position->offset = cache->side == GM_DRIVE ? offset : -offset;
-    gmi_side_sum_3d(cache->pair, cache->pinion_flanks, cache->wheel_flanks, cache->side, position,
-                    GMI_DERIVATIVES, &sum);
+    position->offset = gmi_side_sign(cache->side) * offset;
+    if (gmi_side_is_clear(cache->pair, side, cache->side, position->offset)) {
+        return gmi_no_contact();
+    }
+    gmi_side_sum_3d(cache->pair, side, cache->side, position, GMI_DERIVATIVES, &sum);
     return sum;
 }
 
@@ -369,7 +359,7 @@ static void need_column(gm_cache *cache, int pass, int index) {
 }
 
 int gm_cache_fill(gm_cache *cache, int first_pass, int count) {
-    if (cache == NULL || cache->pair == NULL) {
+    if (cache == NULL) {
         return GM_ERR_NULL;
     }
     if (first_pass < 0 || count < 0 || count > cache->passes - first_pass) {
@@ -481,10 +471,9 @@ static void join_columns(const gm_cache *cache, int index, double phase, const c
     sum->pairs = -1;
 }
 
-/* Returns 0 where the table does not reach: the exact evaluation has to answer. */
-static int look_up(gm_cache *cache, const gm_position *position, gmi_side_sum *sum) {
+int gmi_cache_look_up(gm_cache *cache, const gm_position *position, gmi_side_sum *sum) {
     const double delta = gmi_ideal_penetration(cache->pair, cache->side, position->offset);
-    *sum = no_contact;
+    *sum = gmi_no_contact();
     if (delta <= cache->lowest) {
         return 1;
     }
@@ -504,46 +493,6 @@ static int look_up(gm_cache *cache, const gm_position *position, gmi_side_sum *s
     return 1;
 }
 
-static void set_result(const gm_pair *pair, const gmi_side_sum *drive, const gmi_side_sum *coast,
-                       double offset_rate, gm_penetration *result) {
-    const double by_offset = drive->by_delta + coast->by_delta;
-    const double by_origin = drive->by_origin + coast->by_origin;
-    result->drive = drive->sum;
-    result->coast = coast->sum;
-    result->penetration = drive->sum - coast->sum;
-    result->drive_contact = drive->contact;
-    result->coast_contact = coast->contact;
-    result->drive_rate = offset_rate * drive->contact;
-    result->coast_rate = -offset_rate * coast->contact;
-    result->rate = result->drive_rate - result->coast_rate;
-    result->d_pinion_angle = pair->pinion.base_radius * (by_offset + by_origin);
-    result->d_wheel_angle = -pair->wheel.base_radius * by_offset;
-    result->drive_pairs = drive->pairs;
-    result->coast_pairs = coast->pairs;
-}
-
-int gm_cache_penetration_at(gm_cache *cache, const gm_position *position, gm_penetration *result) {
-    if (cache == NULL) {
-        return gm_penetration_3d_at(NULL, NULL, NULL, position, result);
-    }
-    const gm_pair *pair = cache->pair;
-    gmi_side_sum sums[2];
-    if (result == NULL ||
-        gmi_check_evaluation(pair, cache->pinion_flanks, cache->wheel_flanks, position) != GM_OK ||
-        !look_up(cache, position, &sums[cache->side])) {
-        return gm_penetration_3d_at(pair, cache->pinion_flanks, cache->wheel_flanks, position,
-                                    result);
-    }
-    const int other = cache->side == GM_DRIVE ? GM_COAST : GM_DRIVE;
-    sums[other] = no_contact;
-    if (gmi_ideal_penetration(pair, other, position->offset) > cache->other_lowest) {
-        gmi_side_sum_3d(pair, cache->pinion_flanks, cache->wheel_flanks, other, position,
-                        GMI_DERIVATIVES, &sums[other]);
-    }
-    set_result(pair, &sums[GM_DRIVE], &sums[GM_COAST], position->offset_rate, result);
-    return GM_OK;
-}
-
 /* ---------------------------------------------------------------------------------------------
  * Measuring the error
  * ------------------------------------------------------------------------------------------- */
@@ -559,7 +508,7 @@ int gm_cache_error(gm_cache *cache, int states, unsigned seed, gm_cache_errors *
     }
     errors->sum_largest = errors->sum_rms = gmi_nan();
     errors->contact_largest = errors->contact_rms = gmi_nan();
-    if (cache == NULL || cache->pair == NULL) {
+    if (cache == NULL) {
         return GM_ERR_NULL;
     }
     if (states < 1) {
@@ -576,11 +525,15 @@ int gm_cache_error(gm_cache *cache, int states, unsigned seed, gm_cache_errors *
         set_teeth(cache, pass, &position);
         need_column(cache, pass, index);
         const double start = cache->starts[(size_t)pass * (size_t)cache->columns + (size_t)index];
-        const double delta = start + gmi_random_unit(&random) * cache->depth;
+        const double depth = gmi_random_unit(&random) * cache->depth;
+        if (!(start < HUGE_VAL)) {
+            continue; /* no line of contact at this phase: nothing to be off by */
+        }
+
         gmi_side_sum looked_up;
-        const gmi_side_sum exact = exact_at(cache, &position, delta);
-        if (!(start < HUGE_VAL) || !look_up(cache, &position, &looked_up)) {
-            continue; /* exact anyway */
+        const gmi_side_sum exact = exact_at(cache, &position, start + depth);
+        if (!gmi_cache_look_up(cache, &position, &looked_up)) {
+            continue; /* beyond the cache, which answers exactly there */
         }
         add_error(looked_up.sum - exact.sum, &sum_largest, &sum_squares);
         add_error(looked_up.contact - exact.contact, &contact_largest, &contact_squares);

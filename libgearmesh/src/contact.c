@@ -9,7 +9,8 @@
  * with the same delta = x - backlash / 2 for every pair and t1 (Eqs. 20-23). Coast side: the mirror image,
  * phi_p and advance change their signs, so pair i becomes line -i, and delta = -x - backlash / 2.
  *
- * A line exists where both flanks do: rho_p and rho_w between start and tip of their gears.
+ * A line exists where both flanks do: rho_p and rho_w between start and tip of their gears. gmi_lines_find() finds the
+ * lines of ideal and of measured flanks alike.
  */
 #include "internal.h"
 
@@ -32,60 +33,59 @@ static int wrap_tooth(int tooth, int teeth) {
 }
 
 /* Limits of rho_p: those of the pinion, and those of the wheel seen from the pinion. */
-typedef struct limits {
-    double lower, upper;
-    double lower_by_delta, upper_by_delta;
-} limits;
-
-static limits find_limits(const gm_pair *pair, double delta) {
-    const double reach = pair->line_of_action + delta; /* rho_p + rho_w */
+static void find_limits(const gm_pair *pair, gmi_lines *lines) {
+    const double reach = pair->line_of_action + lines->delta; /* rho_p + rho_w */
     const double wheel_tip = reach - pair->wheel.tip_roll_length;
     const double wheel_start = reach - pair->wheel.start_roll_length;
-    limits found = {pair->pinion.start_roll_length, pair->pinion.tip_roll_length, 0.0, 0.0};
-    if (wheel_tip > found.lower) {
-        found.lower = wheel_tip;
-        found.lower_by_delta = 1.0;
+
+    lines->lower = pair->pinion.start_roll_length;
+    lines->upper = pair->pinion.tip_roll_length;
+    lines->lower_by_delta = lines->upper_by_delta = 0.0;
+    if (wheel_tip > lines->lower) {
+        lines->lower = wheel_tip;
+        lines->lower_by_delta = 1.0;
     }
-    if (wheel_start < found.upper) {
-        found.upper = wheel_start;
-        found.upper_by_delta = 1.0;
+    if (wheel_start < lines->upper) {
+        lines->upper = wheel_start;
+        lines->upper_by_delta = 1.0;
     }
-    return found;
 }
 
-/* Where line 0 enters and leaves the flanks as t1 grows, and which lines do so within the face. */
-static void find_ends(const gm_pair *pair, const limits *range, gmi_lines *lines) {
-    const double below = range->lower - lines->origin;
-    const double above = range->upper - lines->origin;
+void gmi_lines_find(const gm_pair *pair, int side, const gm_position *position, gmi_lines *lines) {
+    const double direction = gmi_side_sign(side);
+    lines->origin = pair->phase_origin[side] + direction * position->phase;
+    lines->advance = direction * pair->face_advance;
+    lines->delta = gmi_ideal_penetration(pair, side, position->offset);
+    find_limits(pair, lines);
+
+    /* Line k covers origin + k p_bt + [fall, rise] of the line of action: those that meet [lower, upper]. */
+    const double rise = lines->advance > 0.0 ? lines->advance : 0.0;
+    const double fall = lines->advance > 0.0 ? 0.0 : lines->advance;
+    const double below = lines->lower - lines->origin;
+    const double above = lines->upper - lines->origin;
     const double per_pitch = 1.0 / pair->transverse_base_pitch;
-    if (lines->advance == 0.0) { /* spur: a line is inside as a whole, or not at all */
-        lines->per_advance = lines->enter = lines->spacing = 0.0;
-        lines->leave = 1.0;
-        lines->enter_by_delta = lines->leave_by_delta = 0.0;
-        lines->first = -floor_to_int(-below * per_pitch);
-        lines->last = floor_to_int(above * per_pitch);
-        return;
-    }
-    lines->per_advance = 1.0 / lines->advance;
-    lines->spacing = pair->transverse_base_pitch * lines->per_advance;
-    const int climbs = lines->advance > 0.0;
-    lines->enter = (climbs ? below : above) * lines->per_advance;
-    lines->leave = (climbs ? above : below) * lines->per_advance;
-    lines->enter_by_delta = climbs ? range->lower_by_delta : range->upper_by_delta;
-    lines->leave_by_delta = climbs ? range->upper_by_delta : range->lower_by_delta;
-    const double rise = climbs ? lines->advance : 0.0;
-    const double fall = climbs ? 0.0 : lines->advance;
     lines->first = -floor_to_int((rise - below) * per_pitch);
     lines->last = floor_to_int((above - fall) * per_pitch);
 }
 
-void gmi_lines_find(const gm_pair *pair, int side, const gm_position *position, gmi_lines *lines) {
-    const double direction = side == GM_DRIVE ? 1.0 : -1.0;
-    lines->origin = pair->phase_origin[side] + direction * position->phase;
-    lines->advance = direction * pair->face_advance;
-    lines->delta = gmi_ideal_penetration(pair, side, position->offset);
-    const limits range = find_limits(pair, lines->delta);
-    find_ends(pair, &range, lines);
+gmi_line_ends gmi_line_ends_find(const gm_pair *pair, const gmi_lines *lines) {
+    /* Spur gears: a line is inside as a whole, or not at all. */
+    gmi_line_ends ends = {0.0, 0.0, 1.0, 0.0, 0.0, 0.0};
+    if (lines->advance == 0.0) {
+        return ends;
+    }
+
+    /* A line that climbs enters at the lower limit, one that falls at the upper one. */
+    const double below = lines->lower - lines->origin;
+    const double above = lines->upper - lines->origin;
+    const int climbs = lines->advance > 0.0;
+    ends.per_advance = 1.0 / lines->advance;
+    ends.spacing = pair->transverse_base_pitch * ends.per_advance;
+    ends.enter = (climbs ? below : above) * ends.per_advance;
+    ends.leave = (climbs ? above : below) * ends.per_advance;
+    ends.enter_by_delta = climbs ? lines->lower_by_delta : lines->upper_by_delta;
+    ends.leave_by_delta = climbs ? lines->upper_by_delta : lines->lower_by_delta;
+    return ends;
 }
 
 gmi_teeth gmi_lines_teeth(const gm_pair *pair, int side, const gm_position *position,
@@ -101,71 +101,75 @@ gmi_teeth gmi_lines_teeth(const gm_pair *pair, int side, const gm_position *posi
 }
 
 /* First moments between ideal flanks: of 1 over t1 and rho_p; delta times them for the sum. */
-static void add_ideal_moments(const gm_pair *pair, int side, const gm_position *position,
-                              gmi_side_sum *total) {
-    gmi_lines lines;
-    gmi_lines_find(pair, side, position, &lines);
-    for (int k = lines.first; k <= lines.last; ++k) {
-        const gmi_interval part = gmi_line_clip(&lines, k);
+static void add_ideal_moments(const gm_pair *pair, const gmi_lines *lines, gmi_side_sum *total) {
+    const gmi_line_ends ends = gmi_line_ends_find(pair, lines);
+    for (int k = lines->first; k <= lines->last; ++k) {
+        const gmi_interval part = gmi_line_clip(&ends, k);
         const double length = part.to - part.from;
         if (!(length > 0.0)) {
             continue;
         }
         const double middle = 0.5 * (part.from + part.to);
-        const double origin = lines.origin + (double)k * pair->transverse_base_pitch;
+        const double origin = lines->origin + (double)k * pair->transverse_base_pitch;
         total->contact_t1 += length * middle;
-        total->contact_rho += length * (origin + lines.advance * middle);
+        total->contact_rho += length * (origin + lines->advance * middle);
     }
-    total->sum_t1 = lines.delta * total->contact_t1;
-    total->sum_rho = lines.delta * total->contact_rho;
+    total->sum_t1 = lines->delta * total->contact_t1;
+    total->sum_rho = lines->delta * total->contact_rho;
 }
 
 /*
- * Between ideal flanks the integrand is delta on all lines, so only their length counts. Line k covers the line of action
- * from start + k p_bt on over the advance, and what of that lies beyond the limits is cut off: sums of arithmetic series.
- * An end within the face moves with the line's origin, and with delta if it is the wheel's.
+ * Between ideal flanks the integrand is delta on all lines, so only their length within the limits counts. Line k covers
+ * the line of action from start + k p_bt on over the length |advance|. The parts below the lower limit grow by p_bt from
+ * line to line, and so do those above the upper limit: both are arithmetic series, which are subtracted from the whole.
  */
 void gmi_side_sum_ideal(const gm_pair *pair, int side, const gm_position *position, int wanted,
                         gmi_side_sum *total) {
-    const double direction = side == GM_DRIVE ? 1.0 : -1.0;
-    const double delta = gmi_ideal_penetration(pair, side, position->offset);
-    const limits range = find_limits(pair, delta);
-    const double advance = direction * pair->face_advance;
-    const double start =
-        pair->phase_origin[side] + direction * position->phase + (advance < 0.0 ? advance : 0.0);
-    const double cover = fabs(advance);
-    const double below = range.lower - start;
-    const double above = range.upper - start;
-    const double pitch = pair->transverse_base_pitch;
-    const double per_pitch = 1.0 / pitch;
+    gmi_lines lines;
+    gmi_lines_find(pair, side, position, &lines);
+    const double start = lines.origin + (lines.advance < 0.0 ? lines.advance : 0.0);
+    const double cover = fabs(lines.advance);
+    const double below = lines.lower - start;
+    const double above = lines.upper - start;
 
-    const int first = -floor_to_int((cover - below) * per_pitch);
-    const int last = floor_to_int(above * per_pitch);
-    const int lines = last - first + 1;
-    if (lines <= 0 || !(below < above)) {
+    const int count = lines.last - lines.first + 1;
+    if (count <= 0 || !(below < above)) {
         return;
     }
-    total->pairs = lines;
-    total->contact = (double)lines;
-    if (cover > 0.0) {
-        const double per_cover = 1.0 / cover;
-        const int cut_below = -floor_to_int(-below * per_pitch) - first; /* lines cut there */
-        const int cut_above = last - floor_to_int((above - cover) * per_pitch);
-        const double lower_ends = (double)cut_below, upper_ends = (double)cut_above;
-        const double mean_below = below - pitch * ((double)first + 0.5 * (lower_ends - 1.0));
-        const double mean_above = cover - above + pitch * ((double)last - 0.5 * (upper_ends - 1.0));
-        const double cut = (lower_ends * mean_below + upper_ends * mean_above) * per_cover;
-        const double contact = (double)lines - (cut > 0.0 ? cut : 0.0);
-        total->contact = contact > 0.0 ? contact : 0.0; /* rounding: next to no helix */
+    total->pairs = count;
+    total->contact = (double)count;
 
-        const double flow = delta * per_cover; /* through one end */
+    if (cover > 0.0) {
+        /* How many lines are cut at each limit, and by how much on average. */
+        const double pitch = pair->transverse_base_pitch;
+        const double per_pitch = 1.0 / pitch;
+        const int cut_below = -floor_to_int(-below * per_pitch) - lines.first;
+        const int cut_above = lines.last - floor_to_int((above - cover) * per_pitch);
+        const double lower_ends = (double)cut_below, upper_ends = (double)cut_above;
+        const double mean_below = below - pitch * ((double)lines.first + 0.5 * (lower_ends - 1.0));
+        const double mean_above =
+            cover - above + pitch * ((double)lines.last - 0.5 * (upper_ends - 1.0));
+
+        /* Rounding may take more than there is where the lines hardly climb. */
+        const double per_cover = 1.0 / cover;
+        const double cut = (lower_ends * mean_below + upper_ends * mean_above) * per_cover;
+        const double contact = (double)count - (cut > 0.0 ? cut : 0.0);
+        total->contact = contact > 0.0 ? contact : 0.0;
+
+        /* An end moves with the line's origin, and with delta where the wheel sets the limit. */
+        const double flow = lines.delta * per_cover;
         total->by_origin = flow * (lower_ends - upper_ends);
         total->by_delta =
-            flow * (upper_ends * range.upper_by_delta - lower_ends * range.lower_by_delta);
+            flow * (upper_ends * lines.upper_by_delta - lower_ends * lines.lower_by_delta);
+        if (wanted & GMI_CONTACT_DERIVATIVES) {
+            total->contact_by_origin = per_cover * (lower_ends - upper_ends);
+            total->contact_by_delta =
+                per_cover * (upper_ends * lines.upper_by_delta - lower_ends * lines.lower_by_delta);
+        }
     }
     total->by_delta += total->contact;
-    total->sum = delta * total->contact;
+    total->sum = lines.delta * total->contact;
     if (wanted & GMI_MOMENTS) {
-        add_ideal_moments(pair, side, position, total);
+        add_ideal_moments(pair, &lines, total);
     }
 }

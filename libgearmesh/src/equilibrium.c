@@ -2,7 +2,7 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 
 /*
- * Quasi-static equilibrium at one pinion angle: the x at which stiffness * r_bw * net sum = torque. The net
+ * Quasi-static equilibrium at one pinion angle: the x at which the net sum carries the torque. The net
  * sum grows with x (but see "departure" below) and its slope is exact, so Newton's method finds x, kept within
  * a bracket that bisection closes where Newton's method does not. Where the sum of a spur pair steps over the
  * torque the bracket closes on the step: there the edge of the entering pair carries the rest.
@@ -18,9 +18,8 @@
 #define LARGEST_STEPS 200 /* never needed: p_bt / 2 is halved to a rounding in 50 */
 
 typedef struct problem {
+    const gm_mesh *mesh;
     const gm_pair *pair;
-    const gm_flanks *pinion_flanks;
-    const gm_flanks *wheel_flanks;
     gm_position position; /* phase and teeth; offset is the unknown */
     double direction;     /* +1: x grows with the load, -1: it falls */
     double target;        /* net sum that carries the torque, >= 0 in that direction (m) */
@@ -41,21 +40,16 @@ typedef struct bracket {
 } bracket;
 
 /* Load less target at a travel, and the full result. Callers keep it below half a base pitch. */
-static double residual(const problem *p, double travel, gm_penetration *result) {
+static double residual(const problem *p, double travel, gm_mesh_result *result) {
     gm_position position = p->position;
     position.offset = p->direction * travel;
-    (void)gm_penetration_3d_at(p->pair, p->pinion_flanks, p->wheel_flanks, &position, result);
-    return p->direction * result->penetration - p->target;
-}
-
-static double peak_of(const gm_flanks *flanks, int side) {
-    const gm_flank_tables *tables = gmi_flanks_side(flanks, side);
-    return tables == NULL ? 0.0 : tables->peak;
+    gmi_mesh_evaluate_exact(p->mesh, &position, GM_WANT_DERIVATIVES, result);
+    return p->direction * result->contact.penetration - p->target;
 }
 
 /* No contact on a side whose ideal penetration is below minus this. */
 static double sum_peak(const problem *p, int side) {
-    return peak_of(p->pinion_flanks, side) + peak_of(p->wheel_flanks, side);
+    return p->mesh->side[side].peak;
 }
 
 static int loaded_side(const problem *p) {
@@ -76,10 +70,10 @@ static double clamp(double value, double limit) {
  * most, which doubles. Returns 0 if the load is not reached.
  */
 static int solve(const problem *p, bracket within, double travel, double reach, double *found,
-                 gm_penetration *result) {
+                 gm_mesh_result *result) {
     for (int k = 0; k < LARGEST_STEPS; ++k) {
         const double value = residual(p, travel, result);
-        const double slope = -result->d_wheel_angle / p->pair->wheel.base_radius;
+        const double slope = -result->contact.d_wheel_angle / p->pair->wheel.base_radius;
         *found = travel;
         if (fabs(value) <= p->resolution * slope) {
             return 1;
@@ -129,10 +123,10 @@ static double departure(const problem *p, double lower) {
 
 /* If the load was carried before a line left: there, and not where the others have taken its share. */
 static int solve_before_departure(const problem *p, double lower, double reached, double *found,
-                                  gm_penetration *result) {
+                                  gm_mesh_result *result) {
     const double before = departure(p, lower) - 8.0 * p->resolution;
     const int can_fall = fabs(p->pair->face_advance) < reached - lower;
-    gm_penetration there;
+    gm_mesh_result there;
     if (!can_fall || !(before > lower && before < reached) || residual(p, before, &there) < 0.0) {
         return 0;
     }
@@ -140,7 +134,7 @@ static int solve_before_departure(const problem *p, double lower, double reached
     return solve(p, within, before, 0.0, found, result);
 }
 
-static int find_loaded(const problem *p, double guess, double *found, gm_penetration *result) {
+static int find_loaded(const problem *p, double guess, double *found, gm_mesh_result *result) {
     const double limit = largest_offset(p);
     const double peak = sum_peak(p, loaded_side(p));
     const double lower = clamp(0.5 * p->pair->backlash - peak, limit); /* nothing touches */
@@ -166,7 +160,7 @@ static int find_loaded(const problem *p, double guess, double *found, gm_penetra
 }
 
 /* No torque: equilibrium only where both sides press against each other (negative backlash). */
-static int find_unloaded(const problem *p, double guess, double *found, gm_penetration *result) {
+static int find_unloaded(const problem *p, double guess, double *found, gm_mesh_result *result) {
     const double half_backlash = 0.5 * p->pair->backlash;
     const double limit = largest_offset(p);
     const bracket within = {
@@ -180,59 +174,75 @@ static int find_unloaded(const problem *p, double guess, double *found, gm_penet
     const int guessed = guess > within.lower && guess < within.upper;
     const double middle = within.lower + 0.5 * (within.upper - within.lower);
     if (!solve(p, within, guessed ? guess : middle, 0.0, found, result) ||
-        !(result->drive_contact > 0.0 && result->coast_contact > 0.0)) {
+        !(result->contact.drive_contact > 0.0 && result->contact.coast_contact > 0.0)) {
         return GM_UNDETERMINED;
     }
     return GM_OK;
 }
 
-int gm_static_equilibrium_near(const gm_pair *pair, const gm_flanks *pinion_flanks,
-                               const gm_flanks *wheel_flanks, double pinion_angle, double stiffness,
-                               double wheel_torque, double guess, double *offset,
-                               gm_penetration *result) {
-    gm_penetration found;
-    if (result == NULL) {
-        result = &found;
+/* The spring with backlash in closed form. */
+static int find_simple(const problem *p, double *found) {
+    const double clearance = 0.5 * p->pair->backlash;
+    const double compression = p->target;
+    if (compression > 0.0) {
+        /* Negative backlash: both flanks touch up to |x| = -clearance and push against each other. */
+        *found = compression < -2.0 * clearance ? 0.5 * compression : clearance + compression;
+    } else {
+        *found = 0.0;
+        if (!(clearance < 0.0)) {
+            return GM_UNDETERMINED;
+        }
     }
-    (void)gm_penetration_3d_at(NULL, NULL, NULL, NULL, result); /* NaN until found */
+    return GM_OK;
+}
+
+static int find(const problem *p, double guess, double *found, gm_mesh_result *result) {
+    if (p->mesh->model == GM_MODEL_SIMPLE) {
+        const int status = find_simple(p, found);
+        (void)residual(p, *found, result);
+        return status;
+    }
+    return p->target > 0.0 ? find_loaded(p, guess, found, result)
+                           : find_unloaded(p, guess, found, result);
+}
+
+int gm_static_equilibrium(const gm_mesh *mesh, double pinion_angle, double wheel_torque,
+                          double guess, void *workspace, double *offset, gm_mesh_result *result) {
+    (void)workspace;
+    if (result != NULL) {
+        gmi_mesh_result_set_nan(result); /* until found */
+    }
     if (offset == NULL) {
         return GM_ERR_NULL;
     }
     *offset = gmi_nan();
-    if (pair == NULL) {
+    if (mesh == NULL) {
         return GM_ERR_NULL;
     }
-    if (!(stiffness >= GMI_SMALLEST_STIFFNESS && stiffness <= GMI_LARGEST_STIFFNESS) ||
-        !gmi_is_finite(wheel_torque)) {
+    if (!gmi_is_finite(wheel_torque)) {
         return GM_ERR_PARAMETER;
     }
 
-    problem p = {pair, pinion_flanks, wheel_flanks, {0, 0, 0.0, 0.0, 0.0}, 1.0, 0.0, 0.0};
-    int status = gm_position_from_pinion_angle(pair, pinion_angle, 0.0, 0.0, &p.position);
-    if (status == GM_OK) {
-        status = gmi_check_evaluation(pair, pinion_flanks, wheel_flanks, &p.position);
-    }
+    problem p = {mesh, mesh->pair, {0, 0, 0.0, 0.0, 0.0}, 1.0, 0.0, 0.0};
+    int status = gm_position_from_pinion_angle(p.pair, pinion_angle, 0.0, 0.0, &p.position);
     if (status != GM_OK) {
         return status;
     }
 
+    /* Torque below zero loads the coast flanks. */
     p.direction = wheel_torque < 0.0 ? -1.0 : 1.0;
-    p.target = p.direction * wheel_torque / (stiffness * pair->wheel.base_radius);
-    p.resolution = DBL_EPSILON * pair->center_distance;
+    p.target =
+        p.direction * gmi_law_sum_of_torque(&mesh->law, wheel_torque, p.pair->wheel.base_radius);
+    p.resolution = DBL_EPSILON * p.pair->center_distance;
+
     double travel;
-    gm_penetration at_equilibrium;
-    status = p.target > 0.0 ? find_loaded(&p, p.direction * guess, &travel, &at_equilibrium)
-                            : find_unloaded(&p, p.direction * guess, &travel, &at_equilibrium);
+    gm_mesh_result at_equilibrium;
+    status = find(&p, p.direction * guess, &travel, &at_equilibrium);
     if (status == GM_OK) {
         *offset = p.direction * travel;
-        *result = at_equilibrium;
+        if (result != NULL) {
+            *result = at_equilibrium;
+        }
     }
     return status;
-}
-
-int gm_static_equilibrium(const gm_pair *pair, const gm_flanks *pinion_flanks,
-                          const gm_flanks *wheel_flanks, double pinion_angle, double stiffness,
-                          double wheel_torque, double *offset, gm_penetration *result) {
-    return gm_static_equilibrium_near(pair, pinion_flanks, wheel_flanks, pinion_angle, stiffness,
-                                      wheel_torque, gmi_nan(), offset, result);
 }

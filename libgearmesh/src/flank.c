@@ -39,19 +39,23 @@ static uint64_t all_doubles(const gm_flanks_params *p) {
            side_doubles(p->coast_tables, p->coast_face_nodes, p->coast_profile_nodes, p->teeth);
 }
 
+/* The object itself, the doubles of both sides, and tooth -> table of both sides. */
+static uint64_t all_bytes(const gm_flanks_params *p) {
+    return sizeof(gm_flanks) + all_doubles(p) * sizeof(double) +
+           2 * (uint64_t)p->teeth * sizeof(int);
+}
+
 size_t gm_flanks_size(const gm_flanks_params *params) {
     if (params == NULL || !check_params(params)) {
         return 0;
     }
-    const uint64_t bytes =
-        all_doubles(params) * sizeof(double) +
-        2 * (uint64_t)params->teeth * sizeof(int); /* tooth -> table, both sides */
+    const uint64_t bytes = all_bytes(params);
     return bytes <= SIZE_MAX / 2 ? (size_t)bytes : 0;
 }
 
 /* Lays one side out from `doubles` and `ints` on and returns the next free double. */
-static double *side_init(gm_flank_tables *side, int tables, int face_nodes, int profile_nodes,
-                         int teeth, double *doubles, int *ints) {
+static double *side_init(gmi_tables *side, int tables, int face_nodes, int profile_nodes, int teeth,
+                         double *doubles, int *ints) {
     side->face_nodes = tables == 0 ? 0 : face_nodes;
     side->profile_nodes = tables == 0 ? 0 : profile_nodes;
     side->capacity = tables;
@@ -73,12 +77,12 @@ static double *side_init(gm_flank_tables *side, int tables, int face_nodes, int 
     return doubles;
 }
 
-int gm_flanks_init(gm_flanks *flanks, const gm_flanks_params *params, void *memory,
+int gm_flanks_init(gm_flanks **flanks, const gm_flanks_params *params, void *memory,
                    size_t memory_size) {
     if (flanks == NULL) {
         return GM_ERR_NULL;
     }
-    memset(flanks, 0, sizeof *flanks);
+    *flanks = NULL;
     if (params == NULL || memory == NULL) {
         return GM_ERR_NULL;
     }
@@ -86,35 +90,89 @@ int gm_flanks_init(gm_flanks *flanks, const gm_flanks_params *params, void *memo
     if (needed == 0) {
         return GM_ERR_PARAMETER;
     }
-    if (memory_size < needed) {
+    if (memory_size < needed || !gmi_is_aligned(memory)) {
         return GM_ERR_MEMORY;
     }
 
-    double *doubles = (double *)memory;
+    /* The object, then all doubles, then all integers. */
+    gm_flanks *made = (gm_flanks *)memory;
+    double *doubles = (double *)(made + 1);
     int *ints = (int *)(doubles + all_doubles(params));
-    flanks->teeth = params->teeth;
-    doubles = side_init(&flanks->drive, params->drive_tables, params->drive_face_nodes,
+    memset(made, 0, sizeof *made);
+    made->teeth = params->teeth;
+    doubles = side_init(&made->side[GM_DRIVE], params->drive_tables, params->drive_face_nodes,
                         params->drive_profile_nodes, params->teeth, doubles, ints);
-    (void)side_init(&flanks->coast, params->coast_tables, params->coast_face_nodes,
+    (void)side_init(&made->side[GM_COAST], params->coast_tables, params->coast_face_nodes,
                     params->coast_profile_nodes, params->teeth, doubles, ints + params->teeth);
+    *flanks = made;
     return GM_OK;
 }
 
-static gm_flank_tables *side_of(gm_flanks *flanks, int side) {
-    return side == GM_DRIVE ? &flanks->drive : side == GM_COAST ? &flanks->coast : NULL;
+int gm_flanks_teeth(const gm_flanks *flanks) {
+    return flanks == NULL ? 0 : flanks->teeth;
 }
 
-static size_t table_doubles(const gm_flank_tables *side) {
+static int is_side(int side) {
+    return side == GM_DRIVE || side == GM_COAST;
+}
+
+double gm_flanks_peak(const gm_flanks *flanks, int side) {
+    if (!is_side(side)) {
+        return gmi_nan();
+    }
+    return flanks == NULL ? 0.0 : flanks->side[side].peak;
+}
+
+/* Steepest rise of a table over one cell along the profile, where it is linear (m). */
+static double steepest_cell(const gmi_tables *tables) {
+    const size_t lines = (size_t)tables->count * (size_t)tables->face_nodes;
+    const size_t nodes = (size_t)tables->profile_nodes;
+    double steepest = 0.0;
+    for (size_t line = 0; line < lines; ++line) {
+        const double *node = tables->values + line * nodes * GMI_NODE_DOUBLES;
+        for (size_t k = 1; k < nodes; ++k) {
+            const double rise = node[k * GMI_NODE_DOUBLES] - node[(k - 1) * GMI_NODE_DOUBLES];
+            steepest = fmax(steepest, fabs(rise));
+        }
+    }
+    return steepest;
+}
+
+double gm_flanks_profile_slope(const gm_flanks *flanks, int side) {
+    if (!is_side(side)) {
+        return gmi_nan();
+    }
+    if (flanks == NULL) {
+        return 0.0;
+    }
+
+    /* Cells are 1 / (nodes - 1) long in t2; each ramp may add all of its slope. */
+    const gmi_tables *tables = &flanks->side[side];
+    double slope = 0.0;
+    if (tables->count > 0) {
+        slope = steepest_cell(tables) * (double)(tables->profile_nodes - 1);
+    }
+    for (int k = 0; k < tables->ramp_count; ++k) {
+        slope += fabs(tables->ramps[k].per_t2);
+    }
+    return slope;
+}
+
+static gmi_tables *side_of(gm_flanks *flanks, int side) {
+    return is_side(side) ? &flanks->side[side] : NULL;
+}
+
+static size_t table_doubles(const gmi_tables *side) {
     return (size_t)side->face_nodes * (size_t)side->profile_nodes * GMI_NODE_DOUBLES;
 }
 
 /* Most material of one tooth: its highest node (bilinear surfaces peak at nodes) and its pitch. */
-static double tooth_peak(const gm_flank_tables *side, int tooth) {
+static double tooth_peak(const gmi_tables *side, int tooth) {
     const int table = side->table[tooth];
     return side->pitch[tooth] + (table < 0 ? 0.0 : side->table_peak[table]);
 }
 
-static void find_peak(const gm_flanks *flanks, gm_flank_tables *side) {
+static void find_peak(const gm_flanks *flanks, gmi_tables *side) {
     side->peak = tooth_peak(side, 0);
     for (int tooth = 1; tooth < flanks->teeth; ++tooth) {
         const double peak = tooth_peak(side, tooth);
@@ -125,7 +183,7 @@ static void find_peak(const gm_flanks *flanks, gm_flank_tables *side) {
 }
 
 /* After a change of one tooth, or of all. Looks at all teeth only if the highest one may have come down. */
-static void update_peak(const gm_flanks *flanks, gm_flank_tables *side, int tooth, double before) {
+static void update_peak(const gm_flanks *flanks, gmi_tables *side, int tooth, double before) {
     const double now = tooth == GM_ALL_TEETH ? before : tooth_peak(side, tooth);
     if (tooth == GM_ALL_TEETH || (before == side->peak && now < before)) {
         find_peak(flanks, side);
@@ -139,7 +197,7 @@ static int is_deviation(double deviation) {
     return fabs(deviation) <= GMI_LARGEST_DEVIATION;
 }
 
-static int check_deviation(const gm_flank_tables *side, const double *deviation, double factor) {
+static int check_deviation(const gmi_tables *side, const double *deviation, double factor) {
     const size_t nodes = (size_t)side->face_nodes * (size_t)side->profile_nodes;
     for (size_t k = 0; k < nodes; ++k) {
         if (!is_deviation(deviation[k] * factor)) {
@@ -154,7 +212,7 @@ static double second_difference(const double *node, size_t stride, int k, int co
     return k == 0 || k == count - 1 ? 0.0 : (node[stride] - *node) - (*node - *(node - stride));
 }
 
-static void fill_table(const gm_flank_tables *side, double *table, const double *deviation,
+static void fill_table(const gmi_tables *side, double *table, const double *deviation,
                        double factor) {
     const size_t nodes = (size_t)side->face_nodes * (size_t)side->profile_nodes;
     const size_t row = (size_t)side->profile_nodes * GMI_NODE_DOUBLES;
@@ -187,7 +245,7 @@ int gm_flanks_set_table(gm_flanks *flanks, int side, int tooth, const double *de
     if (flanks == NULL || deviation == NULL) {
         return GM_ERR_NULL;
     }
-    gm_flank_tables *tables = side_of(flanks, side);
+    gmi_tables *tables = side_of(flanks, side);
     if (tables == NULL || tooth < GM_ALL_TEETH || tooth >= flanks->teeth) {
         return GM_ERR_TOOTH;
     }
@@ -218,7 +276,7 @@ int gm_flanks_set_pitch(gm_flanks *flanks, int side, int tooth, double deviation
     if (flanks == NULL) {
         return GM_ERR_NULL;
     }
-    gm_flank_tables *tables = side_of(flanks, side);
+    gmi_tables *tables = side_of(flanks, side);
     if (tables == NULL || tooth < GM_ALL_TEETH || tooth >= flanks->teeth) {
         return GM_ERR_TOOTH;
     }
@@ -243,7 +301,7 @@ int gm_flanks_set_ramps(gm_flanks *flanks, int side, const gm_flank_ramp *ramps,
     if (flanks == NULL || (ramps == NULL && count > 0)) {
         return GM_ERR_NULL;
     }
-    gm_flank_tables *tables = side_of(flanks, side);
+    gmi_tables *tables = side_of(flanks, side);
     if (tables == NULL) {
         return GM_ERR_TOOTH;
     }

@@ -3,17 +3,18 @@
 
 /*
  * What the sources of the core share and users never see. Dependencies run one way:
- * gear -> meshing -> pair -> position -> contact -> flank -> line -> ramp -> penetration -> force -> wrench, equilibrium.
+ * gear -> meshing -> pair -> position -> contact -> flank -> line -> ramp -> penetration -> law -> wrench -> mesh ->
+ * equilibrium, cache.
  */
 #ifndef GEARMESH_INTERNAL_H
 #define GEARMESH_INTERNAL_H
 
 #include "arithmetic.h"
 #include "gearmesh/gearmesh.h"
+#include "shared.h"
 
 #include <math.h>
-
-#include "shared.h"
+#include <stdint.h>
 
 /* 2 pi = GMI_TWO_PI + GMI_TWO_PI_REMAINDER to 32 digits. */
 #define GMI_TWO_PI           6.28318530717958647693
@@ -35,12 +36,24 @@
 #define GMI_SMALLEST_STIFFNESS 1e-30 /* (N/m) */
 #define GMI_LARGEST_STIFFNESS  1e30  /* (N/m), and of damping (N s/m) */
 
+/* Compiled once for each combination of its constant arguments. */
+#if defined(__GNUC__)
+#define SPECIALIZED static inline __attribute__((always_inline))
+#else
+#define SPECIALIZED static inline
+#endif
+
 static inline double gmi_nan(void) {
     return (double)NAN;
 }
 
 static inline int gmi_is_finite(double value) {
     return isfinite(value);
+}
+
+/* Whether an object may begin at this address. */
+static inline int gmi_is_aligned(const void *memory) {
+    return (uintptr_t)memory % sizeof(double) == 0;
 }
 
 /* a * b = *product + return value, exactly (Dekker; no fused multiply-add needed). */
@@ -86,23 +99,41 @@ int gmi_meshing_find(const gm_pair *pair, double center_distance, gmi_meshing *m
 /* The first part of it, which needs no teeth: line_of_action, working_pressure_angle, involute_difference. */
 void gmi_meshing_find_angles(const gm_pair *pair, double center_distance, gmi_meshing *meshing);
 
-/* What to compute beside sum, contact and pairs. */
-enum gmi_wanted { GMI_SUM = 0, GMI_DERIVATIVES = 1, GMI_MOMENTS = 2 };
+/* What an evaluation accumulates beside sum, contact and pairs: a mask. */
+enum gmi_wanted {
+    GMI_SUM = 0,
+    GMI_DERIVATIVES = 1,        /* of the sum, by the origin of the lines and by delta */
+    GMI_MOMENTS = 2,            /* first moments over t1 and rho_p */
+    GMI_CONTACT_DERIVATIVES = 4 /* of the touching part; only together with GMI_DERIVATIVES */
+};
 
 /* The sums over all lines of one side. */
 typedef struct gmi_side_sum {
     double sum;     /* sum of the integrals of max(0, delta) dt1 (m) */
     double contact; /* touching part of the face width, summed (1) */
-    int pairs;      /* lines that touch */
+    int pairs;      /* lines that touch; -1: not counted */
 
-    double by_origin; /* partial derivatives of sum by the origin of the lines ... */
-    double by_delta;  /* ... and by delta (GMI_DERIVATIVES) (1) */
+    /* Partial derivatives by the origin of the lines and by delta: */
+    double by_origin, by_delta; /* of the sum (GMI_DERIVATIVES) (1) */
+    double contact_by_origin,
+        contact_by_delta; /* of the touching part (GMI_CONTACT_DERIVATIVES) (1/m) */
 
-    double sum_t1;      /* first moments (GMI_MOMENTS): integrals of max(0, delta) t1 (m), */
-    double sum_rho;     /* of max(0, delta) rho_p (m2), */
+    /* GMI_MOMENTS: integrals over the touching part. */
+    double sum_t1;      /* of max(0, delta) t1 (m) */
+    double sum_rho;     /* of max(0, delta) rho_p (m2) */
     double contact_t1;  /* of t1 (1) */
-    double contact_rho; /* and of rho_p over the touching part (m) */
+    double contact_rho; /* of rho_p (m) */
 } gmi_side_sum;
+
+static inline gmi_side_sum gmi_no_contact(void) {
+    const gmi_side_sum none = {0.0, 0.0, 0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0};
+    return none;
+}
+
+/* +1 for drive flanks, -1 for coast flanks: the coast side is the drive side seen in a mirror. */
+static inline double gmi_side_sign(int side) {
+    return side == GM_DRIVE ? 1.0 : -1.0;
+}
 
 /* contact.c: which lines of contact exist on one side, and where. */
 
@@ -112,20 +143,23 @@ typedef struct gmi_side_sum {
  * the distance from the pinion's base tangent point, and exists where lower <= rho_p <= upper.
  */
 typedef struct gmi_lines {
-    double delta;   /* ideal penetration, the same on every line (m) */
-    double origin;  /* (m) */
-    double advance; /* (m) */
+    double delta;        /* ideal penetration, the same on every line (m) */
+    double origin;       /* (m) */
+    double advance;      /* (m) */
+    double lower, upper; /* limits of rho_p (m) */
     double
-        per_advance; /* its inverse; 0 for spur gears, whose lines have no ends within the face (1/m) */
-
-    /* Line k enters the flanks at t1 = enter - k spacing and leaves them at leave - k spacing. */
-    double enter, leave, spacing;
-    double
-        enter_by_delta; /* 1 where a limit of the wheel sets the end, so that it moves with delta; else 0 */
-    double leave_by_delta;
-
+        lower_by_delta; /* 1 where the wheel sets the limit, so that it moves with delta; else 0 */
+    double upper_by_delta;
     int first, last; /* lines that can exist, none if first > last */
 } gmi_lines;
+
+/* Where the lines enter and leave the flanks as t1 grows: line k at enter - k spacing and leave - k spacing. */
+typedef struct gmi_line_ends {
+    double
+        per_advance; /* 1 / advance; 0 for spur gears, whose lines have no ends within the face (1/m) */
+    double enter, leave, spacing;
+    double enter_by_delta, leave_by_delta; /* 1 where the end moves with delta, else 0 */
+} gmi_line_ends;
 
 /* The teeth of line `first`, and how they go on: step = +1 or -1 from line k to line k + 1. */
 typedef struct gmi_teeth {
@@ -139,6 +173,7 @@ static inline double gmi_ideal_penetration(const gm_pair *pair, int side, double
 }
 
 void gmi_lines_find(const gm_pair *pair, int side, const gm_position *position, gmi_lines *lines);
+gmi_line_ends gmi_line_ends_find(const gm_pair *pair, const gmi_lines *lines);
 gmi_teeth gmi_lines_teeth(const gm_pair *pair, int side, const gm_position *position,
                           const gmi_lines *lines);
 void gmi_side_sum_ideal(const gm_pair *pair, int side, const gm_position *position, int wanted,
@@ -149,15 +184,35 @@ typedef struct gmi_interval {
     double from, to;
 } gmi_interval;
 
-static inline gmi_interval gmi_line_clip(const gmi_lines *lines, int k) {
-    const double shift = (double)k * lines->spacing;
-    const double enter = lines->enter - shift;
-    const double leave = lines->leave - shift;
+static inline gmi_interval gmi_line_clip(const gmi_line_ends *ends, int k) {
+    const double shift = (double)k * ends->spacing;
+    const double enter = ends->enter - shift;
+    const double leave = ends->leave - shift;
     const gmi_interval part = {enter > 0.0 ? enter : 0.0, leave < 1.0 ? leave : 1.0};
     return part;
 }
 
-/* flank.c: the deviations of one tooth flank. */
+/* flank.c: the deviations of the tooth flanks of one gear. */
+
+/* One side (drive or coast) of all teeth of a gear: views over the caller's memory, and ramps. */
+typedef struct gmi_tables {
+    int face_nodes;     /* grid lines along t1; without tables 0, or 2 if there are ramps */
+    int profile_nodes;  /* grid lines along t2; likewise */
+    int capacity;       /* table places */
+    int count;          /* table places taken */
+    double peak;        /* most material of any tooth, pitch included, before ramps (m) */
+    double *values;     /* [capacity][face_nodes][profile_nodes][GMI_NODE_DOUBLES] (m) */
+    double *table_peak; /* [capacity] largest node value (m) */
+    double *pitch;      /* [teeth] transverse pitch deviation, > 0 material added (m) */
+    int *table;         /* [teeth] table of a tooth, -1 = ideal */
+    int ramp_count;     /* 0 .. GM_FLANK_RAMPS_MAX */
+    gm_flank_ramp ramps[GM_FLANK_RAMPS_MAX]; /* of all teeth, in the transverse section */
+} gmi_tables;
+
+struct gm_flanks {
+    int teeth;
+    gmi_tables side[2]; /* GM_DRIVE, GM_COAST */
+};
 
 /* Doubles per node of a table: value, second difference along t1, along t2, padding. */
 enum gmi_node { GMI_NODE_VALUE, GMI_NODE_FACE, GMI_NODE_PROFILE, GMI_NODE_DOUBLES = 4 };
@@ -169,11 +224,11 @@ typedef struct gmi_flank {
 } gmi_flank;
 
 /* NULL = ideal. */
-static inline const gm_flank_tables *gmi_flanks_side(const gm_flanks *flanks, int side) {
-    return flanks == NULL ? NULL : side == GM_DRIVE ? &flanks->drive : &flanks->coast;
+static inline const gmi_tables *gmi_flanks_side(const gm_flanks *flanks, int side) {
+    return flanks == NULL ? NULL : &flanks->side[side];
 }
 
-static inline gmi_flank gmi_flank_of(const gm_flank_tables *tables, int tooth) {
+static inline gmi_flank gmi_flank_of(const gmi_tables *tables, int tooth) {
     gmi_flank flank = {NULL, 0.0, 0.0};
     if (tables == NULL) {
         return flank;
@@ -215,7 +270,7 @@ typedef struct gmi_grid {
 } gmi_grid;
 
 /* climb: d rho / d t1 of this gear along a line, signed (m); length: rho from start to tip (m). */
-void gmi_grid_init(gmi_grid *grid, const gm_flank_tables *tables, double climb, double length);
+void gmi_grid_init(gmi_grid *grid, const gmi_tables *tables, double climb, double length);
 
 /* One line: t1 from `from` to `to`, with f = gap + 2 half_slope (t1 - from) + tables of both flanks. */
 typedef struct gmi_line {
@@ -236,7 +291,13 @@ typedef struct gmi_line_sum {
     double wheel;      /* of the wheel's (m) */
     double sum_t1;     /* of f t1 (GMI_MOMENTS) (m) */
     double contact_t1; /* of t1 (1) */
-    double at_from;    /* f itself at both ends (m) */
+
+    /* Over the roots of f within the line, where the touching part ends (GMI_CONTACT_DERIVATIVES): */
+    double roots;        /* sum of 1 / |df/dt1| (1/m) */
+    double roots_pinion; /* of the pinion's d deviation / d v2, over |df/dt1| (1) */
+    double roots_wheel;  /* of the wheel's (1) */
+
+    double at_from; /* f itself at both ends (m) */
     double at_to;
 } gmi_line_sum;
 
@@ -245,16 +306,182 @@ void gmi_line_integrate(const gmi_line *line, const gmi_grid *pinion, const gmi_
 
 /* ramp.c: gmi_line_integrate() with the ramps of both flanks, NULL = none, taken off; line->half_slope is 0. */
 void gmi_ramps_integrate(const gmi_line *line, const gmi_grid *pinion, const gmi_grid *wheel,
-                         const gm_flank_tables *pinion_tables, const gm_flank_tables *wheel_tables,
+                         const gmi_tables *pinion_tables, const gmi_tables *wheel_tables,
                          int wanted, gmi_line_sum *result);
 
 /* penetration.c: the sums over all lines of one side. */
-void gmi_side_sum_3d(const gm_pair *pair, const gm_flanks *pinion_flanks,
-                     const gm_flanks *wheel_flanks, int side, const gm_position *position,
-                     int wanted, gmi_side_sum *total);
 
-/* Status of what an evaluation is given, beyond the pair. */
-int gmi_check_evaluation(const gm_pair *pair, const gm_flanks *pinion_flanks,
-                         const gm_flanks *wheel_flanks, const gm_position *position);
+/* One side of a mesh: what all its evaluations have in common. */
+typedef struct gmi_side {
+    const gmi_tables *pinion; /* NULL = ideal */
+    const gmi_tables *wheel;
+    gmi_grid pinion_grid; /* not set where both flanks are ideal */
+    gmi_grid wheel_grid;
+    int ramps;   /* of both flanks */
+    double peak; /* most material of both flanks: nothing touches at a delta <= -peak (m) */
+} gmi_side;
+
+void gmi_side_init(gmi_side *prepared, const gm_pair *pair, const gm_flanks *pinion_flanks,
+                   const gm_flanks *wheel_flanks, int side);
+
+void gmi_side_sum_tables(const gm_pair *pair, const gmi_side *prepared, int side,
+                         const gm_position *position, int wanted, gmi_side_sum *total);
+void gmi_side_sum_simple(const gm_pair *pair, int side, double offset, gmi_side_sum *total);
+
+/* Nothing reaches across the gap: the usual state of one of both sides. */
+static inline int gmi_side_is_clear(const gm_pair *pair, const gmi_side *prepared, int side,
+                                    double offset) {
+    return gmi_ideal_penetration(pair, side, offset) + prepared->peak <= 0.0;
+}
+
+/* The sum of a side that is not clear; wanted: mask of enum gmi_wanted. */
+static inline void gmi_side_sum_3d(const gm_pair *pair, const gmi_side *prepared, int side,
+                                   const gm_position *position, int wanted, gmi_side_sum *total) {
+    *total = gmi_no_contact();
+    if (prepared->pinion == NULL && prepared->wheel == NULL) {
+        gmi_side_sum_ideal(pair, side, position, wanted, total);
+    } else {
+        gmi_side_sum_tables(pair, prepared, side, position, wanted, total);
+    }
+}
+
+/*
+ * What both sides together are for the user; derivatives NaN where they were not wanted. These go from line origin and
+ * delta to angles. Drive: origin grows with r_bp phi_p, delta with x; coast: both with the opposite sign, and it counts
+ * negatively in the net sum, so that the signs are the same again.
+ */
+static inline void gmi_penetration_set(const gm_pair *pair, const gmi_side_sum *drive,
+                                       const gmi_side_sum *coast, double offset_rate, int wanted,
+                                       gm_penetration *result) {
+    result->drive = drive->sum;
+    result->coast = coast->sum;
+    result->penetration = drive->sum - coast->sum;
+
+    result->drive_contact = drive->contact;
+    result->coast_contact = coast->contact;
+    result->drive_pairs = drive->pairs;
+    result->coast_pairs = coast->pairs;
+
+    result->drive_rate = offset_rate * drive->contact;
+    result->coast_rate = -offset_rate * coast->contact;
+    result->rate = result->drive_rate - result->coast_rate;
+
+    result->d_pinion_angle = result->d_wheel_angle = gmi_nan();
+    if (wanted & GMI_DERIVATIVES) {
+        const double by_offset = drive->by_delta + coast->by_delta;
+        const double by_origin = drive->by_origin + coast->by_origin;
+        result->d_pinion_angle = pair->pinion.base_radius * (by_offset + by_origin);
+        result->d_wheel_angle = -pair->wheel.base_radius * by_offset;
+    }
+}
+
+gm_penetration gmi_penetration_nan(void);
+
+/* One comparison: below 0 is far above as unsigned. */
+static inline int gmi_is_tooth(int tooth, int teeth) {
+    return (unsigned)tooth < (unsigned)teeth;
+}
+
+/* Status of a position in the 3D model. */
+static inline int gmi_check_position(const gm_pair *pair, const gm_position *position) {
+    /* Negated, so that NaN is caught; a phase may be rounded up to p_bt. */
+    if (!(fabs(position->offset) < 0.5 * pair->transverse_base_pitch) ||
+        !(fabs(position->phase) < 1.5 * pair->transverse_base_pitch) ||
+        !(fabs(position->offset_rate) <= GMI_LARGEST_SPEED)) {
+        return gmi_is_finite(position->offset) && gmi_is_finite(position->phase) &&
+                       gmi_is_finite(position->offset_rate)
+                   ? GM_STATE_OUT_OF_RANGE
+                   : GM_STATE_NOT_FINITE;
+    }
+    if (!gmi_is_tooth(position->pinion_tooth, pair->pinion.teeth) ||
+        !gmi_is_tooth(position->wheel_tooth, pair->wheel.teeth)) {
+        return GM_ERR_TOOTH;
+    }
+    return GM_OK;
+}
+
+/* Status of x and dx/dt in any model. */
+int gmi_check_offset(double offset, double offset_rate);
+int gmi_check_flanks(const gm_pair *pair, const gm_flanks *pinion_flanks,
+                     const gm_flanks *wheel_flanks);
+
+/* law.c: from overlap to force, and back. */
+
+/* The law of one mesh. */
+typedef struct gmi_law {
+    double
+        stiffness; /* of one pair over the common face width; of the mesh in the simple model (N/m) */
+    double damping;        /* likewise (N s/m) */
+    double mean_stiffness; /* of the mesh over all pairs that touch on average (N/m) */
+} gmi_law;
+
+/* What the flanks of one side do. */
+typedef struct gmi_side_force {
+    double force;               /* >= 0, along the transverse line of action (N) */
+    double by_origin, by_delta; /* its partial derivatives (N/m) */
+    double by_speed;            /* by the approach speed (N s/m) */
+    double force_t1;            /* force times mean t1 (N) */
+    double force_rho;           /* force times mean rho_p (N m) */
+} gmi_side_force;
+
+/* Force of a side; here to be inlined. Constant law [Paper, Eq. 3]: K sum + D contact v, v the speed of approach. */
+static inline void gmi_law_force(const gmi_law *law, const gmi_side_sum *sum, double approach_speed,
+                                 int wanted, gmi_side_force *result) {
+    const double k = law->stiffness;
+    const double d = law->damping;
+    const gmi_side_force none = {0.0, 0.0, 0.0, 0.0, 0.0, 0.0};
+    *result = none;
+
+    /* Teeth do not pull: damping may take the force of a side away, never turn it round. */
+    const double force = k * sum->sum + d * (approach_speed * sum->contact);
+    if (!(force > 0.0)) {
+        return;
+    }
+    result->force = force;
+
+    /* The touching part moves with the flanks as well, and with it the damping. */
+    const double viscous = d * approach_speed;
+    if (wanted & GMI_DERIVATIVES) {
+        result->by_origin = k * sum->by_origin;
+        result->by_delta = k * sum->by_delta;
+        result->by_speed = d * sum->contact;
+    }
+    if (wanted & GMI_CONTACT_DERIVATIVES) {
+        result->by_origin += viscous * sum->contact_by_origin;
+        result->by_delta += viscous * sum->contact_by_delta;
+    }
+    if (wanted & GMI_MOMENTS) {
+        result->force_t1 = k * sum->sum_t1 + viscous * sum->contact_t1;
+        result->force_rho = k * sum->sum_rho + viscous * sum->contact_rho;
+    }
+}
+
+/* Net sum of overlaps that carries a torque at rest (m). */
+double gmi_law_sum_of_torque(const gmi_law *law, double torque, double base_radius);
+
+/* wrench.c: adds the forces of one side. */
+void gmi_wrench_add_side(const gm_pair *pair, const gmi_side_force *force, int side,
+                         gm_wrench *wrench);
+
+static inline void gmi_wrench_set(gm_wrench *wrench, double value) {
+    for (int k = 0; k < 3; ++k) {
+        wrench->pinion_force[k] = wrench->pinion_moment[k] = value;
+        wrench->wheel_force[k] = wrench->wheel_moment[k] = value;
+    }
+}
+
+/* mesh.c: the prepared mesh. */
+struct gm_mesh {
+    const gm_pair *pair;
+    gmi_side side[2]; /* GM_DRIVE, GM_COAST */
+    int model;        /* enum gm_model */
+    gmi_law law;
+    gm_cache *cache; /* NULL = exact */
+};
+
+/* As gm_mesh_evaluate_at() without the cache, of a position that has been checked. */
+void gmi_mesh_evaluate_exact(const gm_mesh *mesh, const gm_position *position, int wanted,
+                             gm_mesh_result *result);
+void gmi_mesh_result_set_nan(gm_mesh_result *result);
 
 #endif

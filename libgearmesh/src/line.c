@@ -28,13 +28,6 @@
 #define LEAST_RATE     1e-30
 #define LEAST_DISTANCE 1e-20 /* to the profile line ahead (cells) */
 
-/* The walk is compiled once for each combination of its constant arguments. */
-#if defined(__GNUC__)
-#define SPECIALIZED static inline __attribute__((always_inline))
-#else
-#define SPECIALIZED static inline
-#endif
-
 /* In place of a table that is not there: zeros wherever one looks. */
 static const double ideal_nodes[GMI_NODE_DOUBLES] = {0.0};
 static const gmi_grid ideal_grid = {0};
@@ -72,7 +65,7 @@ static void set_rates(gmi_grid *grid, double face_ratio) {
     grid->bend = grid->rate * face_ratio;
 }
 
-void gmi_grid_init(gmi_grid *grid, const gm_flank_tables *tables, double climb, double length) {
+void gmi_grid_init(gmi_grid *grid, const gmi_tables *tables, double climb, double length) {
     if (tables == NULL || tables->profile_nodes == 0) {
         *grid = ideal_grid;
         return;
@@ -191,7 +184,8 @@ static inline void add_touching(const piece *part, double begin, double end, int
                                 gmi_line_sum *total) {
     const double length = end - begin;
     const double middle = 0.5 * (begin + end);
-    total->sum += integral_of(&part->f, length, middle);
+    const double integral = integral_of(&part->f, length, middle);
+    total->sum += larger(integral, 0.0); /* below 0 by rounding where f is next to nothing */
     total->contact += length;
     if (wanted & GMI_DERIVATIVES) {
         total->pinion += length * (part->first_slope + middle * part->first_rate);
@@ -199,6 +193,18 @@ static inline void add_touching(const piece *part, double begin, double end, int
     }
     if (wanted & GMI_MOMENTS) {
         add_moments(part, begin, end, total);
+    }
+}
+
+/*
+ * A root of f within the piece ends a touching part. When f grows by df everywhere, it moves by df / |df/ds| and the
+ * touching part grows by that, whichever way f crosses zero.
+ */
+static inline void add_root(const piece *part, double root, double per_slope, gmi_line_sum *total) {
+    if (root > 0.0 && root < part->length) {
+        total->roots += per_slope;
+        total->roots_pinion += per_slope * (part->first_slope + root * part->first_rate);
+        total->roots_wheel += per_slope * (part->second_slope + root * part->second_rate);
     }
 }
 
@@ -212,11 +218,18 @@ static void add_split(const piece *part, int wanted, gmi_line_sum *total) {
     const double discriminant = f.half_slope * f.half_slope - f.curvature * f.value;
     if (discriminant > 0.0) {
         /* Without cancellation; an infinite root (curvature 0) is clamped away. */
-        const double q = -(f.half_slope + copysign(sqrt(discriminant), f.half_slope));
+        const double half_slope_at_root =
+            sqrt(discriminant); /* the same at both, but for its sign */
+        const double q = -(f.half_slope + copysign(half_slope_at_root, f.half_slope));
         const double root_1 = smaller(larger(q / f.curvature, 0.0), part->length);
         const double root_2 = smaller(larger(f.value / q, 0.0), part->length);
         cuts[1] = smaller(root_1, root_2);
         cuts[2] = larger(root_1, root_2);
+        if (wanted & GMI_CONTACT_DERIVATIVES) {
+            const double per_slope = 0.5 / half_slope_at_root;
+            add_root(part, cuts[1], per_slope, total);
+            add_root(part, cuts[2], per_slope, total);
+        }
     }
     for (int k = 0; k < 3; ++k) {
         const double middle = 0.5 * (cuts[k] + cuts[k + 1]);
@@ -363,6 +376,11 @@ SPECIALIZED void walk(walk_state at, const gmi_grid *first, const gmi_grid *seco
         result->pinion = per_rate * first->direction * (result->pinion + 0.5 * at.two_first);
         result->wheel = per_rate * second->direction * (result->wheel + 0.5 * at.two_second);
     }
+    if (wanted & GMI_CONTACT_DERIVATIVES) { /* from 1 / |df/ds| to 1 / |df/dt1| */
+        result->roots *= per_rate;
+        result->roots_pinion *= per_rate * first->direction;
+        result->roots_wheel *= per_rate * second->direction;
+    }
     result->at_to = at.f.value;
 }
 
@@ -423,21 +441,30 @@ static void integrate_tables(const gmi_line *line, const gmi_grid *first, const 
                                  second_face, p, s, &at.f));
     }
     result->at_from = at.f.value;
+    /* A walk of its own for each mask that solvers use: what is not wanted costs nothing in it. */
+    enum { DAMPED = GMI_DERIVATIVES | GMI_CONTACT_DERIVATIVES };
     if (!same_faces) {
         walk(at, first, second, end, wanted, 0, result);
-    } else if (wanted & GMI_MOMENTS) {
-        walk(at, first, second, end, GMI_MOMENTS, 1, result);
-    } else if (wanted & GMI_DERIVATIVES) {
-        walk(at, first, second, end, GMI_DERIVATIVES, 1, result);
-    } else {
+    } else if (wanted == GMI_SUM) {
         walk(at, first, second, end, GMI_SUM, 1, result);
+    } else if (wanted == GMI_DERIVATIVES) {
+        walk(at, first, second, end, GMI_DERIVATIVES, 1, result);
+    } else if (wanted == DAMPED) {
+        walk(at, first, second, end, DAMPED, 1, result);
+    } else if (wanted == GMI_MOMENTS) {
+        walk(at, first, second, end, GMI_MOMENTS, 1, result);
+    } else {
+        walk(at, first, second, end, wanted, 1, result);
     }
 }
 
 void gmi_line_integrate(const gmi_line *line, const gmi_grid *pinion, const gmi_grid *wheel,
                         int wanted, gmi_line_sum *result) {
-    const gmi_line_sum none = {0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0};
-    *result = none;
+    result->sum = result->contact = result->pinion = result->wheel = 0.0;
+    result->sum_t1 = result->contact_t1 = 0.0;
+    if (wanted & GMI_CONTACT_DERIVATIVES) {
+        result->roots = result->roots_pinion = result->roots_wheel = 0.0;
+    }
     if (line->pinion != NULL) {
         integrate_tables(line, pinion, line->pinion, line->pinion_profile, wheel, line->wheel,
                          line->wheel_profile, wanted, result);
@@ -446,6 +473,10 @@ void gmi_line_integrate(const gmi_line *line, const gmi_grid *pinion, const gmi_
                          wanted, result);
         result->wheel = result->pinion;
         result->pinion = 0.0;
+        if (wanted & GMI_CONTACT_DERIVATIVES) {
+            result->roots_wheel = result->roots_pinion;
+            result->roots_pinion = 0.0;
+        }
     } else {
         integrate_ideal(line, wanted, result);
     }

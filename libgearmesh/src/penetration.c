@@ -12,75 +12,116 @@
 
 #include <math.h>
 
-/* Not inlined: a side that is clear then costs no stack frame. */
-#if defined(__GNUC__)
-#define SEPARATE static __attribute__((noinline))
-#else
-#define SEPARATE static
-#endif
-
-static const gmi_side_sum no_contact = {0.0, 0.0, 0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0};
-
-/* One side at one position: everything its lines have in common. */
-typedef struct side_view {
-    gmi_lines lines;
-    const gm_flank_tables *pinion_tables; /* NULL = ideal */
-    const gm_flank_tables *wheel_tables;
-    gmi_grid pinion_grid;
-    gmi_grid wheel_grid;
-    int ramps;          /* of both flanks */
-    double wheel_reach; /* rho_w - start of the wheel's flank = wheel_reach - rho_p (m) */
-} side_view;
+/* ---------------------------------------------------------------------------------------------
+ * One side, prepared
+ * ------------------------------------------------------------------------------------------- */
 
 static double flank_length(const gm_gear *gear) {
     return gear->tip_roll_length - gear->start_roll_length;
 }
 
-static void find_grids(const gm_pair *pair, side_view *view) {
-    const double advance = view->lines.advance;
-    gmi_grid_init(&view->pinion_grid, view->pinion_tables, advance, flank_length(&pair->pinion));
-    gmi_grid_init(&view->wheel_grid, view->wheel_tables, -advance, flank_length(&pair->wheel));
-    view->wheel_reach = pair->line_of_action + view->lines.delta - pair->wheel.start_roll_length;
+static int ramp_count(const gmi_tables *tables) {
+    return tables == NULL ? 0 : tables->ramp_count;
 }
+
+void gmi_side_init(gmi_side *prepared, const gm_pair *pair, const gm_flanks *pinion_flanks,
+                   const gm_flanks *wheel_flanks, int side) {
+    prepared->pinion = gmi_flanks_side(pinion_flanks, side);
+    prepared->wheel = gmi_flanks_side(wheel_flanks, side);
+    prepared->ramps = 0;
+    prepared->peak = 0.0;
+    if (prepared->pinion == NULL && prepared->wheel == NULL) {
+        return;
+    }
+
+    /* On the wheel the same line runs the other way: rho_w falls as rho_p grows. */
+    const double advance = gmi_side_sign(side) * pair->face_advance;
+    gmi_grid_init(&prepared->pinion_grid, prepared->pinion, advance, flank_length(&pair->pinion));
+    gmi_grid_init(&prepared->wheel_grid, prepared->wheel, -advance, flank_length(&pair->wheel));
+    prepared->ramps = ramp_count(prepared->pinion) + ramp_count(prepared->wheel);
+    prepared->peak = gm_flanks_peak(pinion_flanks, side) + gm_flanks_peak(wheel_flanks, side);
+}
+
+/* ---------------------------------------------------------------------------------------------
+ * The sum over the lines of a side
+ * ------------------------------------------------------------------------------------------- */
+
+/* One side at one position: everything its lines have in common. */
+typedef struct side_view {
+    const gm_pair *pair;
+    const gmi_side *prepared;
+    gmi_lines lines;
+    gmi_line_ends ends;
+    double wheel_reach; /* rho_w - start of the wheel's flank = wheel_reach - rho_p (m) */
+} side_view;
 
 /*
  * The ends of a line that a limit of the flanks sets move with the line's origin and with delta:
  *     t1_end = (limit - rho_origin) / advance,
  * and each takes f there into the sum or out of it (Leibniz).
  */
-static inline void add_end_derivatives(const gmi_lines *lines, gmi_interval part, double f_from,
+static inline void add_end_derivatives(const gmi_line_ends *ends, gmi_interval part, double f_from,
                                        double f_to, gmi_side_sum *side) {
     if (part.from > 0.0 && f_from > 0.0) {
-        const double flow = f_from * lines->per_advance;
+        const double flow = f_from * ends->per_advance;
         side->by_origin += flow;
-        side->by_delta -= flow * lines->enter_by_delta;
+        side->by_delta -= flow * ends->enter_by_delta;
     }
     if (part.to < 1.0 && f_to > 0.0) {
-        const double flow = f_to * lines->per_advance;
+        const double flow = f_to * ends->per_advance;
         side->by_origin -= flow;
-        side->by_delta += flow * lines->leave_by_delta;
+        side->by_delta += flow * ends->leave_by_delta;
     }
 }
 
-static void add_moments(const gmi_lines *lines, double rho_origin, const gmi_line_sum *line,
-                        gmi_side_sum *side) {
+/* Inside the line f follows the line's origin and delta through both points looked up. */
+static inline void add_derivatives(const side_view *view, gmi_interval part,
+                                   const gmi_line_sum *line, gmi_side_sum *side) {
+    const double by_pinion = line->pinion * view->prepared->pinion_grid.per_rho;
+    const double by_wheel = line->wheel * view->prepared->wheel_grid.per_rho;
+    side->by_origin += by_pinion - by_wheel;
+    side->by_delta += line->contact + by_wheel;
+    add_end_derivatives(&view->ends, part, line->at_from, line->at_to, side);
+}
+
+/* The touching part ends where f is zero, and f there moves that end; and where the line ends with f above zero. */
+static void add_contact_derivatives(const side_view *view, gmi_interval part,
+                                    const gmi_line_sum *line, gmi_side_sum *side) {
+    const double by_pinion = line->roots_pinion * view->prepared->pinion_grid.per_rho;
+    const double by_wheel = line->roots_wheel * view->prepared->wheel_grid.per_rho;
+    side->contact_by_origin += by_pinion - by_wheel;
+    side->contact_by_delta += line->roots + by_wheel;
+
+    const gmi_line_ends *ends = &view->ends;
+    if (part.from > 0.0 && line->at_from > 0.0) {
+        side->contact_by_origin += ends->per_advance;
+        side->contact_by_delta -= ends->per_advance * ends->enter_by_delta;
+    }
+    if (part.to < 1.0 && line->at_to > 0.0) {
+        side->contact_by_origin -= ends->per_advance;
+        side->contact_by_delta += ends->per_advance * ends->leave_by_delta;
+    }
+}
+
+static inline void add_moments(const gmi_lines *lines, double rho_origin, const gmi_line_sum *line,
+                               gmi_side_sum *side) {
     side->sum_t1 += line->sum_t1;
     side->sum_rho += rho_origin * line->sum + lines->advance * line->sum_t1;
     side->contact_t1 += line->contact_t1;
     side->contact_rho += rho_origin * line->contact + lines->advance * line->contact_t1;
 }
 
-static double line_origin(const gm_pair *pair, const gmi_lines *lines, int k) {
-    return lines->origin + (double)k * pair->transverse_base_pitch;
-}
-
-static void add_line(const gm_pair *pair, const side_view *view, const gmi_flank *pinion,
-                     const gmi_flank *wheel, int k, int wanted, gmi_side_sum *side) {
-    const gmi_interval part = gmi_line_clip(&view->lines, k);
+static void add_line(const side_view *view, const gmi_flank *pinion, const gmi_flank *wheel, int k,
+                     int wanted, gmi_side_sum *side) {
+    const gmi_interval part = gmi_line_clip(&view->ends, k);
     if (!(part.from < part.to)) {
         return;
     }
-    const double rho_origin = line_origin(pair, &view->lines, k);
+
+    /* The line in the terms of the tables it runs through. */
+    const gm_pair *pair = view->pair;
+    const gmi_side *prepared = view->prepared;
+    const double rho_origin = view->lines.origin + (double)k * pair->transverse_base_pitch;
     const gmi_line line = {
         part.from,
         part.to,
@@ -88,27 +129,26 @@ static void add_line(const gm_pair *pair, const side_view *view, const gmi_flank
         0.0,
         pinion->values,
         wheel->values,
-        (rho_origin - pair->pinion.start_roll_length) * view->pinion_grid.per_rho,
-        (view->wheel_reach - rho_origin) * view->wheel_grid.per_rho,
+        (rho_origin - pair->pinion.start_roll_length) * prepared->pinion_grid.per_rho,
+        (view->wheel_reach - rho_origin) * prepared->wheel_grid.per_rho,
     };
     gmi_line_sum sum;
-    if (view->ramps > 0) {
-        gmi_ramps_integrate(&line, &view->pinion_grid, &view->wheel_grid, view->pinion_tables,
-                            view->wheel_tables, wanted, &sum);
+    if (prepared->ramps > 0) {
+        gmi_ramps_integrate(&line, &prepared->pinion_grid, &prepared->wheel_grid, prepared->pinion,
+                            prepared->wheel, wanted, &sum);
     } else {
-        gmi_line_integrate(&line, &view->pinion_grid, &view->wheel_grid, wanted, &sum);
+        gmi_line_integrate(&line, &prepared->pinion_grid, &prepared->wheel_grid, wanted, &sum);
     }
 
+    /* What it adds to the side. */
     side->sum += sum.sum;
     side->contact += sum.contact;
     side->pairs += sum.contact > 0.0;
     if (wanted & GMI_DERIVATIVES) {
-        /* Inside, f follows the line's origin and delta through both points looked up. */
-        const double by_pinion = sum.pinion * view->pinion_grid.per_rho;
-        const double by_wheel = sum.wheel * view->wheel_grid.per_rho;
-        side->by_origin += by_pinion - by_wheel;
-        side->by_delta += sum.contact + by_wheel;
-        add_end_derivatives(&view->lines, part, sum.at_from, sum.at_to, side);
+        add_derivatives(view, part, &sum, side);
+    }
+    if (wanted & GMI_CONTACT_DERIVATIVES) {
+        add_contact_derivatives(view, part, &sum, side);
     }
     if (wanted & GMI_MOMENTS) {
         add_moments(&view->lines, rho_origin, &sum, side);
@@ -120,187 +160,113 @@ static int next_tooth(int tooth, int step, int teeth) {
     return next < 0 ? teeth - 1 : next == teeth ? 0 : next;
 }
 
-static void sum_tables(const gm_pair *pair, side_view *view, gmi_teeth teeth, int wanted,
-                       gmi_side_sum *side) {
-    const gmi_lines *lines = &view->lines;
-    for (int k = lines->first; k <= lines->last; ++k) {
-        const gmi_flank pinion = gmi_flank_of(view->pinion_tables, teeth.pinion);
-        const gmi_flank wheel = gmi_flank_of(view->wheel_tables, teeth.wheel);
-        if (lines->delta + pinion.peak + wheel.peak > 0.0) {
-            add_line(pair, view, &pinion, &wheel, k, wanted, side);
+void gmi_side_sum_tables(const gm_pair *pair, const gmi_side *prepared, int side,
+                         const gm_position *position, int wanted, gmi_side_sum *total) {
+    side_view view;
+    view.pair = pair;
+    view.prepared = prepared;
+    gmi_lines_find(pair, side, position, &view.lines);
+    view.ends = gmi_line_ends_find(pair, &view.lines);
+    view.wheel_reach = pair->line_of_action + view.lines.delta - pair->wheel.start_roll_length;
+
+    gmi_teeth teeth = gmi_lines_teeth(pair, side, position, &view.lines);
+    for (int k = view.lines.first; k <= view.lines.last; ++k) {
+        const gmi_flank pinion = gmi_flank_of(prepared->pinion, teeth.pinion);
+        const gmi_flank wheel = gmi_flank_of(prepared->wheel, teeth.wheel);
+        if (view.lines.delta + pinion.peak + wheel.peak > 0.0) {
+            add_line(&view, &pinion, &wheel, k, wanted, total);
         }
         teeth.pinion = next_tooth(teeth.pinion, teeth.step, pair->pinion.teeth);
         teeth.wheel = next_tooth(teeth.wheel, teeth.step, pair->wheel.teeth);
     }
 }
 
-static int ramp_count(const gm_flank_tables *tables) {
-    return tables == NULL ? 0 : tables->ramp_count;
-}
-
-SEPARATE void side_sum_tables(const gm_pair *pair, const gm_flank_tables *pinion,
-                              const gm_flank_tables *wheel, int side, const gm_position *position,
-                              int wanted, gmi_side_sum *total) {
-    side_view view;
-    view.pinion_tables = pinion;
-    view.wheel_tables = wheel;
-    view.ramps = ramp_count(pinion) + ramp_count(wheel);
-    gmi_lines_find(pair, side, position, &view.lines);
-    find_grids(pair, &view);
-    sum_tables(pair, &view, gmi_lines_teeth(pair, side, position, &view.lines), wanted, total);
-}
-
-void gmi_side_sum_3d(const gm_pair *pair, const gm_flanks *pinion_flanks,
-                     const gm_flanks *wheel_flanks, int side, const gm_position *position,
-                     int wanted, gmi_side_sum *total) {
-    const gm_flank_tables *pinion = gmi_flanks_side(pinion_flanks, side);
-    const gm_flank_tables *wheel = gmi_flanks_side(wheel_flanks, side);
-    *total = no_contact;
-
-    /* Nothing reaches across the gap: the usual state of one of both sides. */
-    double reach = gmi_ideal_penetration(pair, side, position->offset);
-    if (pinion != NULL) {
-        reach += pinion->peak;
-    }
-    if (wheel != NULL) {
-        reach += wheel->peak;
-    }
-    if (reach <= 0.0) {
+/* One pair, always there, which touches in the pitch point at mid-face. */
+void gmi_side_sum_simple(const gm_pair *pair, int side, double offset, gmi_side_sum *total) {
+    const double delta = gmi_ideal_penetration(pair, side, offset);
+    *total = gmi_no_contact();
+    if (!(delta > 0.0)) {
         return;
     }
-    if (pinion == NULL && wheel == NULL) {
-        gmi_side_sum_ideal(pair, side, position, wanted, total);
-    } else {
-        side_sum_tables(pair, pinion, wheel, side, position, wanted, total);
-    }
+
+    const double pitch_point = pair->pinion.base_radius * tan(pair->working_pressure_angle);
+    total->sum = delta;
+    total->contact = total->by_delta = 1.0;
+    total->pairs = 1;
+    total->contact_t1 = 0.5;
+    total->contact_rho = pitch_point;
+    total->sum_t1 = delta * total->contact_t1;
+    total->sum_rho = delta * total->contact_rho;
 }
 
-static gm_penetration penetration_nan(void) {
+/* ---------------------------------------------------------------------------------------------
+ * Both sides
+ * ------------------------------------------------------------------------------------------- */
+
+gm_penetration gmi_penetration_nan(void) {
     const double nan = gmi_nan();
     const gm_penetration result = {nan, nan, nan, nan, nan, nan, nan, nan, nan, nan, 0, 0};
     return result;
 }
 
-static void set_rates(gm_penetration *result, double offset_rate) {
-    result->penetration = result->drive - result->coast;
-    result->drive_rate = offset_rate * result->drive_contact;
-    result->coast_rate = -offset_rate * result->coast_contact;
-    result->rate = result->drive_rate - result->coast_rate;
-}
+/* ---------------------------------------------------------------------------------------------
+ * Checks
+ * ------------------------------------------------------------------------------------------- */
 
-int gm_penetration_simple_at(const gm_pair *pair, double offset, double offset_rate,
-                             gm_penetration *result) {
-    if (result == NULL) {
-        return GM_ERR_NULL;
-    }
-    *result = penetration_nan();
-    if (pair == NULL) {
-        return GM_ERR_NULL;
-    }
+int gmi_check_offset(double offset, double offset_rate) {
     if (!gmi_is_finite(offset) || !gmi_is_finite(offset_rate)) {
         return GM_STATE_NOT_FINITE;
     }
-    if (fabs(offset) > GMI_LARGEST_OFFSET || fabs(offset_rate) > GMI_LARGEST_SPEED) {
-        return GM_STATE_OUT_OF_RANGE;
-    }
-
-    const double drive = offset - 0.5 * pair->backlash;
-    const double coast = -offset - 0.5 * pair->backlash;
-    result->drive = drive > 0.0 ? drive : 0.0;
-    result->coast = coast > 0.0 ? coast : 0.0;
-    result->drive_pairs = drive > 0.0;
-    result->coast_pairs = coast > 0.0;
-    result->drive_contact = (double)result->drive_pairs;
-    result->coast_contact = (double)result->coast_pairs;
-    const double touching = result->drive_contact + result->coast_contact;
-    result->d_pinion_angle = pair->pinion.base_radius * touching;
-    result->d_wheel_angle = -pair->wheel.base_radius * touching;
-    set_rates(result, offset_rate);
-    return GM_OK;
+    const int is_within =
+        fabs(offset) <= GMI_LARGEST_OFFSET && fabs(offset_rate) <= GMI_LARGEST_SPEED;
+    return is_within ? GM_OK : GM_STATE_OUT_OF_RANGE;
 }
 
-/* One comparison: below 0 is far above as unsigned. */
-static inline int is_tooth(int tooth, int teeth) {
-    return (unsigned)tooth < (unsigned)teeth;
+int gmi_check_flanks(const gm_pair *pair, const gm_flanks *pinion_flanks,
+                     const gm_flanks *wheel_flanks) {
+    const int pinion_fits = pinion_flanks == NULL || pinion_flanks->teeth == pair->pinion.teeth;
+    const int wheel_fits = wheel_flanks == NULL || wheel_flanks->teeth == pair->wheel.teeth;
+    return pinion_fits && wheel_fits ? GM_OK : GM_ERR_TOOTH;
 }
 
-int gmi_check_evaluation(const gm_pair *pair, const gm_flanks *pinion_flanks,
-                         const gm_flanks *wheel_flanks, const gm_position *position) {
-    if (pair == NULL || position == NULL) {
-        return GM_ERR_NULL;
+/* ---------------------------------------------------------------------------------------------
+ * The plain entry points
+ * ------------------------------------------------------------------------------------------- */
+
+static int simple(const gm_pair *pair, const gm_state *state, gm_penetration *result) {
+    gm_position position;
+    int status = gm_position_from_state(pair, state, &position);
+    if (status == GM_OK) {
+        status = gmi_check_offset(position.offset, position.offset_rate);
     }
-    if ((pinion_flanks != NULL && pinion_flanks->teeth != pair->pinion.teeth) ||
-        (wheel_flanks != NULL && wheel_flanks->teeth != pair->wheel.teeth)) {
-        return GM_ERR_TOOTH;
+    if (status == GM_OK) {
+        gmi_side_sum drive, coast;
+        gmi_side_sum_simple(pair, GM_DRIVE, position.offset, &drive);
+        gmi_side_sum_simple(pair, GM_COAST, position.offset, &coast);
+        gmi_penetration_set(pair, &drive, &coast, position.offset_rate, GMI_DERIVATIVES, result);
     }
-    /* Negated, so that NaN is caught; a phase may be rounded up to p_bt. */
-    if (!(fabs(position->offset) < 0.5 * pair->transverse_base_pitch) ||
-        !(fabs(position->phase) < 1.5 * pair->transverse_base_pitch) ||
-        !(fabs(position->offset_rate) <= GMI_LARGEST_SPEED)) {
-        return gmi_is_finite(position->offset) && gmi_is_finite(position->phase) &&
-                       gmi_is_finite(position->offset_rate)
-                   ? GM_STATE_OUT_OF_RANGE
-                   : GM_STATE_NOT_FINITE;
-    }
-    if (!is_tooth(position->pinion_tooth, pair->pinion.teeth) ||
-        !is_tooth(position->wheel_tooth, pair->wheel.teeth)) {
-        return GM_ERR_TOOTH;
-    }
-    return GM_OK;
+    return status;
 }
 
-/*
- * From line origin and delta to angles. Drive: origin grows with r_bp phi_p, delta with x; coast: both with the
- * opposite sign, and it counts negatively in the net sum, so that the signs are the same again.
- */
-static void set_derivatives(const gm_pair *pair, const gmi_side_sum *drive,
-                            const gmi_side_sum *coast, gm_penetration *result) {
-    const double by_offset = drive->by_delta + coast->by_delta;
-    const double by_origin = drive->by_origin + coast->by_origin;
-    result->d_pinion_angle = pair->pinion.base_radius * (by_offset + by_origin);
-    result->d_wheel_angle = -pair->wheel.base_radius * by_offset;
-}
-
-static int evaluate(const gm_pair *pair, const gm_flanks *pinion_flanks,
-                    const gm_flanks *wheel_flanks, const gm_position *position, int wanted,
-                    gm_penetration *result) {
+int gm_penetration_simple(const gm_pair *pair, const gm_state *state, gm_penetration *result) {
     if (result == NULL) {
         return GM_ERR_NULL;
     }
-    const int status = gmi_check_evaluation(pair, pinion_flanks, wheel_flanks, position);
-    if (status != GM_OK) {
-        *result = penetration_nan();
-        return status;
-    }
-
-    gmi_side_sum drive, coast;
-    gmi_side_sum_3d(pair, pinion_flanks, wheel_flanks, GM_DRIVE, position, wanted, &drive);
-    gmi_side_sum_3d(pair, pinion_flanks, wheel_flanks, GM_COAST, position, wanted, &coast);
-    result->drive = drive.sum;
-    result->coast = coast.sum;
-    result->drive_contact = drive.contact;
-    result->coast_contact = coast.contact;
-    result->drive_pairs = drive.pairs;
-    result->coast_pairs = coast.pairs;
-    set_rates(result, position->offset_rate);
-    if (wanted & GMI_DERIVATIVES) {
-        set_derivatives(pair, &drive, &coast, result);
-    } else {
-        result->d_pinion_angle = result->d_wheel_angle = gmi_nan();
-    }
-    return GM_OK;
+    *result = gmi_penetration_nan();
+    return pair == NULL || state == NULL ? GM_ERR_NULL : simple(pair, state, result);
 }
 
-int gm_penetration_3d_at(const gm_pair *pair, const gm_flanks *pinion_flanks,
-                         const gm_flanks *wheel_flanks, const gm_position *position,
-                         gm_penetration *result) {
-    return evaluate(pair, pinion_flanks, wheel_flanks, position, GMI_DERIVATIVES, result);
-}
-
-int gm_penetration_3d_sum_at(const gm_pair *pair, const gm_flanks *pinion_flanks,
-                             const gm_flanks *wheel_flanks, const gm_position *position,
-                             gm_penetration *result) {
-    return evaluate(pair, pinion_flanks, wheel_flanks, position, GMI_SUM, result);
+/* One side of two gears that no mesh has been prepared for. */
+static gmi_side_sum side_sum(const gm_pair *pair, const gm_flanks *pinion_flanks,
+                             const gm_flanks *wheel_flanks, int side, const gm_position *position) {
+    gmi_side prepared;
+    gmi_side_sum sum;
+    gmi_side_init(&prepared, pair, pinion_flanks, wheel_flanks, side);
+    if (gmi_side_is_clear(pair, &prepared, side, position->offset)) {
+        return gmi_no_contact();
+    }
+    gmi_side_sum_3d(pair, &prepared, side, position, GMI_DERIVATIVES, &sum);
+    return sum;
 }
 
 int gm_penetration_3d(const gm_pair *pair, const gm_flanks *pinion_flanks,
@@ -309,11 +275,25 @@ int gm_penetration_3d(const gm_pair *pair, const gm_flanks *pinion_flanks,
     if (result == NULL) {
         return GM_ERR_NULL;
     }
+    *result = gmi_penetration_nan();
+    if (pair == NULL || state == NULL) {
+        return GM_ERR_NULL;
+    }
+
     gm_position position;
-    const int status = gm_position_from_state(pair, state, &position);
+    int status = gmi_check_flanks(pair, pinion_flanks, wheel_flanks);
+    if (status == GM_OK) {
+        status = gm_position_from_state(pair, state, &position);
+    }
+    if (status == GM_OK) {
+        status = gmi_check_position(pair, &position);
+    }
     if (status != GM_OK) {
-        *result = penetration_nan();
         return status;
     }
-    return gm_penetration_3d_at(pair, pinion_flanks, wheel_flanks, &position, result);
+
+    const gmi_side_sum drive = side_sum(pair, pinion_flanks, wheel_flanks, GM_DRIVE, &position);
+    const gmi_side_sum coast = side_sum(pair, pinion_flanks, wheel_flanks, GM_COAST, &position);
+    gmi_penetration_set(pair, &drive, &coast, position.offset_rate, GMI_DERIVATIVES, result);
+    return GM_OK;
 }

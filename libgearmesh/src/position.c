@@ -85,13 +85,13 @@ static int check_state(const gm_state *state) {
     return GM_OK;
 }
 
-static int finish(const gm_pair *pair, gm_position *position) {
-    if (fabs(position->offset) < 0.5 * pair->transverse_base_pitch &&
-        is_speed(position->offset_rate)) {
-        return GM_OK;
+/* An approach that is too fast comes from speeds that are each within their range, on gears of the size of a ship. */
+static int finish(gm_position *position) {
+    const int status = gmi_check_offset(position->offset, position->offset_rate);
+    if (status != GM_OK) {
+        *position = position_nan();
     }
-    *position = position_nan();
-    return GM_STATE_OUT_OF_RANGE;
+    return status;
 }
 
 int gm_position_from_state(const gm_pair *pair, const gm_state *state, gm_position *position) {
@@ -112,7 +112,7 @@ int gm_position_from_state(const gm_pair *pair, const gm_state *state, gm_positi
     set_pinion(pair, pinion, position);
     position->offset = offset_from(pair, pinion, wheel);
     position->offset_rate = offset_rate_from(pair, state);
-    return finish(pair, position);
+    return finish(position);
 }
 
 int gm_position_from_pinion_angle(const gm_pair *pair, double pinion_angle, double offset,
@@ -134,20 +134,5 @@ int gm_position_from_pinion_angle(const gm_pair *pair, double pinion_angle, doub
     set_pinion(pair, reduce_angle(&pair->pinion, pinion_angle), position);
     position->offset = offset;
     position->offset_rate = offset_rate;
-    return finish(pair, position);
-}
-
-int gm_penetration_simple(const gm_pair *pair, const gm_state *state, gm_penetration *result) {
-    if (pair == NULL || state == NULL || result == NULL) {
-        return gm_penetration_simple_at(NULL, gmi_nan(), gmi_nan(), result);
-    }
-    const int status = check_state(state);
-    if (status != GM_OK) {
-        (void)gm_penetration_simple_at(pair, gmi_nan(), gmi_nan(), result);
-        return status;
-    }
-    const reduced_angle pinion = reduce_angle(&pair->pinion, state->pinion_angle);
-    const reduced_angle wheel = reduce_angle(&pair->wheel, state->wheel_angle);
-    return gm_penetration_simple_at(pair, offset_from(pair, pinion, wheel),
-                                    offset_rate_from(pair, state), result);
+    return finish(position);
 }

@@ -38,7 +38,7 @@ static double height(const trace *ramp, double t1) {
 }
 
 /* profile: v2 of this flank at t1 = 0. */
-static void add_traces(traces *found, const gm_flank_tables *tables, const gmi_grid *grid,
+static void add_traces(traces *found, const gmi_tables *tables, const gmi_grid *grid,
                        double profile, double from, double to) {
     const int count = tables == NULL ? 0 : tables->ramp_count;
     for (int k = 0; k < count; ++k) {
@@ -81,19 +81,24 @@ static double take_off(gmi_line *part, const traces *ramps, int first, int last)
     return per_profile;
 }
 
-static void add_part(const gmi_line_sum *part, gmi_line_sum *result) {
+static void add_part(const gmi_line_sum *part, int wanted, gmi_line_sum *result) {
     result->sum += part->sum;
     result->contact += part->contact;
     result->pinion += part->pinion;
     result->wheel += part->wheel;
     result->sum_t1 += part->sum_t1;
     result->contact_t1 += part->contact_t1;
+    if (wanted & GMI_CONTACT_DERIVATIVES) {
+        result->roots += part->roots;
+        result->roots_pinion += part->roots_pinion;
+        result->roots_wheel += part->roots_wheel;
+    }
 }
 
 void gmi_ramps_integrate(const gmi_line *line, const gmi_grid *pinion, const gmi_grid *wheel,
-                         const gm_flank_tables *pinion_tables, const gm_flank_tables *wheel_tables,
+                         const gmi_tables *pinion_tables, const gmi_tables *wheel_tables,
                          int wanted, gmi_line_sum *result) {
-    const gmi_line_sum none = {0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0};
+    const gmi_line_sum none = {.sum = 0.0};
     traces ramps;
     ramps.all = 0;
     add_traces(&ramps, pinion_tables, pinion, line->pinion_profile, line->from, line->to);
@@ -111,7 +116,11 @@ void gmi_ramps_integrate(const gmi_line *line, const gmi_grid *pinion, const gmi
         gmi_line_integrate(&part, pinion, wheel, wanted, &sum);
         sum.pinion -= by_pinion * sum.contact;
         sum.wheel -= by_wheel * sum.contact;
-        add_part(&sum, result);
+        if (wanted & GMI_CONTACT_DERIVATIVES) {
+            sum.roots_pinion -= by_pinion * sum.roots;
+            sum.roots_wheel -= by_wheel * sum.roots;
+        }
+        add_part(&sum, wanted, result);
         if (from == line->from) {
             result->at_from = sum.at_from;
         }

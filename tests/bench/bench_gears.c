@@ -137,8 +137,9 @@ static void make_table(double *values, int face_nodes, int profile_nodes,
     free(along_face);
 }
 
-static void make_flanks(bench_flanks *own, const gm_pair *pair, int teeth,
-                        const bench_params *params, unsigned long long *seed) {
+static gm_flanks *make_flanks(const gm_pair *pair, int teeth, const bench_params *params,
+                              unsigned long long *seed) {
+    gm_flanks *flanks;
     const gm_flanks_params sizes = {teeth,
                                     teeth,
                                     params->face_nodes,
@@ -149,22 +150,22 @@ static void make_flanks(bench_flanks *own, const gm_pair *pair, int teeth,
     const size_t size = gm_flanks_size(&sizes);
     double *values =
         allocate((size_t)params->face_nodes * (size_t)params->profile_nodes * sizeof *values);
-    own->memory = allocate(size);
-    bench_check(gm_flanks_init(&own->flanks, &sizes, own->memory, size), "flanks");
+    bench_check(gm_flanks_init(&flanks, &sizes, allocate(size), size), "flanks");
     const double eccentric = two_pi * bench_uniform(seed);
     for (int tooth = 0; tooth < teeth; ++tooth) {
         const double pitch = normal(seed) + 8.0 * sin(two_pi * tooth / teeth + eccentric);
         for (int side = GM_DRIVE; side <= GM_COAST; ++side) {
             make_table(values, params->face_nodes, params->profile_nodes, seed);
             bench_check(
-                gm_flanks_set_table(&own->flanks, side, tooth, values, pair->normal_to_transverse),
+                gm_flanks_set_table(flanks, side, tooth, values, pair->normal_to_transverse),
                 "table");
-            bench_check(gm_flanks_set_pitch(&own->flanks, side, tooth,
+            bench_check(gm_flanks_set_pitch(flanks, side, tooth,
                                             side == GM_DRIVE ? pitch * micro : -pitch * micro),
                         "pitch");
         }
     }
     free(values);
+    return flanks;
 }
 
 /* ---------------------------------------------------------------------------------------------
@@ -194,8 +195,8 @@ static void set_ramps(gm_flanks *flanks, const gm_modifications *reliefs, double
 }
 
 /* Flanks without tables, or with the finest table of the reliefs that gearsim would have taken. */
-static void make_relief_flanks(bench_flanks *own, const gm_modifications *reliefs, int in_table,
-                               double factor) {
+static gm_flanks *make_relief_flanks(const gm_modifications *reliefs, int in_table, double factor) {
+    gm_flanks *flanks;
     gm_modifications_grid grid;
     bench_check(gm_modifications_grid_find(reliefs, 2, 2, 1e-8, &grid), "grid");
     const gm_flanks_params sizes = {.teeth = reliefs->gear->teeth,
@@ -207,10 +208,9 @@ static void make_relief_flanks(bench_flanks *own, const gm_modifications *relief
                                     .coast_profile_nodes = grid.profile_nodes};
     const size_t size = gm_flanks_size(&sizes);
     const size_t nodes = (size_t)grid.face_nodes * (size_t)grid.profile_nodes;
-    own->memory = allocate(size);
-    bench_check(gm_flanks_init(&own->flanks, &sizes, own->memory, size), "flanks");
+    bench_check(gm_flanks_init(&flanks, &sizes, allocate(size), size), "flanks");
     if (!in_table) {
-        return;
+        return flanks;
     }
     double *values = allocate(nodes * sizeof *values);
     for (size_t k = 0; k < nodes; ++k) {
@@ -219,9 +219,10 @@ static void make_relief_flanks(bench_flanks *own, const gm_modifications *relief
     bench_check(gm_modifications_add(reliefs, grid.face_nodes, grid.profile_nodes, values),
                 "table");
     for (int side = GM_DRIVE; side <= GM_COAST; ++side) {
-        bench_check(gm_flanks_set_table(&own->flanks, side, GM_ALL_TEETH, values, factor), "table");
+        bench_check(gm_flanks_set_table(flanks, side, GM_ALL_TEETH, values, factor), "table");
     }
     free(values);
+    return flanks;
 }
 
 static void make_reliefs(bench_gears *gears, const bench_params *params) {
@@ -232,11 +233,11 @@ static void make_reliefs(bench_gears *gears, const bench_params *params) {
         const gm_modifications reliefs = {list, RELIEFS, gear[k], pair->face_width};
         list_reliefs(list);
         if (params->profile_nodes == 0) {
-            make_relief_flanks(&gears->own[k], &reliefs, params->reliefs == BENCH_RELIEF_TABLE,
-                               pair->normal_to_transverse);
+            gears->flanks[k] = make_relief_flanks(&reliefs, params->reliefs == BENCH_RELIEF_TABLE,
+                                                  pair->normal_to_transverse);
         }
         if (params->reliefs == BENCH_RAMPS) {
-            set_ramps(&gears->own[k].flanks, &reliefs, pair->normal_to_transverse);
+            set_ramps(gears->flanks[k], &reliefs, pair->normal_to_transverse);
         }
     }
 }
@@ -295,9 +296,9 @@ static void make_states(bench_gears *gears, const bench_params *params) {
         const double angle =
             params->first_angle + bench_uniform(&seed) * two_pi * params->wheel_teeth;
         double offset;
-        gm_penetration result;
-        bench_check(gm_static_equilibrium(&gears->pair, gears->pinion, gears->wheel, angle,
-                                          BENCH_STIFFNESS, BENCH_TORQUE, &offset, &result),
+        gm_mesh_result result;
+        bench_check(gm_static_equilibrium(gears->mesh, angle, BENCH_TORQUE, (double)NAN, NULL,
+                                          &offset, &result),
                     "equilibrium");
         const gm_state state = {angle,
                                 (gears->pair.pinion.base_radius * angle - offset) /
@@ -305,7 +306,7 @@ static void make_states(bench_gears *gears, const bench_params *params) {
                                 100.0, 100.0 * params->pinion_teeth / params->wheel_teeth};
         gears->states[k] = state;
         bench_check(gm_position_from_state(&gears->pair, &state, &gears->positions[k]), "position");
-        gears->mean_sum += result.penetration;
+        gears->mean_sum += result.contact.penetration;
         count_pieces(gears, &gears->positions[k], params);
     }
     gears->mean_sum /= BENCH_STATES;
@@ -313,26 +314,34 @@ static void make_states(bench_gears *gears, const bench_params *params) {
     gears->mean_lines /= BENCH_STATES;
 }
 
+static void make_mesh(bench_gears *gears) {
+    gm_mesh_params params;
+    gm_mesh_params_default(&params);
+    params.stiffness = BENCH_STIFFNESS;
+    params.damping = BENCH_DAMPING;
+    const size_t size = gm_mesh_size(&params, &gears->pair);
+    bench_check(gm_mesh_init(&gears->mesh, &params, &gears->pair, gears->flanks[GM_PINION],
+                             gears->flanks[GM_WHEEL], allocate(size), size),
+                "mesh");
+}
+
 void bench_gears_make(bench_gears *gears, const bench_params *params) {
     unsigned long long seed = 1;
     make_pair(&gears->pair, params);
-    gears->own[0].memory = gears->own[1].memory = NULL;
-    gears->pinion = gears->wheel = NULL;
+    gears->flanks[GM_PINION] = gears->flanks[GM_WHEEL] = NULL;
     if (params->profile_nodes > 0) {
-        make_flanks(&gears->own[0], &gears->pair, params->pinion_teeth, params, &seed);
-        make_flanks(&gears->own[1], &gears->pair, params->wheel_teeth, params, &seed);
+        gears->flanks[GM_PINION] = make_flanks(&gears->pair, params->pinion_teeth, params, &seed);
+        gears->flanks[GM_WHEEL] = make_flanks(&gears->pair, params->wheel_teeth, params, &seed);
     }
     if (params->reliefs != BENCH_NO_RELIEFS) {
         make_reliefs(gears, params);
     }
-    if (params->profile_nodes > 0 || params->reliefs != BENCH_NO_RELIEFS) {
-        gears->pinion = &gears->own[0].flanks;
-        gears->wheel = &gears->own[1].flanks;
-    }
+    make_mesh(gears);
     make_states(gears, params);
 }
 
 void bench_gears_free(bench_gears *gears) {
-    free(gears->own[0].memory);
-    free(gears->own[1].memory);
+    free(gears->mesh); /* each object begins at its memory */
+    free(gears->flanks[GM_PINION]);
+    free(gears->flanks[GM_WHEEL]);
 }

@@ -31,17 +31,11 @@ typedef struct bench_params {
     double first_angle; /**< pinion angle from which on the states lie (rad) */
 } bench_params;
 
-/** Flanks of one gear and their memory. */
-typedef struct bench_flanks {
-    gm_flanks flanks;
-    void *memory;
-} bench_flanks;
-
 /** A pair, its flanks, and states in quasi-static equilibrium all over the hunting period. */
 typedef struct bench_gears {
     gm_pair pair;
-    bench_flanks own[2];                 /**< pinion, wheel */
-    const gm_flanks *pinion, *wheel;     /**< NULL = ideal */
+    gm_flanks *flanks[2];                /**< pinion, wheel; NULL = ideal */
+    gm_mesh *mesh;                       /**< of pair and flanks, 3D model */
     gm_state states[BENCH_STATES];       /**< as angles */
     gm_position positions[BENCH_STATES]; /**< the same, reduced */
     double mean_sum;                     /**< mean penetration of the states (m) */

@@ -33,48 +33,37 @@ static volatile double sink;
  * The cases: each evaluates `count` times
  * ------------------------------------------------------------------------------------------- */
 
-typedef int (*evaluation)(const gm_pair *, const gm_flanks *, const gm_flanks *,
-                          const gm_position *, gm_penetration *);
-
-static void run_positions(const bench *b, long count, evaluation evaluate) {
+static void run_positions(const bench *b, long count, int wanted) {
     const bench_gears *g = b->gears;
-    gm_penetration result;
+    gm_mesh_result result;
     double sum = 0.0;
     for (long k = 0; k < count; ++k) {
-        (void)evaluate(&g->pair, g->pinion, g->wheel, &g->positions[k % BENCH_STATES], &result);
-        sum += result.penetration;
+        (void)gm_mesh_evaluate_at(g->mesh, &g->positions[k % BENCH_STATES], wanted, NULL, &result);
+        sum += result.force;
     }
     sink = sum;
 }
 
-static void run_sum(const bench *b, long count) {
-    run_positions(b, count, gm_penetration_3d_sum_at);
+static void run_force(const bench *b, long count) {
+    run_positions(b, count, GM_WANT_FORCE);
 }
 
 static void run_derivatives(const bench *b, long count) {
-    run_positions(b, count, gm_penetration_3d_at);
+    run_positions(b, count, GM_WANT_DERIVATIVES);
+}
+
+static void run_wrench(const bench *b, long count) {
+    run_positions(b, count, GM_WANT_WRENCH);
 }
 
 static void run_angles(const bench *b, long count) {
     const bench_gears *g = b->gears;
-    gm_penetration result;
+    gm_mesh_result result;
     double sum = 0.0;
     for (long k = 0; k < count; ++k) {
-        (void)gm_penetration_3d(&g->pair, g->pinion, g->wheel, &g->states[k % BENCH_STATES],
-                                &result);
-        sum += result.penetration;
-    }
-    sink = sum;
-}
-
-static void run_wrench(const bench *b, long count) {
-    const bench_gears *g = b->gears;
-    gm_wrench wrench;
-    double sum = 0.0;
-    for (long k = 0; k < count; ++k) {
-        (void)gm_wrench_3d_at(&g->pair, g->pinion, g->wheel, &g->positions[k % BENCH_STATES],
-                              BENCH_STIFFNESS, BENCH_DAMPING, &wrench);
-        sum += wrench.wheel_moment[2];
+        (void)gm_mesh_evaluate(g->mesh, &g->states[k % BENCH_STATES], GM_WANT_DERIVATIVES, NULL,
+                               &result);
+        sum += result.force;
     }
     sink = sum;
 }
@@ -83,9 +72,8 @@ static void run_equilibrium(const bench *b, long count) {
     const bench_gears *g = b->gears;
     double offset, sum = 0.0;
     for (long k = 0; k < count; ++k) {
-        (void)gm_static_equilibrium(&g->pair, g->pinion, g->wheel,
-                                    g->states[k % BENCH_STATES].pinion_angle, BENCH_STIFFNESS,
-                                    BENCH_TORQUE, &offset, NULL);
+        (void)gm_static_equilibrium(g->mesh, g->states[k % BENCH_STATES].pinion_angle, BENCH_TORQUE,
+                                    (double)NAN, NULL, &offset, NULL);
         sum += offset;
     }
     sink = sum;
@@ -97,14 +85,14 @@ static void run_curve(const bench *b, long count) {
     const bench_gears *g = b->gears;
     const double step = 6.283185307179586 / POSITIONS;
     double guess = 0.0, offset, sum = 0.0;
-    gm_penetration result;
+    gm_mesh_result result;
     for (long k = 0; k < count * POSITIONS; ++k) {
-        (void)gm_static_equilibrium_near(
-            &g->pair, g->pinion, g->wheel, step * (double)(k % POSITIONS), BENCH_STIFFNESS,
-            BENCH_TORQUE, k % POSITIONS == 0 ? (double)NAN : guess, &offset, &result);
-        guess = offset +
-                step * (g->pair.pinion.base_radius +
-                        g->pair.wheel.base_radius * result.d_pinion_angle / result.d_wheel_angle);
+        (void)gm_static_equilibrium(g->mesh, step * (double)(k % POSITIONS), BENCH_TORQUE,
+                                    k % POSITIONS == 0 ? (double)NAN : guess, NULL, &offset,
+                                    &result);
+        guess = offset + step * (g->pair.pinion.base_radius + g->pair.wheel.base_radius *
+                                                                  result.force_by_pinion_angle /
+                                                                  result.force_by_wheel_angle);
         sum += offset;
     }
     sink = sum;
@@ -114,8 +102,8 @@ static void run_slices(const bench *b, long count, enum slice_pairs pairs) {
     const bench_gears *g = b->gears;
     double sum = 0.0;
     for (long k = 0; k < count; ++k) {
-        sum += slices_sum(&g->pair, g->pinion, g->wheel, &g->positions[k % BENCH_STATES], b->slices,
-                          pairs);
+        sum += slices_sum(&g->pair, g->flanks[GM_PINION], g->flanks[GM_WHEEL],
+                          &g->positions[k % BENCH_STATES], b->slices, pairs);
     }
     sink = sum;
 }
@@ -139,25 +127,25 @@ typedef struct bench_case {
 } bench_case;
 
 static const bench_case cases[] = {
-    {"ideal.sum", "ideal flanks, sum", IDEAL, run_sum},
+    {"ideal.force", "ideal flanks, force", IDEAL, run_force},
     {"ideal.derivatives", "   with exact derivatives", IDEAL, run_derivatives},
     {"ideal.angles", "   from angles, with derivatives", IDEAL, run_angles},
     {"ideal.wrench", "   wrench", IDEAL, run_wrench},
     {"ideal.equilibrium", "   equilibrium", IDEAL, run_equilibrium},
     {"ideal.curve", "   static curve, 1000 positions", IDEAL, run_curve},
-    {"tables.sum", "tables, sum", TABLES, run_sum},
+    {"tables.force", "tables, force", TABLES, run_force},
     {"tables.derivatives", "   with exact derivatives", TABLES, run_derivatives},
     {"tables.angles", "   from angles, with derivatives", TABLES, run_angles},
     {"tables.wrench", "   wrench", TABLES, run_wrench},
     {"tables.equilibrium", "   equilibrium", TABLES, run_equilibrium},
     {"tables.curve", "   static curve, 1000 positions", TABLES, run_curve},
-    {"ramps.sum", "linear reliefs, sum", RAMPS, run_sum},
+    {"ramps.force", "linear reliefs, force", RAMPS, run_force},
     {"ramps.derivatives", "   with exact derivatives", RAMPS, run_derivatives},
     {"ramps.wrench", "   wrench", RAMPS, run_wrench},
-    {"relief_table.sum", "the same in a fine table, sum", RELIEF_TABLE, run_sum},
+    {"relief_table.force", "the same in a fine table, force", RELIEF_TABLE, run_force},
     {"relief_table.derivatives", "   with exact derivatives", RELIEF_TABLE, run_derivatives},
     {"relief_table.wrench", "   wrench", RELIEF_TABLE, run_wrench},
-    {"both.sum", "tables and linear reliefs, sum", TABLES_AND_RAMPS, run_sum},
+    {"both.force", "tables and linear reliefs, force", TABLES_AND_RAMPS, run_force},
     {"both.derivatives", "   with exact derivatives", TABLES_AND_RAMPS, run_derivatives},
     {"slices.all", "slices, all teeth", TABLES, run_slices_all},
     {"slices.touching", "slices, pairs that can touch", TABLES, run_slices_touching},
@@ -223,7 +211,7 @@ static int read_counts(counts *read, const char *file_name) {
     while (read->number < COUNTS_MAX && fgets(line, sizeof line, file) != NULL) {
         if (sscanf(line, "%40[^,],%lf", read->name[read->number], &read->value[read->number]) ==
             2) {
-            read->number++;
+            ++read->number;
         }
     }
     fclose(file);
@@ -264,13 +252,12 @@ static void slice_errors(const bench *b, double *rms, double *largest) {
     double squares = 0.0;
     *largest = 0.0;
     for (int k = 0; k < BENCH_STATES; ++k) {
-        gm_penetration exact;
-        bench_check(
-            gm_penetration_3d_sum_at(&g->pair, g->pinion, g->wheel, &g->positions[k], &exact),
-            "evaluation");
-        const double sum =
-            slices_sum(&g->pair, g->pinion, g->wheel, &g->positions[k], b->slices, SLICES_TOUCHING);
-        const double error = (sum - exact.drive) / g->mean_sum;
+        gm_mesh_result exact;
+        bench_check(gm_mesh_evaluate_at(g->mesh, &g->positions[k], GM_WANT_FORCE, NULL, &exact),
+                    "evaluation");
+        const double sum = slices_sum(&g->pair, g->flanks[GM_PINION], g->flanks[GM_WHEEL],
+                                      &g->positions[k], b->slices, SLICES_TOUCHING);
+        const double error = (sum - exact.contact.drive) / g->mean_sum;
         squares += error * error;
         *largest = fmax(*largest, fabs(error));
     }

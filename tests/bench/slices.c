@@ -2,13 +2,15 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 #include "slices.h"
 
+#include "internal.h" /* the nodes where the core keeps them: the same data for both */
+
 #include <math.h>
 
-enum { NODE_DOUBLES = 4 }; /* of gm_flank_tables.values */
+enum { NODE_DOUBLES = GMI_NODE_DOUBLES };
 
 /* What all slices share. */
 typedef struct slicing {
-    const gm_flank_tables *pinion, *wheel;
+    const gmi_tables *pinion, *wheel;
     double delta;
     double lower, upper; /* rho_p of the path of contact */
     double pinion_start, wheel_reach;
@@ -21,7 +23,7 @@ typedef struct face_place {
     double p;
 } face_place;
 
-static double look_up(const gm_flank_tables *tables, int tooth, face_place place, double v2) {
+static double look_up(const gmi_tables *tables, int tooth, face_place place, double v2) {
     int profile = (int)v2;
     profile = profile < tables->profile_nodes - 2 ? profile : tables->profile_nodes - 2;
     const double q = v2 - profile;
@@ -54,8 +56,8 @@ static int wrap(int tooth, int teeth) {
 
 double slices_sum(const gm_pair *pair, const gm_flanks *pinion, const gm_flanks *wheel,
                   const gm_position *position, int slices, enum slice_pairs pairs) {
-    slicing s = {&pinion->drive,
-                 &wheel->drive,
+    slicing s = {gmi_flanks_side(pinion, GM_DRIVE),
+                 gmi_flanks_side(wheel, GM_DRIVE),
                  position->offset - 0.5 * pair->backlash,
                  0.0,
                  0.0,

@@ -11,6 +11,7 @@
  */
 #include "gearmesh/gearmesh.h"
 
+#include <math.h>
 #include <stdint.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -53,39 +54,68 @@ static gm_pair make_pair(int number) {
     return pair;
 }
 
-static gm_flanks make_flanks(int teeth, int coast_face_nodes, uint64_t *seed, void **memory) {
+/* Memory of the whole run: freed at its end. */
+enum { BLOCKS = 64 };
+static void *blocks[BLOCKS];
+static int block_count;
+
+static void *block(size_t size) {
+    void *memory = block_count < BLOCKS ? malloc(size) : NULL;
+    if (memory == NULL) {
+        stop("no memory");
+    }
+    blocks[block_count++] = memory;
+    return memory;
+}
+
+/* Tables and pitch of all teeth; the same numbers for the same seed. */
+static gm_flanks *make_flanks(int teeth, int coast_face_nodes, uint64_t *seed) {
     const gm_flanks_params sizes = {
         teeth, teeth, FACE_NODES, PROFILE_NODES, teeth, coast_face_nodes, PROFILE_NODES};
     const size_t size = gm_flanks_size(&sizes);
     double values[FACE_NODES * PROFILE_NODES];
-    gm_flanks flanks;
-    *memory = malloc(size);
-    if (*memory == NULL) {
-        stop("no memory");
-    }
-    check(gm_flanks_init(&flanks, &sizes, *memory, size));
+    gm_flanks *flanks;
+    check(gm_flanks_init(&flanks, &sizes, block(size), size));
     for (int tooth = 0; tooth < teeth; ++tooth) {
         for (int side = GM_DRIVE; side <= GM_COAST; ++side) {
             for (int k = 0; k < FACE_NODES * PROFILE_NODES; ++k) {
                 values[k] = uniform(seed, -3e-6, 3e-6);
             }
-            check(gm_flanks_set_table(&flanks, side, tooth, values, 1.125));
-            check(gm_flanks_set_pitch(&flanks, side, tooth, uniform(seed, -2e-6, 2e-6)));
+            check(gm_flanks_set_table(flanks, side, tooth, values, 1.125));
+            check(gm_flanks_set_pitch(flanks, side, tooth, uniform(seed, -2e-6, 2e-6)));
         }
     }
     return flanks;
 }
 
-/* The same flanks with linear reliefs: an end, a tip and a corner. */
-static gm_flanks with_ramps(const gm_flanks *flanks, uint64_t *seed) {
-    gm_flanks ramped = *flanks;
+/* Linear reliefs: an end, a tip and a corner. */
+static void add_ramps(gm_flanks *flanks, uint64_t *seed) {
     for (int side = GM_DRIVE; side <= GM_COAST; ++side) {
         const double face = uniform(seed, 5e-6, 20e-6), profile = uniform(seed, 5e-6, 20e-6);
         const gm_flank_ramp ramps[] = {
             {3e-6, -face, 0.0}, {4e-6 - profile, 0.0, profile}, {5e-6, -face, -profile}};
-        check(gm_flanks_set_ramps(&ramped, side, ramps, 3, 1.125));
+        check(gm_flanks_set_ramps(flanks, side, ramps, 3, 1.125));
     }
-    return ramped;
+}
+
+/* Ideal, tables, tables with ramps: of one gear. */
+enum { FORMS = 3 };
+
+static void make_forms(int teeth, int coast_face_nodes, uint64_t *seed, gm_flanks *forms[FORMS]) {
+    uint64_t again = *seed;
+    forms[0] = NULL;
+    forms[1] = make_flanks(teeth, coast_face_nodes, seed);
+    forms[2] = make_flanks(teeth, coast_face_nodes, &again);
+}
+
+static gm_mesh *make_mesh(const gm_pair *pair, const gm_flanks *pinion, const gm_flanks *wheel) {
+    gm_mesh_params params;
+    gm_mesh *mesh;
+    gm_mesh_params_default(&params);
+    params.stiffness = 1e8;
+    const size_t size = gm_mesh_size(&params, pair);
+    check(gm_mesh_init(&mesh, &params, pair, pinion, wheel, block(size), size));
+    return mesh;
 }
 
 static void print_result(const gm_penetration *r) {
@@ -94,36 +124,46 @@ static void print_result(const gm_penetration *r) {
 }
 
 static void print_pair(const gm_pair *pair, uint64_t *seed) {
-    void *memory[2];
-    const gm_flanks pinion = make_flanks(pair->pinion.teeth, FACE_NODES, seed, &memory[0]);
-    const gm_flanks wheel = make_flanks(pair->wheel.teeth, OTHER_FACE_NODES, seed, &memory[1]);
-    const gm_flanks ramped_pinion = with_ramps(&pinion, seed);
-    const gm_flanks ramped_wheel = with_ramps(&wheel, seed);
+    gm_flanks *pinions[FORMS], *wheels[FORMS];
+    const gm_mesh *meshes[FORMS][FORMS];
+    make_forms(pair->pinion.teeth, FACE_NODES, seed, pinions);
+    make_forms(pair->wheel.teeth, OTHER_FACE_NODES, seed, wheels);
+    add_ramps(pinions[2], seed);
+    add_ramps(wheels[2], seed);
+    for (int p = 0; p < FORMS; ++p) {
+        for (int w = 0; w < FORMS; ++w) {
+            meshes[p][w] = make_mesh(pair, pinions[p], wheels[w]);
+        }
+    }
+
     for (int k = 0; k < STATES; ++k) {
-        const gm_flanks *wheel_flanks = k % 7 == 0 ? NULL : k % 3 == 0 ? &ramped_wheel : &wheel;
-        const gm_flanks *pinion_flanks = k % 5 == 0 ? NULL : k % 4 == 0 ? &ramped_pinion : &pinion;
+        const int wheel = k % 7 == 0 ? 0 : k % 3 == 0 ? 2 : 1;
+        const int pinion = k % 5 == 0 ? 0 : k % 4 == 0 ? 2 : 1;
+        const gm_mesh *mesh = meshes[pinion][wheel];
         const double angle = uniform(seed, -1e4, 1e4);
         const double offset = 0.5 * pair->backlash + uniform(seed, -8e-6, 8e-6);
         gm_position position;
-        gm_penetration result;
+        gm_mesh_result result;
+        gm_penetration plain;
         gm_state state = {angle, 0.0, 100.0, 0.0};
         check(gm_position_from_pinion_angle(pair, angle, k % 2 == 0 ? offset : -offset, 1e-3,
                                             &position));
-        check(gm_penetration_3d_at(pair, pinion_flanks, wheel_flanks, &position, &result));
-        print_result(&result);
-        check(gm_penetration_3d_sum_at(pair, pinion_flanks, wheel_flanks, &position, &result));
-        printf("%a %a\n", result.drive, result.coast);
+        check(gm_mesh_evaluate_at(mesh, &position, GM_WANT_DERIVATIVES, NULL, &result));
+        print_result(&result.contact);
+        check(gm_mesh_evaluate_at(mesh, &position, GM_WANT_FORCE, NULL, &result));
+        printf("%a %a\n", result.contact.drive, result.contact.coast);
         state.wheel_angle = (pair->pinion.base_radius * angle - offset) / pair->wheel.base_radius;
-        check(gm_penetration_3d(pair, pinion_flanks, wheel_flanks, &state, &result));
-        print_result(&result);
+        check(gm_penetration_3d(pair, pinions[pinion], wheels[wheel], &state, &plain));
+        print_result(&plain);
         if (k % 16 == 0) {
-            const int status = gm_static_equilibrium(pair, pinion_flanks, wheel_flanks, angle, 1e8,
-                                                     20.0, &position.offset, &result);
+            const int status = gm_static_equilibrium(mesh, angle, 20.0, (double)NAN, NULL,
+                                                     &position.offset, &result);
             printf("%d %a\n", status, position.offset);
         }
     }
-    free(memory[0]);
-    free(memory[1]);
+    while (block_count > 0) {
+        free(blocks[--block_count]);
+    }
 }
 
 int main(int argc, char **argv) {

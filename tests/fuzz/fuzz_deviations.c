@@ -27,10 +27,9 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size) {
                gm_deviations_ideal_teeth(&read, GM_DRIVE));
 
     /* What was read makes flanks, or is out of range. */
-    gm_flanks flanks;
-    void *memory;
-    if (gm_flanks_build(&flanks, &memory, teeth, &read, NULL, NULL, NULL, &error) == GM_IO_OK) {
-        gm_flanks_memory_free(memory);
+    gm_flanks *flanks;
+    if (gm_flanks_build(&flanks, teeth, &read, NULL, NULL, NULL, &error) == GM_IO_OK) {
+        gm_flanks_free(flanks);
     }
     gm_deviations_free(&again);
     gm_deviations_free(&read);

@@ -123,7 +123,8 @@ static void take_params(fuzz_bytes *bytes, int how, gm_pair_params *params) {
 }
 
 /* A few tables, pitch deviations and ramps; NULL if the bytes ask for ideal flanks. */
-static void *take_flanks(fuzz_bytes *bytes, int how, int teeth, double m, gm_flanks *flanks) {
+static gm_flanks *take_flanks(fuzz_bytes *bytes, int how, int teeth, double m) {
+    gm_flanks *flanks;
     const gm_flanks_params params = {
         .teeth = teeth,
         .drive_tables = fuzz_byte(bytes) % 4,
@@ -135,7 +136,7 @@ static void *take_flanks(fuzz_bytes *bytes, int how, int teeth, double m, gm_fla
     };
     const size_t memory_size = gm_flanks_size(&params);
     void *memory = memory_size > 0 ? malloc(memory_size) : NULL;
-    if (memory == NULL || gm_flanks_init(flanks, &params, memory, memory_size) != GM_OK) {
+    if (memory == NULL || gm_flanks_init(&flanks, &params, memory, memory_size) != GM_OK) {
         free(memory);
         return NULL;
     }
@@ -166,7 +167,7 @@ static void *take_flanks(fuzz_bytes *bytes, int how, int teeth, double m, gm_fla
         const int status = gm_flanks_set_ramps(flanks, side, ramps, count, 1.0);
         FUZZ_CLAIM(status == GM_OK || status == GM_ERR_DEVIATION);
     }
-    return memory;
+    return flanks;
 }
 
 /* All finite on success, all NaN on any error. */
@@ -187,10 +188,27 @@ static void claim_penetration(int status, const gm_penetration *result) {
         FUZZ_CLAIM(result->drive >= 0.0 && result->coast >= 0.0);
         FUZZ_CLAIM(result->drive_contact >= 0.0 && result->coast_contact >= 0.0);
         FUZZ_CLAIM(result->drive_pairs >= 0 && result->coast_pairs >= 0);
-        FUZZ_CLAIM(isfinite(gm_contact_force(1e8, 1e3, result)));
     } else {
         FUZZ_CLAIM(result->drive_pairs == 0 && result->coast_pairs == 0);
-        FUZZ_CLAIM(isnan(gm_contact_force(1e8, 1e3, result)));
+    }
+}
+
+static void claim_result(int status, const gm_mesh_result *result) {
+    const double numbers[] = {result->force,
+                              result->drive_force,
+                              result->coast_force,
+                              result->force_by_pinion_angle,
+                              result->force_by_wheel_angle,
+                              result->force_by_pinion_speed,
+                              result->force_by_wheel_speed};
+    claim_numbers(status, numbers, sizeof numbers / sizeof *numbers);
+    claim_penetration(status, &result->contact);
+    claim_numbers(status, result->wrench.pinion_force, 3);
+    claim_numbers(status, result->wrench.pinion_moment, 3);
+    claim_numbers(status, result->wrench.wheel_force, 3);
+    claim_numbers(status, result->wrench.wheel_moment, 3);
+    if (status == GM_OK) {
+        FUZZ_CLAIM(result->drive_force >= 0.0 && result->coast_force >= 0.0);
     }
 }
 
@@ -209,15 +227,12 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size) {
     FUZZ_CLAIM((status == GM_OK) == (isfinite(pair.line_of_action) != 0));
     (void)gm_pair_warnings(&pair, &params);
 
-    gm_flanks pinion_flanks, wheel_flanks;
-    void *pinion_memory = NULL, *wheel_memory = NULL;
+    gm_flanks *pinion = NULL, *wheel = NULL;
     const double m = params.normal_module;
     if (status == GM_OK && fuzz_byte(&bytes) & 1) {
-        pinion_memory = take_flanks(&bytes, how, params.pinion_teeth, m, &pinion_flanks);
-        wheel_memory = take_flanks(&bytes, how, params.wheel_teeth, m, &wheel_flanks);
+        pinion = take_flanks(&bytes, how, params.pinion_teeth, m);
+        wheel = take_flanks(&bytes, how, params.wheel_teeth, m);
     }
-    const gm_flanks *pinion = pinion_memory != NULL ? &pinion_flanks : NULL;
-    const gm_flanks *wheel = wheel_memory != NULL ? &wheel_flanks : NULL;
 
     gm_state state;
     gm_penetration result;
@@ -238,42 +253,48 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size) {
         claim_penetration(gm_penetration_simple(&pair, &state, &result), &result);
         claim_penetration(gm_penetration_3d(&pair, pinion, wheel, &state, &result), &result);
 
-        gm_position position;
-        gm_wrench wrench;
-        if (gm_position_from_state(&pair, &state, &position) == GM_OK) {
-            FUZZ_CLAIM(position.pinion_tooth >= 0 && position.pinion_tooth < params.pinion_teeth);
-            FUZZ_CLAIM(position.wheel_tooth >= 0 && position.wheel_tooth < params.wheel_teeth);
-            const int evaluated =
-                gm_wrench_3d_at(&pair, pinion, wheel, &position, 1e8, 1e3, &wrench);
-            FUZZ_CLAIM(evaluated == gm_penetration_3d_at(&pair, pinion, wheel, &position, &result));
-            claim_numbers(evaluated, wrench.pinion_force, 3);
-            claim_numbers(evaluated, wrench.pinion_moment, 3);
-            claim_numbers(evaluated, wrench.wheel_force, 3);
-            claim_numbers(evaluated, wrench.wheel_moment, 3);
-        }
+        gm_mesh_params law;
+        gm_mesh *mesh = NULL;
+        gm_mesh_result whole;
+        gm_mesh_params_default(&law);
+        law.model = fuzz_byte(&bytes) % 8 == 0 ? GM_MODEL_SIMPLE : GM_MODEL_3D;
+        law.stiffness = how & RAW_STATE ? fuzz_any(&bytes) : 1e8;
+        law.damping = how & RAW_STATE ? fuzz_any(&bytes) : 1e3;
+        const size_t mesh_size = gm_mesh_size(&law, &pair);
+        void *mesh_memory = malloc(mesh_size + 1);
+        const int made = gm_mesh_init(&mesh, &law, &pair, pinion, wheel, mesh_memory, mesh_size);
+        FUZZ_CLAIM((made == GM_OK) == (mesh_size > 0) && (made == GM_OK) == (mesh != NULL));
+
+        /* Whatever is wanted, the force is the same. */
+        const int all = GM_WANT_DERIVATIVES | GM_WANT_WRENCH | GM_WANT_PAIRS;
+        const int evaluated = gm_mesh_evaluate(mesh, &state, all, NULL, &whole);
+        claim_result(evaluated, &whole);
+        gm_mesh_result alone;
+        FUZZ_CLAIM(evaluated == gm_mesh_evaluate(mesh, &state, GM_WANT_FORCE, NULL, &alone));
+        FUZZ_CLAIM(evaluated != GM_OK || alone.force == whole.force);
 
         double offset;
-        const double stiffness = how & RAW_STATE ? fuzz_any(&bytes) : 1e8;
         const double torque = how & RAW_STATE ? fuzz_any(&bytes) : fuzz_between(&bytes, -1e3, 1e3);
-        const int found = gm_static_equilibrium(&pair, pinion, wheel, state.pinion_angle, stiffness,
-                                                torque, &offset, &result);
+        const int found = gm_static_equilibrium(mesh, state.pinion_angle, torque, (double)NAN, NULL,
+                                                &offset, &whole);
         claim_numbers(found, &offset, 1);
-        claim_penetration(found, &result);
-        const int again =
-            gm_static_equilibrium_near(&pair, pinion, wheel, state.pinion_angle, stiffness, torque,
-                                       fuzz_any(&bytes), &offset, &result);
+        claim_penetration(found, &whole.contact);
+        const int again = gm_static_equilibrium(mesh, state.pinion_angle, torque, fuzz_any(&bytes),
+                                                NULL, &offset, &whole);
+        claim_numbers(again, &offset, 1);
+        claim_penetration(again, &whole.contact);
+
         /* There is one for any guess or for none, unless it hangs on the rounding of the lengths, or teeth are
          * pressed together or deviate by so much that the sum may fall again. */
-        const double length = fabs(torque) / (stiffness * pair.wheel.base_radius);
+        const double length = fabs(torque) / (law.stiffness * pair.wheel.base_radius);
         const double little = 0.02 * pair.transverse_base_pitch;
         if (!(how & RAW_DEVIATIONS) && pair.transverse_contact_ratio > 0.5 &&
             pair.backlash > -little && length < little && length > 1e-15 * pair.center_distance) {
             FUZZ_CLAIM(again == found);
         }
-        claim_numbers(again, &offset, 1);
-        claim_penetration(again, &result);
+        free(mesh_memory);
     }
-    free(pinion_memory);
-    free(wheel_memory);
+    free(pinion); /* they begin at their memory */
+    free(wheel);
     return 0;
 }

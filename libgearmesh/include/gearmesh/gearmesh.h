@@ -15,11 +15,18 @@
  *     gm_pair_params_default(&params);
  *     params.pinion_teeth = 45; ...                      // what the drawing says
  *     gm_pair pair;
- *     int status = gm_pair_init(&pair, &params);         // once
+ *     int status = gm_pair_init(&pair, &params);
+ *
+ *     gm_mesh_params law;
+ *     gm_mesh_params_default(&law);
+ *     law.stiffness = 1.05e8;                            // of one pair of teeth
+ *     size_t size = gm_mesh_size(&law, &pair);           // prepared once, in memory of the caller
+ *     gm_mesh *mesh;
+ *     status = gm_mesh_init(&mesh, &law, &pair, NULL, NULL, memory, size);
  *
  *     gm_state state = { .pinion_angle = 0.1, .wheel_angle = 0.11 };
- *     gm_penetration result;                             // at every step, from any thread
- *     status = gm_penetration_3d(&pair, NULL, NULL, &state, &result);
+ *     gm_mesh_result result;                             // at every step, from any thread
+ *     status = gm_mesh_evaluate(mesh, &state, GM_WANT_DERIVATIVES, NULL, &result);
  *
  * ## Conventions (libgearmesh/docs/conventions.md has the sketch)
  *
@@ -355,28 +362,8 @@ typedef struct gm_flank_ramp {
 /** Largest number of ramps of a side. */
 #define GM_FLANK_RAMPS_MAX 16
 
-/** One side (drive or coast) of all teeth of a gear: views over the caller's memory, and ramps. */
-typedef struct gm_flank_tables {
-    int face_nodes;     /**< grid lines along t1; without tables 0, or 2 if there are ramps */
-    int profile_nodes;  /**< grid lines along t2; likewise */
-    int capacity;       /**< table places */
-    int count;          /**< table places taken */
-    double peak;        /**< most material of any tooth, pitch included, before ramps (m) */
-    double *values;     /**< [capacity][face_nodes][profile_nodes][4]: node value, its second
-                             difference along t1, that along t2, 0 (m) */
-    double *table_peak; /**< [capacity] largest node value (m) */
-    double *pitch;      /**< [teeth] transverse pitch deviation, > 0 material added (m) */
-    int *table;         /**< [teeth] table of a tooth, -1 = ideal */
-    int ramp_count;     /**< 0 .. GM_FLANK_RAMPS_MAX */
-    gm_flank_ramp ramps[GM_FLANK_RAMPS_MAX]; /**< of all teeth, in the transverse section */
-} gm_flank_tables;
-
-/** The flanks of one gear. Prepared once by the functions below, read-only in evaluation. */
-typedef struct gm_flanks {
-    int teeth;             /**< number of teeth of the gear */
-    gm_flank_tables drive; /**< of the flanks GM_DRIVE */
-    gm_flank_tables coast; /**< of the flanks GM_COAST */
-} gm_flanks;
+/** The flanks of one gear, in memory of the caller. Prepared once by the functions below, read-only in evaluation. */
+typedef struct gm_flanks gm_flanks;
 
 /** Bytes of memory that gm_flanks_init() needs, 0 if the parameters are out of range or too large. */
 GM_API size_t gm_flanks_size(const gm_flanks_params *params);
@@ -384,14 +371,31 @@ GM_API size_t gm_flanks_size(const gm_flanks_params *params);
 /**
  * Prepares ideal flanks in memory of the caller; tables and pitch deviations are set afterwards.
  *
- * @param[out] flanks       the flanks; valid as long as the memory is, which must not move
+ * @param[out] flanks       the flanks, which begin at `memory`; valid as long as the memory is, which must not move.
+ *                          NULL on an error
  * @param[in]  params       sizes
  * @param[in]  memory       at least gm_flanks_size() bytes, aligned for double
  * @param[in]  memory_size  bytes in memory
- * @return GM_OK, GM_ERR_NULL, GM_ERR_PARAMETER, GM_ERR_MEMORY
+ * @return GM_OK, GM_ERR_NULL, GM_ERR_PARAMETER, GM_ERR_MEMORY (too little, or not aligned)
  */
-GM_API int gm_flanks_init(gm_flanks *flanks, const gm_flanks_params *params, void *memory,
+GM_API int gm_flanks_init(gm_flanks **flanks, const gm_flanks_params *params, void *memory,
                           size_t memory_size);
+
+/** Number of teeth of the gear; 0 for NULL. */
+GM_API int gm_flanks_teeth(const gm_flanks *flanks);
+
+/**
+ * Most material that any tooth of a side adds to the ideal flank, pitch included, before ramps take some off (m). Two
+ * gears do not touch on a side while its ideal penetration is below minus the sum of both peaks. 0 for NULL, which is
+ * ideal; NaN for no such side.
+ */
+GM_API double gm_flanks_peak(const gm_flanks *flanks, int side);
+
+/**
+ * Steepest change of the deviations of any tooth of a side along the profile, ramps included: a bound of |d deviation /
+ * d t2| (m). Costs a look at every node. 0 for NULL; NaN for no such side.
+ */
+GM_API double gm_flanks_profile_slope(const gm_flanks *flanks, int side);
 
 /**
  * Gives one tooth, or all teeth, a table of deviations. Each call takes one table place; a later call
@@ -616,7 +620,7 @@ typedef struct gm_penetration {
  * Reduces angles and speeds to a position. Costs one rounding of each angle and no more, up to
  * 1e9 rad (Cody-Waite reduction with the pitch angle in two parts).
  *
- * @return GM_OK, GM_ERR_NULL, GM_STATE_NOT_FINITE, GM_STATE_OUT_OF_RANGE
+ * @return GM_OK, GM_ERR_NULL, GM_STATE_NOT_FINITE, GM_STATE_OUT_OF_RANGE (angles, speeds)
  */
 GM_API int gm_position_from_state(const gm_pair *pair, const gm_state *state,
                                   gm_position *position);
@@ -626,7 +630,7 @@ GM_API int gm_position_from_state(const gm_pair *pair, const gm_state *state,
  *
  * @param[in]  pair          the pair
  * @param[in]  pinion_angle  phi_p (rad)
- * @param[in]  offset        x (m)
+ * @param[in]  offset        x (m); any size here, but the 3D model takes |x| < p_bt / 2 only
  * @param[in]  offset_rate   dx/dt (m/s)
  * @param[out] position      the position
  * @return GM_OK, GM_ERR_NULL, GM_STATE_NOT_FINITE, GM_STATE_OUT_OF_RANGE
@@ -638,14 +642,14 @@ GM_API int gm_position_from_pinion_angle(const gm_pair *pair, double pinion_angl
  * Simple model: a spring with backlash [Paper, Eqs. 9-11, with |x| in Eq. 10]. One pair, no tooth
  * engagement; drive = max(0, x - backlash / 2), coast = max(0, -x - backlash / 2).
  *
- * @return as gm_position_from_state(), but with any |x| <= 1e18 m
+ * @return as gm_position_from_state(), with |x| <= 1e18 m
  */
 GM_API int gm_penetration_simple(const gm_pair *pair, const gm_state *state,
                                  gm_penetration *result);
 
 /**
  * 3D model: exact integral of the penetration over all contact lines of both flanks [Paper, Eqs. 12-25,
- * corrected].
+ * corrected]. The plain entry point; a solver prepares a gm_mesh once and evaluates that.
  *
  * @param[in]  pair           the pair
  * @param[in]  pinion_flanks  deviations of the pinion's teeth, NULL = ideal
@@ -664,38 +668,108 @@ GM_API int gm_penetration_3d(const gm_pair *pair, const gm_flanks *pinion_flanks
                              const gm_flanks *wheel_flanks, const gm_state *state,
                              gm_penetration *result);
 
-/** As gm_penetration_3d(), from a reduced position: the hot entry, without trigonometry. */
-GM_API int gm_penetration_3d_at(const gm_pair *pair, const gm_flanks *pinion_flanks,
-                                const gm_flanks *wheel_flanks, const gm_position *position,
-                                gm_penetration *result);
-
-/**
- * As gm_penetration_3d_at() without the derivatives, which are NaN: for a right-hand side that needs the force
- * alone. Saves about a third of the work with flank tables.
- */
-GM_API int gm_penetration_3d_sum_at(const gm_pair *pair, const gm_flanks *pinion_flanks,
-                                    const gm_flanks *wheel_flanks, const gm_position *position,
-                                    gm_penetration *result);
-
-/** As gm_penetration_simple(), from x and dx/dt alone, in the same ranges. */
-GM_API int gm_penetration_simple_at(const gm_pair *pair, double offset, double offset_rate,
-                                    gm_penetration *result);
-
 /* ---------------------------------------------------------------------------------------------
- * Force, wrench, equilibrium
+ * Mesh: pair, flanks and force law as one object
  * ------------------------------------------------------------------------------------------- */
 
+/** Where the overlap of the flanks comes from. */
+enum gm_model {
+    GM_MODEL_3D = 0,    /**< exact integral over all lines of contact [Paper, Eqs. 12-25] */
+    GM_MODEL_SIMPLE = 1 /**< a spring with backlash [Paper, Eqs. 9-11]; ideal flanks, any |x| */
+};
+
+/** How force follows from overlap. */
+enum gm_law {
+    GM_LAW_CONSTANT =
+        0 /**< constant stiffness K of a pair of teeth, uniform over face and profile [Paper, Eq. 3] */
+};
+
 /**
- * Contact force along the transverse line of action, net = drive - coast [Paper, Eq. 3]:
- * per flank max(0, stiffness * penetration + damping * rate), as teeth do not pull.
+ * Model and law of a mesh. Fill with gm_mesh_params_default(), then set at least the stiffness.
  *
- * @param[in] stiffness    K of one tooth pair over the full face width; K_simple for the simple model (N/m)
- * @param[in] damping      D likewise (N s/m)
- * @param[in] penetration  result of an evaluation
- * @return F (N), > 0 drives the wheel forward; NaN if penetration is NULL, or the force is not finite.
- *         I_p phi_p'' = M_p - F r_bp and I_w phi_w'' = -M_w + F r_bw [Paper, Eqs. 1-2, base radii].
+ * The simple model takes the same K and D of one pair of teeth: its spring is K eps_alpha, its damper D eps_alpha, so
+ * that both models share eigenfrequency and damping ratio.
  */
-GM_API double gm_contact_force(double stiffness, double damping, const gm_penetration *penetration);
+typedef struct gm_mesh_params {
+    int model; /**< enum gm_model [GM_MODEL_3D] */
+    int law;   /**< enum gm_law [GM_LAW_CONSTANT] */
+    double
+        stiffness; /**< K of one pair of teeth that touches over the common face width, 1e-30 .. 1e30 N/m,
+                                  required */
+    double damping; /**< D of one pair of teeth likewise, 0 .. 1e30 N s/m [0] */
+    double
+        simple_stiffness; /**< spring of the simple model, 1e-30 .. 1e30 N/m [NaN: K eps_alpha] */
+} gm_mesh_params;
+
+/**
+ * A mesh: pair, flanks of both gears, model and law, prepared once in memory of the caller. Read-only afterwards, without
+ * hidden state: any number of threads may evaluate one mesh. It refers to the flanks, which must not change or move as
+ * long as it is used; the pair is copied.
+ */
+typedef struct gm_mesh gm_mesh;
+
+/** Fills with the defaults; the stiffness is NaN: required. */
+GM_API void gm_mesh_params_default(gm_mesh_params *params);
+
+/**
+ * Checks the parameters of a mesh.
+ *
+ * @param[in]  params       the parameters
+ * @param[out] field        name of the offending field of gm_mesh_params, a constant string; NULL if all is well. May be
+ *                          NULL
+ * @param[out] requirement  what would be right, a constant string; NULL if all is well. May be NULL
+ * @return GM_OK, GM_ERR_NULL, GM_ERR_PARAMETER
+ */
+GM_API int gm_mesh_params_check(const gm_mesh_params *params, const char **field,
+                                const char **requirement);
+
+/** Bytes of memory that gm_mesh_init() needs; 0 where it would refuse the parameters or the pair. */
+GM_API size_t gm_mesh_size(const gm_mesh_params *params, const gm_pair *pair);
+
+/**
+ * Prepares a mesh in memory of the caller.
+ *
+ * @param[out] mesh           the mesh, which begins at `memory`; NULL on an error
+ * @param[in]  params         model and law
+ * @param[in]  pair           from gm_pair_init(); copied
+ * @param[in]  pinion_flanks  deviations of the pinion's teeth, NULL = ideal; the simple model ignores them
+ * @param[in]  wheel_flanks   deviations of the wheel's teeth, NULL = ideal
+ * @param[in]  memory         at least gm_mesh_size() bytes, aligned for double
+ * @param[in]  memory_size    bytes in memory
+ * @return GM_OK, GM_ERR_NULL, GM_ERR_PARAMETER, GM_ERR_GEOMETRY (not a pair), GM_ERR_TOOTH (flanks of another number
+ *         of teeth), GM_ERR_MEMORY (too little, or not aligned)
+ */
+GM_API int gm_mesh_init(gm_mesh **mesh, const gm_mesh_params *params, const gm_pair *pair,
+                        const gm_flanks *pinion_flanks, const gm_flanks *wheel_flanks, void *memory,
+                        size_t memory_size);
+
+/** The pair of a mesh; NULL for NULL. */
+GM_API const gm_pair *gm_mesh_pair(const gm_mesh *mesh);
+
+/** Stiffness along the line of action over all pairs that touch on average: K eps_alpha, or the spring of the simple
+ *  model (N/m). NaN for NULL. */
+GM_API double gm_mesh_mean_stiffness(const gm_mesh *mesh);
+
+/** Damping likewise: D eps_alpha (N s/m). NaN for NULL. */
+GM_API double gm_mesh_mean_damping(const gm_mesh *mesh);
+
+/**
+ * Eigenfrequency of two bodies on the mean stiffness of the mesh, sqrt(K_mean (r_bp^2 / I_p + r_bw^2 / I_w)) / (2 pi).
+ *
+ * @param[in] mesh            the mesh
+ * @param[in] pinion_inertia  I_p, > 0; infinite (HUGE_VAL) where the pinion's motion is prescribed (kg m2)
+ * @param[in] wheel_inertia   I_w, likewise
+ * @return (Hz); NaN for NULL or an inertia that is not above 0
+ */
+GM_API double gm_mesh_eigenfrequency(const gm_mesh *mesh, double pinion_inertia,
+                                     double wheel_inertia);
+
+/**
+ * How far x may go before flanks of a side can touch: backlash / 2 less the peaks of both gears' flanks (m). No drive
+ * flanks touch while x < clearance of GM_DRIVE, no coast flanks while -x < clearance of GM_COAST. Negative where flanks
+ * may touch at x = 0. NaN for NULL or no such side.
+ */
+GM_API double gm_mesh_clearance(const gm_mesh *mesh, int side);
 
 /** Force and moment on both gears in the frame of the file comment. */
 typedef struct gm_wrench {
@@ -705,64 +779,89 @@ typedef struct gm_wrench {
     double wheel_moment[3];  /**< on the wheel about its axis at z = 0 (N m) */
 } gm_wrench;
 
-/**
- * Wrench of the contact forces, each line of contact taken where it is: with the tilting moments of
- * helical gears and of partly touching flanks. Frictionless: forces along the surface normal.
- *
- * @return as gm_penetration_3d_at(), and GM_ERR_PARAMETER for stiffness or damping beyond 1e30 (N/m, N s/m)
- */
-GM_API int gm_wrench_3d_at(const gm_pair *pair, const gm_flanks *pinion_flanks,
-                           const gm_flanks *wheel_flanks, const gm_position *position,
-                           double stiffness, double damping, gm_wrench *wrench);
+/** What an evaluation shall give beside force, penetration and contact: a sum of these. */
+enum gm_wanted {
+    GM_WANT_FORCE = 0,
+    GM_WANT_DERIVATIVES =
+        1, /**< exact derivatives of force and penetration; about a third more work with tables */
+    GM_WANT_WRENCH = 2, /**< force and moment on both gears */
+    GM_WANT_PAIRS = 4 /**< numbers of pairs also where a cache answers, which does not count them */
+};
+
+/** Result of an evaluation of a mesh. What was not asked for is NaN. */
+typedef struct gm_mesh_result {
+    double force; /**< F along the transverse line of action, > 0 drives the wheel forward (N):
+                             I_p phi_p'' = M_p - F r_bp, I_w phi_w'' = -M_w + F r_bw [Paper, Eqs. 1-2, base radii] */
+    double drive_force; /**< of the drive flanks alone, >= 0; F = drive_force - coast_force (N) */
+    double coast_force; /**< of the coast flanks alone, >= 0 (N) */
+
+    double force_by_pinion_angle; /**< partial derivative of F by phi_p, all else fixed (N/rad) */
+    double force_by_wheel_angle;  /**< by phi_w (N/rad) */
+    double force_by_pinion_speed; /**< by d phi_p / dt (N s/rad) */
+    double force_by_wheel_speed;  /**< by d phi_w / dt (N s/rad) */
+
+    gm_penetration contact; /**< overlap and contact of the flanks, as gm_penetration_3d() */
+    gm_wrench
+        wrench; /**< each line of contact taken where it is: with the tilting moments of helical gears and of
+                                 partly touching flanks. Forces along the surface normal. In the simple model all acts in
+                                 the pitch point at mid-face */
+} gm_mesh_result;
 
 /**
- * Quasi-static equilibrium at one pinion angle: the smallest |x| beyond the clearance for which
- * stiffness * r_bw * penetration(x) = torque. Where the sum of a spur pair steps over the torque (a pair with
+ * Evaluates a mesh: force, and what else is wanted.
+ *
+ * Per flank side the force is max(0, K penetration + D rate): teeth do not pull, and where damping would make them, force
+ * and derivatives are 0.
+ *
+ * @param[in]     mesh       the mesh
+ * @param[in]     state      angles and speeds
+ * @param[in]     wanted     a sum of enum gm_wanted
+ * @param[in,out] workspace  what an iterative law needs, one per thread; NULL: the constant law needs none
+ * @param[out]    result     all fields, NaN where not wanted; on an error all NaN, pairs 0
+ * @return GM_OK, GM_ERR_NULL, GM_ERR_PARAMETER (wanted), GM_STATE_NOT_FINITE, GM_STATE_OUT_OF_RANGE
+ *
+ * Validity and accuracy as gm_penetration_3d(), or gm_penetration_simple(). Cost: docs/performance.md.
+ */
+GM_API int gm_mesh_evaluate(const gm_mesh *mesh, const gm_state *state, int wanted, void *workspace,
+                            gm_mesh_result *result);
+
+/**
+ * As gm_mesh_evaluate(), from a reduced position: the hot entry, without trigonometry.
+ *
+ * @return as gm_mesh_evaluate(), and GM_ERR_TOOTH (no such teeth)
+ */
+GM_API int gm_mesh_evaluate_at(const gm_mesh *mesh, const gm_position *position, int wanted,
+                               void *workspace, gm_mesh_result *result);
+
+/** Stiffness of what touches in a result: K times the touching part of the face width, all pairs and both sides (N/m).
+ *  NaN for NULL. */
+GM_API double gm_mesh_touching_stiffness(const gm_mesh *mesh, const gm_mesh_result *result);
+
+/**
+ * Quasi-static equilibrium at one pinion angle: the smallest |x| beyond the clearance at which F(x) r_bw = torque, without
+ * damping and exactly, also where the mesh has a cache. Where the force of a spur pair steps over the load (a pair with
  * pitch deviations enters), x is the place of the step and result one of its sides.
  *
- * @param[in]  pair           the pair
- * @param[in]  pinion_flanks  NULL = ideal
- * @param[in]  wheel_flanks   NULL = ideal
- * @param[in]  pinion_angle   phi_p (rad)
- * @param[in]  stiffness      K of one tooth pair (N/m), 1e-30 .. 1e30
- * @param[in]  wheel_torque   load on the wheel, > 0 resists +phi_w and loads the drive flanks (N m)
- * @param[out] offset         x; the transmission error is -x (m)
- * @param[out] result         penetration there; may be NULL
- * @return GM_OK, GM_ERR_NULL, GM_ERR_PARAMETER (stiffness or torque), GM_ERR_TOOTH, GM_STATE_NOT_FINITE,
- *         GM_STATE_OUT_OF_RANGE, GM_NO_EQUILIBRIUM, GM_UNDETERMINED (no torque within the backlash)
+ * @param[in]     mesh          the mesh
+ * @param[in]     pinion_angle  phi_p (rad)
+ * @param[in]     wheel_torque  load on the wheel, > 0 resists +phi_w and loads the drive flanks (N m)
+ * @param[in]     guess         x to begin with, NaN = none (m). Costs or saves evaluations, and changes x by no more than
+ *                              its accuracy. From one pinion angle to the next, in first order, x changes by
+ *                              (r_bp + r_bw force_by_pinion_angle / force_by_wheel_angle) times the change of the angle
+ * @param[in,out] workspace     as gm_mesh_evaluate()
+ * @param[out]    offset        x; the transmission error is -x (m)
+ * @param[out]    result        there, with GM_WANT_DERIVATIVES; may be NULL
+ * @return GM_OK, GM_ERR_NULL, GM_ERR_PARAMETER (torque), GM_STATE_NOT_FINITE, GM_STATE_OUT_OF_RANGE,
+ *         GM_NO_EQUILIBRIUM, GM_UNDETERMINED (no torque within the backlash)
  *
- * Accuracy: x to 1e-15 of the centre distance.
+ * Accuracy: x to 1e-15 of the centre distance. Cost: some 8 evaluations with derivatives, 4 from a good guess.
  */
-GM_API int gm_static_equilibrium(const gm_pair *pair, const gm_flanks *pinion_flanks,
-                                 const gm_flanks *wheel_flanks, double pinion_angle,
-                                 double stiffness, double wheel_torque, double *offset,
-                                 gm_penetration *result);
-
-/**
- * As gm_static_equilibrium(), in half the time where x is about known, as along a curve. From one pinion angle to
- * the next, in first order,
- *
- *     x changes by (r_bp + r_bw d_pinion_angle / d_wheel_angle) times the change of the angle.
- *
- * @param[in]  pair           the pair
- * @param[in]  pinion_flanks  NULL = ideal
- * @param[in]  wheel_flanks   NULL = ideal
- * @param[in]  pinion_angle   phi_p (rad)
- * @param[in]  stiffness      K of one tooth pair (N/m), 1e-30 .. 1e30
- * @param[in]  wheel_torque   load on the wheel (N m)
- * @param[in]  guess          x to begin with (m). It costs or saves evaluations and changes x by no more than its
- *                            accuracy; NaN, or one where no flank can touch on the loaded side, is ignored
- * @param[out] offset         x (m)
- * @param[out] result         penetration there; may be NULL
- * @return as gm_static_equilibrium()
- */
-GM_API int gm_static_equilibrium_near(const gm_pair *pair, const gm_flanks *pinion_flanks,
-                                      const gm_flanks *wheel_flanks, double pinion_angle,
-                                      double stiffness, double wheel_torque, double guess,
-                                      double *offset, gm_penetration *result);
+GM_API int gm_static_equilibrium(const gm_mesh *mesh, double pinion_angle, double wheel_torque,
+                                 double guess, void *workspace, double *offset,
+                                 gm_mesh_result *result);
 
 /* ---------------------------------------------------------------------------------------------
- * Look-up cache of the 3D model, for long sweeps
+ * Cache of the 3D model, for long sweeps
  * ------------------------------------------------------------------------------------------- */
 
 /**
@@ -770,39 +869,17 @@ GM_API int gm_static_equilibrium_near(const gm_pair *pair, const gm_flanks *pini
  * micrometres. Memory grows with phase_cells * depth_cells * tooth passes.
  */
 typedef struct gm_cache_params {
-    int side; /**< flanks that are looked up, GM_DRIVE or GM_COAST; the others are exact [GM_DRIVE] */
+    int side; /**< flanks that the cache holds, GM_DRIVE or GM_COAST; the others are exact [GM_DRIVE] */
     int phase_cells; /**< steps of the phase per base pitch, 4 .. 10000; some more at kinks [16] */
     int depth_cells; /**< steps of delta, 4 .. 10000 [40] */
     double depth;    /**< range of delta from the first touch at each phase on (m),
                           1e-10 .. p_bt / 4 [20e-6] */
 } gm_cache_params;
 
-/**
- * A cache: views over the caller's memory. It refers to pair and flanks, which must not change or move
- * as long as it is used. Fill it with gm_cache_init(); the fields are read-only.
- */
-typedef struct gm_cache {
-    const gm_pair *pair;            /**< the pair */
-    const gm_flanks *pinion_flanks; /**< NULL = ideal */
-    const gm_flanks *wheel_flanks;  /**< NULL = ideal */
-    int side;                       /**< GM_DRIVE or GM_COAST */
-    int pinion_period;   /**< 1 if all teeth of the pinion have the same flank, else z_p */
-    int wheel_period;    /**< likewise */
-    int common;          /**< greatest common divisor of both */
-    int passes;          /**< tooth passes: least common multiple of both periods */
-    int columns;         /**< phases per tooth pass */
-    int nodes;           /**< places in delta per phase */
-    double depth;        /**< as in the parameters (m) */
-    double step;         /**< of delta (m) */
-    double per_step;     /**< its inverse (1/m) */
-    double lowest;       /**< nothing touches at or below this delta (m) */
-    double other_lowest; /**< the same of the other side (m) */
-    double *phases;      /**< [columns] 0 .. p_bt (m) */
-    double *starts;      /**< [passes][columns] delta of the first node (m), NaN = not filled yet */
-    float *values;       /**< [passes][columns][nodes][4] */
-} gm_cache;
+/** A cache in memory of the caller: the sums of one side of a mesh over tooth passes, phase and depth. */
+typedef struct gm_cache gm_cache;
 
-/** How far a cache is off; of the side that it looks up. */
+/** How far a cache is off; of the side that it holds. */
 typedef struct gm_cache_errors {
     double sum_largest;     /**< of the sum, largest (m) */
     double sum_rms;         /**< root mean square (m) */
@@ -820,39 +897,38 @@ GM_API void gm_cache_params_default(gm_cache_params *params);
  *
  * @return 0 where gm_cache_init() would refuse
  */
-GM_API size_t gm_cache_size(const gm_cache_params *params, const gm_pair *pair,
-                            const gm_flanks *pinion_flanks, const gm_flanks *wheel_flanks);
+GM_API size_t gm_cache_size(const gm_cache_params *params, const gm_mesh *mesh);
 
 /**
  * Prepares an empty cache in memory of the caller. Apart from 8 bytes per column the memory is not touched
  * before it is needed.
  *
- * @param[out] cache          the cache; all zero on an error
- * @param[in]  params         resolution and range
- * @param[in]  pair           helical: the sum of spur gears jumps, and no polynomial follows that
- * @param[in]  pinion_flanks  NULL = ideal (then the exact evaluation is as fast)
- * @param[in]  wheel_flanks   NULL = ideal
- * @param[in]  memory         at least gm_cache_size() bytes, aligned for double
- * @param[in]  memory_size    bytes in memory
- * @return GM_OK, GM_ERR_NULL, GM_ERR_PARAMETER, GM_ERR_GEOMETRY (spur gears), GM_ERR_TOOTH (flanks of
- *         another number of teeth), GM_ERR_MEMORY (too little, or more than a computer has)
+ * @param[out] cache        the cache, which begins at `memory`; NULL on an error. It refers to the mesh
+ * @param[in]  params       resolution and range
+ * @param[in]  mesh         3D model of helical gears: the sum of spur gears jumps, and no polynomial follows that
+ * @param[in]  memory       at least gm_cache_size() bytes, aligned for double
+ * @param[in]  memory_size  bytes in memory
+ * @return GM_OK, GM_ERR_NULL, GM_ERR_PARAMETER, GM_ERR_GEOMETRY (spur gears, or the simple model),
+ *         GM_ERR_MEMORY (too little or not aligned, or more than a computer has)
  */
-GM_API int gm_cache_init(gm_cache *cache, const gm_cache_params *params, const gm_pair *pair,
-                         const gm_flanks *pinion_flanks, const gm_flanks *wheel_flanks,
+GM_API int gm_cache_init(gm_cache **cache, const gm_cache_params *params, const gm_mesh *mesh,
                          void *memory, size_t memory_size);
 
+/** Tooth passes: combinations of teeth that differ; 0 for NULL. */
+GM_API int gm_cache_passes(const gm_cache *cache);
+
 /**
- * Fills a range of tooth passes (0 .. cache.passes - 1) up front. Several threads may fill disjoint
+ * Fills a range of tooth passes (0 .. gm_cache_passes() - 1) up front. Several threads may fill disjoint
  * ranges at once. After all are filled nothing writes to the cache any more, and any number of threads
- * may look up in it.
+ * may evaluate with it.
  *
  * @return GM_OK, GM_ERR_NULL, GM_ERR_PARAMETER (no such passes)
  */
 GM_API int gm_cache_fill(gm_cache *cache, int first_pass, int count);
 
 /**
- * As gm_penetration_3d_at(), approximately and much faster. What the position needs is filled on first use:
- * **until gm_cache_fill() has filled all passes, a cache belongs to one thread.**
+ * Lets a mesh answer from a cache of its own sums, approximately and much faster; NULL: exactly again. What a position
+ * needs is filled on first use: **until gm_cache_fill() has filled all passes, mesh and cache belong to one thread.**
  *
  * Sum and derivatives come from one bicubic polynomial per cell, through exact values and slopes at the
  * corners, so that they agree with each other: continuous together with the derivatives, but where the
@@ -860,7 +936,8 @@ GM_API int gm_cache_fill(gm_cache *cache, int first_pass, int count);
  * slope of the flanks (some um per mm); rates follow from it.
  *
  * Never extrapolates: beyond its depth, for teeth that the pair as assembled never brings together, and for
- * a phase outside [0, p_bt] it evaluates exactly; where nothing touches, the sum is exactly 0.
+ * a phase outside [0, p_bt] the mesh evaluates exactly, and so it does for a wrench and for the numbers of pairs,
+ * which are -1 where the cache answered. Where nothing touches, the sum is exactly 0.
  *
  * Accuracy for the reference pair and flanks of data/paper/ with the defaults, under 1 to 40 N m: sum
  * 2.5e-4 root mean square and 3e-3 at most of its mean under 20 N m (4.9 um); touching fraction (1.3 of
@@ -868,14 +945,9 @@ GM_API int gm_cache_fill(gm_cache *cache, int first_pass, int count);
  * measures any pair. Cost: about 670 instructions, and about 50 exact evaluations for a column (one
  * phase of one tooth pass) that is met for the first time.
  *
- * @param[in,out] cache     the cache
- * @param[in]     position  teeth, phase, x and dx/dt
- * @param[out]    result    as gm_penetration_3d_at(), but drive_pairs or coast_pairs is -1 (not
- *                          counted) where it was looked up
- * @return as gm_penetration_3d_at()
+ * @return GM_OK, GM_ERR_NULL (no mesh), GM_ERR_PARAMETER (the cache is of another mesh)
  */
-GM_API int gm_cache_penetration_at(gm_cache *cache, const gm_position *position,
-                                   gm_penetration *result);
+GM_API int gm_mesh_use_cache(gm_mesh *mesh, gm_cache *cache);
 
 /**
  * Measures the error against the exact evaluation in random states, uniform over tooth passes, phase and

@@ -187,8 +187,7 @@ typedef struct gm_flanks_report {
  * others are left, the tables of the side have the grid that gm_modifications_grid_find() gives for those, on top of
  * that of the deviations (2 x 2 without).
  *
- * @param[out] flanks      the flanks
- * @param[out] memory      what they live in: free it with gm_flanks_memory_free() after the last use
+ * @param[out] flanks      the flanks, NULL on an error: free them with gm_flanks_free() after the last use
  * @param[in]  teeth       number of teeth of the gear
  * @param[in]  deviations  NULL = none
  * @param[in]  pitch       NULL = none
@@ -196,15 +195,14 @@ typedef struct gm_flanks_report {
  * @param[out] report      how the modifications are held, all zero on an error; may be NULL
  * @param[out] error       why it failed; may be NULL
  * @return GM_IO_OK, GM_IO_ERR_NULL, GM_IO_ERR_OPTION (also another number of teeth, or values that are
- *         not finite), GM_IO_ERR_MEMORY; on an error memory is NULL and the flanks are all zero
+ *         not finite), GM_IO_ERR_MEMORY
  */
-GM_API int gm_flanks_build(gm_flanks *flanks, void **memory, int teeth,
-                           const gm_deviations *deviations, const gm_pitch *pitch,
-                           const gm_flanks_options *options, gm_flanks_report *report,
-                           gm_io_error *error);
+GM_API int gm_flanks_build(gm_flanks **flanks, int teeth, const gm_deviations *deviations,
+                           const gm_pitch *pitch, const gm_flanks_options *options,
+                           gm_flanks_report *report, gm_io_error *error);
 
 /** Frees what gm_flanks_build() allocated; NULL is fine. */
-GM_API void gm_flanks_memory_free(void *memory);
+GM_API void gm_flanks_free(gm_flanks *flanks);
 
 /** Number of teeth whose side no set covers, so that it is ideal; 0 for NULL or another side. */
 GM_API int gm_deviations_ideal_teeth(const gm_deviations *deviations, int side);

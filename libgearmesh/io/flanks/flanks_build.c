@@ -223,8 +223,8 @@ static gm_flanks_params sizes_of(const builder *build) {
     return params;
 }
 
-/* Allocates the memory of the flanks and prepares them as ideal. */
-static int make_ideal(const builder *build, void **memory) {
+/* Allocates the flanks and prepares them as ideal. */
+static int make_ideal(builder *build) {
     const gm_flanks_params params = sizes_of(build);
     const size_t size = gm_flanks_size(&params);
     if (size == 0) {
@@ -232,16 +232,17 @@ static int make_ideal(const builder *build, void **memory) {
             build->error, GM_IO_ERR_OPTION, 0,
             "the flank tables of %d teeth must fit into memory (got too large ones)", build->teeth);
     }
-    *memory = malloc(size);
-    if (*memory == NULL) {
+    void *memory = malloc(size);
+    if (memory == NULL) {
         return gmi_error_memory(build->error);
     }
-
-    const int status = gm_flanks_init(build->flanks, &params, *memory, size);
-    return status == GM_OK
-               ? GM_IO_OK
-               : gmi_error_set(build->error, GM_IO_ERR_OPTION, 0,
-                               "the flanks cannot be prepared: %s", gm_status_text(status));
+    const int status = gm_flanks_init(&build->flanks, &params, memory, size);
+    if (status != GM_OK) {
+        free(memory);
+        return gmi_error_set(build->error, GM_IO_ERR_OPTION, 0, "the flanks cannot be prepared: %s",
+                             gm_status_text(status));
+    }
+    return GM_IO_OK;
 }
 
 static int allocate_table(double **table, size_t nodes, gm_io_error *error) {
@@ -332,9 +333,8 @@ static gm_flanks_side_report report_of(const gmi_design *design) {
     return report;
 }
 
-/* On an error memory may be allocated and the flanks half done: for the caller to undo. */
-static int build_flanks(builder *build, const gm_pitch *pitch, void **memory,
-                        gm_flanks_report *report) {
+/* On an error the flanks may be there and half done: for the caller to free. */
+static int build_flanks(builder *build, const gm_pitch *pitch, gm_flanks_report *report) {
     int *set_of_slot = NULL;
     int status = check_inputs(build->teeth, build->deviations, pitch, build->options, build->error);
     if (status == GM_IO_OK && build->deviations != NULL) {
@@ -347,7 +347,7 @@ static int build_flanks(builder *build, const gm_pitch *pitch, void **memory,
         status = make_design(build, side);
     }
     if (status == GM_IO_OK) {
-        status = make_ideal(build, memory);
+        status = make_ideal(build);
     }
     if (status == GM_IO_OK) {
         status = fill_flanks(build, pitch);
@@ -363,45 +363,33 @@ static int build_flanks(builder *build, const gm_pitch *pitch, void **memory,
     return status;
 }
 
-/* Flanks that no evaluation accepts. The only place here that needs to know how large the struct is. */
-static void clear_flanks(gm_flanks *flanks) {
-    memset(flanks, 0, sizeof *flanks);
-}
-
-int gm_flanks_build(gm_flanks *flanks, void **memory, int teeth, const gm_deviations *deviations,
+int gm_flanks_build(gm_flanks **flanks, int teeth, const gm_deviations *deviations,
                     const gm_pitch *pitch, const gm_flanks_options *options,
                     gm_flanks_report *report, gm_io_error *error) {
     gmi_error_begin(error, NULL);
     if (report != NULL) {
         memset(report, 0, sizeof *report);
     }
-    if (flanks != NULL) {
-        clear_flanks(flanks);
-    }
-    if (memory != NULL) {
-        *memory = NULL;
-    }
-    if (flanks == NULL || memory == NULL) {
+    if (flanks == NULL) {
         return gmi_error_null(error);
     }
+    *flanks = NULL;
 
     gm_flanks_options defaults;
     gm_flanks_options_default(&defaults);
-    builder build = {.flanks = flanks,
-                     .teeth = teeth,
+    builder build = {.teeth = teeth,
                      .deviations = deviations,
                      .options = options != NULL ? options : &defaults,
                      .error = error};
-
-    const int status = build_flanks(&build, pitch, memory, report);
-    if (status != GM_IO_OK) {
-        free(*memory);
-        *memory = NULL;
-        clear_flanks(flanks);
+    const int status = build_flanks(&build, pitch, report);
+    if (status == GM_IO_OK) {
+        *flanks = build.flanks;
+    } else {
+        free(build.flanks);
     }
     return status;
 }
 
-void gm_flanks_memory_free(void *memory) {
-    free(memory);
+void gm_flanks_free(gm_flanks *flanks) {
+    free(flanks); /* they begin at their memory */
 }

@@ -1,0 +1,33 @@
+/* SPDX-FileCopyrightText: The gearmesh authors */
+/* SPDX-License-Identifier: BSD-3-Clause */
+
+/* The cache as cache.c keeps it and mesh.c asks it. */
+#ifndef GEARMESH_CACHE_H
+#define GEARMESH_CACHE_H
+
+#include "internal.h"
+
+struct gm_cache {
+    const gm_mesh *mesh;
+    const gm_pair *pair; /* of the mesh */
+    int side;            /* GM_DRIVE or GM_COAST */
+    int pinion_period;   /* 1 if all teeth of the pinion have the same flank, else z_p */
+    int wheel_period;    /* likewise */
+    int common;          /* greatest common divisor of both */
+    int passes;          /* tooth passes: least common multiple of both periods */
+    int columns;         /* phases per tooth pass */
+    int nodes;           /* places in delta per phase */
+    double depth;        /* as in the parameters (m) */
+    double step;         /* of delta (m) */
+    double per_step;     /* its inverse (1/m) */
+    double lowest;       /* nothing touches at or below this delta (m) */
+    double *phases;      /* [columns] 0 .. p_bt (m) */
+    double *
+        starts; /* [passes][columns] delta of the first node (m), NaN = not filled yet, infinite = no contact */
+    float *values; /* [passes][columns][nodes][4] */
+};
+
+/* The sum of the side that the cache holds. Returns 0 where the exact evaluation has to answer. */
+int gmi_cache_look_up(gm_cache *cache, const gm_position *position, gmi_side_sum *sum);
+
+#endif

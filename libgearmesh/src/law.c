@@ -1,0 +1,44 @@
+/* SPDX-FileCopyrightText: The gearmesh authors */
+/* SPDX-License-Identifier: BSD-3-Clause */
+
+/*
+ * The force law: everything that knows how force follows from overlap. Force and gradient stand in internal.h, to be
+ * inlined; here are their inverse, and what users ask of a mesh as a whole. Nothing elsewhere multiplies by a stiffness.
+ */
+#include "internal.h"
+
+#include <math.h>
+
+double gmi_law_sum_of_torque(const gmi_law *law, double torque, double base_radius) {
+    return torque / (law->stiffness * base_radius);
+}
+
+double gm_mesh_mean_stiffness(const gm_mesh *mesh) {
+    return mesh == NULL ? gmi_nan() : mesh->law.mean_stiffness;
+}
+
+double gm_mesh_mean_damping(const gm_mesh *mesh) {
+    if (mesh == NULL) {
+        return gmi_nan();
+    }
+    return mesh->law.damping * (mesh->law.mean_stiffness / mesh->law.stiffness);
+}
+
+double gm_mesh_touching_stiffness(const gm_mesh *mesh, const gm_mesh_result *result) {
+    if (mesh == NULL || result == NULL) {
+        return gmi_nan();
+    }
+    return mesh->law.stiffness * (result->contact.drive_contact + result->contact.coast_contact);
+}
+
+double gm_mesh_eigenfrequency(const gm_mesh *mesh, double pinion_inertia, double wheel_inertia) {
+    if (mesh == NULL || !(pinion_inertia > 0.0) || !(wheel_inertia > 0.0)) {
+        return gmi_nan();
+    }
+
+    /* What a force of 1 N along the line of action does to x'' (1/kg); nothing through an infinite inertia. */
+    const double r_bp = mesh->pair->pinion.base_radius;
+    const double r_bw = mesh->pair->wheel.base_radius;
+    const double mobility = r_bp * r_bp / pinion_inertia + r_bw * r_bw / wheel_inertia;
+    return sqrt(mesh->law.mean_stiffness * mobility) / GMI_TWO_PI;
+}

@@ -1,0 +1,338 @@
+/* SPDX-FileCopyrightText: The gearmesh authors */
+/* SPDX-License-Identifier: BSD-3-Clause */
+
+/*
+ * The mesh: pair, flanks, model and law as one prepared object, and its evaluation. Nothing here but composition: what
+ * overlaps is found by penetration.c or cache.c, law.c makes a force of it, wrench.c says where it acts.
+ */
+#include "cache.h"
+#include "internal.h"
+
+#include <math.h>
+#include <string.h>
+
+/* ---------------------------------------------------------------------------------------------
+ * Preparing
+ * ------------------------------------------------------------------------------------------- */
+
+void gm_mesh_params_default(gm_mesh_params *params) {
+    if (params == NULL) {
+        return;
+    }
+    const gm_mesh_params defaults = {
+        .model = GM_MODEL_3D,
+        .law = GM_LAW_CONSTANT,
+        .stiffness = gmi_nan(),
+        .damping = 0.0,
+        .simple_stiffness = gmi_nan(),
+    };
+    *params = defaults;
+}
+
+static int is_stiffness(double value) {
+    return value >= GMI_SMALLEST_STIFFNESS && value <= GMI_LARGEST_STIFFNESS;
+}
+
+int gm_mesh_params_check(const gm_mesh_params *params, const char **field,
+                         const char **requirement) {
+    static const char stiffness[] = "a stiffness from 1e-30 to 1e30 N/m";
+    const char *at_fault = NULL;
+    const char *wanted = NULL;
+
+    /* The first field at fault, in the order of the struct. */
+    if (params == NULL) {
+        at_fault = NULL;
+    } else if (params->model != GM_MODEL_3D && params->model != GM_MODEL_SIMPLE) {
+        at_fault = "model";
+        wanted = "GM_MODEL_3D or GM_MODEL_SIMPLE";
+    } else if (params->law != GM_LAW_CONSTANT) {
+        at_fault = "law";
+        wanted = "GM_LAW_CONSTANT";
+    } else if (!is_stiffness(params->stiffness)) {
+        at_fault = "stiffness";
+        wanted = stiffness;
+    } else if (!(params->damping >= 0.0 && params->damping <= GMI_LARGEST_STIFFNESS)) {
+        at_fault = "damping";
+        wanted = "a damping from 0 to 1e30 N s/m";
+    } else if (!isnan(params->simple_stiffness) && !is_stiffness(params->simple_stiffness)) {
+        at_fault = "simple_stiffness";
+        wanted = stiffness;
+    }
+
+    if (field != NULL) {
+        *field = at_fault;
+    }
+    if (requirement != NULL) {
+        *requirement = wanted;
+    }
+    return params == NULL ? GM_ERR_NULL : at_fault != NULL ? GM_ERR_PARAMETER : GM_OK;
+}
+
+/* Whether gm_pair_init() has made it. */
+static int is_pair(const gm_pair *pair) {
+    return pair->pinion.teeth > 0 && pair->wheel.teeth > 0 && pair->transverse_base_pitch > 0.0;
+}
+
+static int check(const gm_mesh_params *params, const gm_pair *pair) {
+    if (params == NULL || pair == NULL) {
+        return GM_ERR_NULL;
+    }
+    const int status = gm_mesh_params_check(params, NULL, NULL);
+    if (status != GM_OK) {
+        return status;
+    }
+    return is_pair(pair) ? GM_OK : GM_ERR_GEOMETRY;
+}
+
+size_t gm_mesh_size(const gm_mesh_params *params, const gm_pair *pair) {
+    return check(params, pair) == GM_OK ? sizeof(gm_mesh) + sizeof(gm_pair) : 0;
+}
+
+/* Both models share eigenfrequency and damping ratio unless the simple one has a spring of its own. */
+static gmi_law law_of(const gm_mesh_params *params, const gm_pair *pair) {
+    const double contact_ratio = pair->transverse_contact_ratio;
+    gmi_law law = {params->stiffness, params->damping, params->stiffness * contact_ratio};
+    if (params->model == GM_MODEL_SIMPLE) {
+        law.damping = params->damping * contact_ratio;
+        law.stiffness =
+            isnan(params->simple_stiffness) ? law.mean_stiffness : params->simple_stiffness;
+        law.mean_stiffness = law.stiffness;
+    }
+    return law;
+}
+
+int gm_mesh_init(gm_mesh **mesh, const gm_mesh_params *params, const gm_pair *pair,
+                 const gm_flanks *pinion_flanks, const gm_flanks *wheel_flanks, void *memory,
+                 size_t memory_size) {
+    if (mesh == NULL) {
+        return GM_ERR_NULL;
+    }
+    *mesh = NULL;
+    int status = memory == NULL ? GM_ERR_NULL : check(params, pair);
+    if (status == GM_OK) {
+        status = gmi_check_flanks(pair, pinion_flanks, wheel_flanks);
+    }
+    if (status == GM_OK && (memory_size < gm_mesh_size(params, pair) || !gmi_is_aligned(memory))) {
+        status = GM_ERR_MEMORY;
+    }
+    if (status != GM_OK) {
+        return status;
+    }
+
+    /* The object, and behind it its copy of the pair. */
+    gm_mesh *made = (gm_mesh *)memory;
+    gm_pair *own_pair = (gm_pair *)(made + 1);
+    memset(made, 0, sizeof *made);
+    *own_pair = *pair;
+    made->pair = own_pair;
+    made->model = params->model;
+    made->law = law_of(params, pair);
+    if (params->model == GM_MODEL_SIMPLE) {
+        pinion_flanks = wheel_flanks = NULL;
+    }
+    for (int side = GM_DRIVE; side <= GM_COAST; ++side) {
+        gmi_side_init(&made->side[side], own_pair, pinion_flanks, wheel_flanks, side);
+    }
+    *mesh = made;
+    return GM_OK;
+}
+
+const gm_pair *gm_mesh_pair(const gm_mesh *mesh) {
+    return mesh == NULL ? NULL : mesh->pair;
+}
+
+double gm_mesh_clearance(const gm_mesh *mesh, int side) {
+    if (mesh == NULL || (side != GM_DRIVE && side != GM_COAST)) {
+        return gmi_nan();
+    }
+    return 0.5 * mesh->pair->backlash - mesh->side[side].peak;
+}
+
+int gm_mesh_use_cache(gm_mesh *mesh, gm_cache *cache) {
+    if (mesh == NULL) {
+        return GM_ERR_NULL;
+    }
+    if (cache != NULL && cache->mesh != mesh) {
+        return GM_ERR_PARAMETER;
+    }
+    mesh->cache = cache;
+    return GM_OK;
+}
+
+/* ---------------------------------------------------------------------------------------------
+ * Evaluating
+ * ------------------------------------------------------------------------------------------- */
+
+void gmi_mesh_result_set_nan(gm_mesh_result *result) {
+    const double nan = gmi_nan();
+    result->force = result->drive_force = result->coast_force = nan;
+    result->force_by_pinion_angle = result->force_by_wheel_angle = nan;
+    result->force_by_pinion_speed = result->force_by_wheel_speed = nan;
+    result->contact = gmi_penetration_nan();
+    gmi_wrench_set(&result->wrench, nan);
+}
+
+/* What the sums have to accumulate. The size of the touching part matters to a gradient only where damping acts. */
+static inline int accumulated(const gm_mesh *mesh, double offset_rate, int wanted) {
+    int mask = wanted & GM_WANT_WRENCH ? GMI_MOMENTS : GMI_SUM;
+    if (wanted & GM_WANT_DERIVATIVES) {
+        const int is_damped = mesh->law.damping > 0.0 && offset_rate != 0.0;
+        mask |= GMI_DERIVATIVES | (is_damped ? GMI_CONTACT_DERIVATIVES : 0);
+    }
+    return mask;
+}
+
+/* From the forces of both sides to derivatives by angles and speeds; for the signs see gmi_penetration_set(). */
+static inline void set_force_derivatives(const gm_pair *pair, const gmi_side_force *drive,
+                                         const gmi_side_force *coast, gm_mesh_result *result) {
+    const double r_bp = pair->pinion.base_radius;
+    const double r_bw = pair->wheel.base_radius;
+    const double by_offset = drive->by_delta + coast->by_delta;
+    const double by_origin = drive->by_origin + coast->by_origin;
+    const double by_rate = drive->by_speed + coast->by_speed;
+    result->force_by_pinion_angle = r_bp * (by_offset + by_origin);
+    result->force_by_wheel_angle = -r_bw * by_offset;
+    result->force_by_pinion_speed = r_bp * by_rate;
+    result->force_by_wheel_speed = -r_bw * by_rate;
+}
+
+/* Of a side whose flanks are clear of each other. */
+static const gmi_side_sum no_contact = {.sum = 0.0};
+static const gmi_side_force no_force = {.force = 0.0};
+
+/* All that a user sees, from the sums of both sides. */
+SPECIALIZED void set_result(const gm_mesh *mesh, const gmi_side_sum *drive,
+                            const gmi_side_sum *coast, double offset_rate, int wanted,
+                            gm_mesh_result *result) {
+    const int mask = accumulated(mesh, offset_rate, wanted);
+    gmi_penetration_set(mesh->pair, drive, coast, offset_rate, mask, &result->contact);
+
+    /* The coast flanks approach each other while x falls. */
+    gmi_side_force forces[2];
+    const gmi_side_force *drive_force = &no_force, *coast_force = &no_force;
+    if (drive != &no_contact) {
+        gmi_law_force(&mesh->law, drive, offset_rate, mask, &forces[GM_DRIVE]);
+        drive_force = &forces[GM_DRIVE];
+    }
+    if (coast != &no_contact) {
+        gmi_law_force(&mesh->law, coast, -offset_rate, mask, &forces[GM_COAST]);
+        coast_force = &forces[GM_COAST];
+    }
+    result->drive_force = drive_force->force;
+    result->coast_force = coast_force->force;
+    result->force = drive_force->force - coast_force->force;
+
+    if (wanted & GM_WANT_DERIVATIVES) {
+        set_force_derivatives(mesh->pair, drive_force, coast_force, result);
+    } else {
+        result->force_by_pinion_angle = result->force_by_wheel_angle = gmi_nan();
+        result->force_by_pinion_speed = result->force_by_wheel_speed = gmi_nan();
+    }
+    if (wanted & GM_WANT_WRENCH) {
+        gmi_wrench_set(&result->wrench, 0.0);
+        gmi_wrench_add_side(mesh->pair, drive_force, GM_DRIVE, &result->wrench);
+        gmi_wrench_add_side(mesh->pair, coast_force, GM_COAST, &result->wrench);
+    } else {
+        gmi_wrench_set(&result->wrench, gmi_nan());
+    }
+}
+
+/* The sum of a side: written to `memory`, or that of no contact. */
+SPECIALIZED const gmi_side_sum *exact_sum(const gm_mesh *mesh, int side,
+                                          const gm_position *position, int wanted,
+                                          gmi_side_sum *memory) {
+    if (gmi_side_is_clear(mesh->pair, &mesh->side[side], side, position->offset)) {
+        return &no_contact;
+    }
+    if (mesh->model == GM_MODEL_SIMPLE) {
+        gmi_side_sum_simple(mesh->pair, side, position->offset, memory);
+    } else {
+        gmi_side_sum_3d(mesh->pair, &mesh->side[side], side, position,
+                        accumulated(mesh, position->offset_rate, wanted), memory);
+    }
+    return memory;
+}
+
+/* Compiled once for the force alone and once for any mask. */
+SPECIALIZED void evaluate(const gm_mesh *mesh, const gm_position *position, int wanted,
+                          gm_mesh_result *result) {
+    gmi_side_sum sums[2];
+    const gmi_side_sum *drive = exact_sum(mesh, GM_DRIVE, position, wanted, &sums[GM_DRIVE]);
+    const gmi_side_sum *coast = exact_sum(mesh, GM_COAST, position, wanted, &sums[GM_COAST]);
+    set_result(mesh, drive, coast, position->offset_rate, wanted, result);
+}
+
+void gmi_mesh_evaluate_exact(const gm_mesh *mesh, const gm_position *position, int wanted,
+                             gm_mesh_result *result) {
+    evaluate(mesh, position, wanted, result);
+}
+
+/* The cache holds one side; the other one hardly ever touches, and is exact. */
+static void evaluate_cached(const gm_mesh *mesh, const gm_position *position, int wanted,
+                            gm_mesh_result *result) {
+    const int held = mesh->cache->side;
+    gmi_side_sum memory[2];
+    if ((wanted & GM_WANT_WRENCH) || !gmi_cache_look_up(mesh->cache, position, &memory[held])) {
+        gmi_mesh_evaluate_exact(mesh, position, wanted, result);
+        return;
+    }
+    const int other = held == GM_DRIVE ? GM_COAST : GM_DRIVE;
+    const gmi_side_sum *sums[2];
+    sums[held] = &memory[held];
+    sums[other] = exact_sum(mesh, other, position, wanted, &memory[other]);
+
+    /* Only the exact evaluation counts pairs. */
+    if ((wanted & GM_WANT_PAIRS) && memory[held].pairs < 0) {
+        gmi_side_sum counted;
+        memory[held].pairs = exact_sum(mesh, held, position, GM_WANT_FORCE, &counted)->pairs;
+    }
+    set_result(mesh, sums[GM_DRIVE], sums[GM_COAST], position->offset_rate, wanted, result);
+}
+
+static inline int check_evaluation(const gm_mesh *mesh, const gm_position *position, int wanted) {
+    const int all = GM_WANT_DERIVATIVES | GM_WANT_WRENCH | GM_WANT_PAIRS;
+    if (mesh == NULL || position == NULL) {
+        return GM_ERR_NULL;
+    }
+    if ((wanted & ~all) != 0) {
+        return GM_ERR_PARAMETER;
+    }
+    return mesh->model == GM_MODEL_SIMPLE
+               ? gmi_check_offset(position->offset, position->offset_rate)
+               : gmi_check_position(mesh->pair, position);
+}
+
+int gm_mesh_evaluate_at(const gm_mesh *mesh, const gm_position *position, int wanted,
+                        void *workspace, gm_mesh_result *result) {
+    (void)workspace;
+    if (result == NULL) {
+        return GM_ERR_NULL;
+    }
+    const int status = check_evaluation(mesh, position, wanted);
+    if (status != GM_OK) {
+        gmi_mesh_result_set_nan(result);
+        return status;
+    }
+    if (mesh->cache != NULL) {
+        evaluate_cached(mesh, position, wanted, result);
+    } else if (wanted == GM_WANT_FORCE) {
+        evaluate(mesh, position, GM_WANT_FORCE, result);
+    } else {
+        evaluate(mesh, position, wanted, result);
+    }
+    return GM_OK;
+}
+
+int gm_mesh_evaluate(const gm_mesh *mesh, const gm_state *state, int wanted, void *workspace,
+                     gm_mesh_result *result) {
+    if (result == NULL) {
+        return GM_ERR_NULL;
+    }
+    gm_position position;
+    const int status = gm_position_from_state(gm_mesh_pair(mesh), state, &position);
+    if (status != GM_OK) {
+        gmi_mesh_result_set_nan(result);
+        return status;
+    }
+    return gm_mesh_evaluate_at(mesh, &position, wanted, workspace, result);
+}
