@@ -259,7 +259,7 @@ static double judge_face_widths(const config *conf, double module) {
 
 /* In terms of the module. Narrower backlash presses, wider is none. */
 static void judge_backlash(const config *conf, double module) {
-    static const double possible[] = {0.003, INFINITY}, usual[] = {0.003, 0.3};
+    static const double possible[] = {0.003, HUGE_VAL}, usual[] = {0.003, 0.3};
     static const other_unit units[] = {{"in mm", 1e3}, {"in metres", 1e6}, {NULL, 0}};
 
     if (conf->gears.backlash > 0) {
@@ -391,7 +391,7 @@ static double mesh_mass(const config *conf, const usual_gear *usual, double pini
 
 /* In terms of the critical damping of the mesh, of which it has some 0.01 to 0.2. NaN without inertia: nothing is told. */
 static void judge_damping(const config *conf, double mass) {
-    static const double possible[] = {1e-4, INFINITY}, usual_range[] = {5e-3, 0.5};
+    static const double possible[] = {1e-4, HUGE_VAL}, usual_range[] = {5e-3, 0.5};
     const double critical = 2 * sqrt(conf->stiffness * mass);
     const other_unit units[] = {{"as the damping ratio", critical}, {"in N s/mm", 1e3}, {NULL, 0}};
 
@@ -438,7 +438,7 @@ static void judge_flank_scale(const config *conf) {
 
 /* An amount in um: less than a tenth is lost in the roughness. */
 static void judge_amount(const config *conf, const char *key, double amount) {
-    static const double possible[] = {0.1, INFINITY}, usual[] = {1, 300};
+    static const double possible[] = {0.1, HUGE_VAL}, usual[] = {1, 300};
     static const other_unit units[] = {{"in mm", 1e3}, {"in metres", 1e6}, {NULL, 0}};
 
     if (amount != 0) {
@@ -450,8 +450,8 @@ static void judge_amount(const config *conf, const char *key, double amount) {
 /* The keys of one kind in one place: lengths in terms of face width, module and reference diameter. */
 static void judge_modification(const config *conf, const usual_gear *usual, int gear, int place,
                                int kind) {
-    static const double width_possible[] = {3e-3, INFINITY}, width_usual[] = {0.01, 1};
-    static const double length_possible[] = {0.02, INFINITY}, length_usual[] = {0.1, 20};
+    static const double width_possible[] = {3e-3, HUGE_VAL}, width_usual[] = {0.01, 1};
+    static const double length_possible[] = {0.02, HUGE_VAL}, length_usual[] = {0.1, 20};
     const modification_values *given = &conf->modifications[gear][place][kind];
     char key[MODIFICATION_KEY_SIZE];
 
