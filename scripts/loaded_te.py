@@ -18,7 +18,7 @@ import program
 import results
 from program import InputError, RunFailed
 
-ROOT = os.path.join(os.path.dirname(os.path.abspath(__file__)), os.pardir)
+ROOT = os.path.join(os.path.dirname(os.path.realpath(__file__)), os.pardir)
 GEARS = ("pinion", "wheel")
 UNITS = {"um": "µm", "mm": "mm", "deg": "°", "Nm": "N m"}  # by the end of a key
 MADE = ("gears", "flanks", "modifications", "mesh")  # sections that act on the error under a given load
@@ -91,10 +91,14 @@ def unit_of(key):
 
 
 def gearsim_path(given):
-    """The program: as given, as built by scripts/test, or as installed."""
+    """The program: as given, as built by scripts/test, or as installed beside the command or on the search path."""
     build = os.environ.get("GEARMESH_BUILD_DIR") or os.path.join(ROOT, "build", "release")
-    built = os.path.join(build, "apps", "gearsim", "gearsim")
-    path = given or (built if os.path.exists(built) else shutil.which("gearsim"))
+    places = [
+        os.path.join(build, "apps", "gearsim", "gearsim"),
+        os.path.join(os.path.dirname(os.path.abspath(sys.argv[0])), "gearsim"),
+        os.path.join(ROOT, os.pardir, "bin", "gearsim"),
+    ]
+    path = given or next(filter(os.path.isfile, places), None) or shutil.which("gearsim")
     if path is None:
         raise InputError("gearsim is not built: scripts/test builds it, or say where it is (--gearsim FILE)")
     if not os.path.isfile(path) or not os.access(path, os.X_OK):
@@ -157,10 +161,9 @@ class Gears:
         self.mean_Nm = float(self.parameters["load.mean_Nm"])
         self.flank, self.other_flank = ("drive", "coast") if self.mean_Nm > 0 else ("coast", "drive")
         if self.differs_by_tooth() and self.parameters["analysis.period"] == "mesh":
-            print(
-                f"{self.path}: warning: flanks of files, but one mesh cycle only; all teeth of the pinion "
-                "take --set analysis.period=pinion --set analysis.positions=N, N some 50 for each",
-                file=sys.stderr,
+            program.warn(
+                f"{self.path}: flanks of files, but one mesh cycle only; all teeth of the pinion "
+                "take --set analysis.period=pinion --set analysis.positions=N, N some 50 for each"
             )
         self.mesh_cycles = table[:, 0] * int(self.parameters["gears.pinion_teeth"]) / (2 * math.pi)
 
@@ -169,7 +172,8 @@ class Gears:
     # ------------------------------------------------------------------------------------------------
 
     def _call(self, values, *options):
-        command = [self.gearsim, self.path, "--quiet", *options]
+        path = os.path.join(".", self.path) if self.path.startswith("-") else self.path  # or it were an option
+        command = [self.gearsim, path, "--quiet", *options]
         for key, value in {**self.settings, **values}.items():
             command += ["--set", f"{key}={value:.12g}" if isinstance(value, float) else f"{key}={value}"]
         result = subprocess.run(command, capture_output=True, text=True, check=False, stdin=subprocess.DEVNULL)
