@@ -45,7 +45,7 @@ static int take_option(const command_line *line, int count, char *const texts[],
 
     /* An option has a value, or it has none. */
     const option_spec *given = line->option(which);
-    char *value = strchr(texts[*index], '=');
+    const char *value = strchr(texts[*index], '=');
     if (given->right == NULL && value != NULL) {
         return command_line_refuse(line, "no value expected: ", texts[*index]);
     }

@@ -25,7 +25,8 @@ enum option_result {
 typedef struct command_line {
     int count;                               /* options that there are */
     const option_spec *(*option)(int which); /* the one at a place, 0 .. count - 1 */
-    enum option_result (*take)(void *user, int which, char *value); /* value NULL: it takes none */
+    enum option_result (*take)(void *user, int which,
+                               const char *value); /* value NULL: it takes none */
     void *user;
     const char *usage; /* told with every fault, without a line end */
     message_sink *messages;

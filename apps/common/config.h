@@ -119,8 +119,8 @@ enum { PROVENANCE_NOTES = 24 };
 
 /* What the command line asks for. */
 typedef struct config_request {
-    const char *path;       /* of the INI file */
-    char *const *overrides; /* "section.key=value" of each --set, in order */
+    const char *path;             /* of the INI file */
+    const char *const *overrides; /* "section.key=value" of each --set, in order */
     int override_count;
     const char *output_file; /* of --output, NULL = not given */
     enum config_purpose purpose;

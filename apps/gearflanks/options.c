@@ -353,7 +353,7 @@ static void note_use(parsing *state, const char *name, int use) {
     }
 }
 
-static enum option_result take_option(void *user, int which, char *value) {
+static enum option_result take_option(void *user, int which, const char *value) {
     parsing *state = user;
 
     if (!options_known[which].take(state, value)) {

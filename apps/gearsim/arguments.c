@@ -61,19 +61,19 @@ typedef struct parsing {
     command_line line;
 } parsing;
 
-static enum option_result take_override(parsing *state, char *value) {
+static enum option_result take_override(parsing *state, const char *value) {
     arguments *args = state->args;
 
     args->overrides[args->request.override_count++] = value;
     return OPTION_TAKEN;
 }
 
-static enum option_result take_output(parsing *state, char *value) {
+static enum option_result take_output(parsing *state, const char *value) {
     state->args->request.output_file = value;
     return OPTION_TAKEN;
 }
 
-static enum option_result take_quiet(parsing *state, char *value) {
+static enum option_result take_quiet(parsing *state, const char *value) {
     (void)value;
     state->line.messages->quiet = 1;
     return OPTION_TAKEN;
@@ -88,23 +88,23 @@ static enum option_result take_task(parsing *state, enum task task) {
     return OPTION_TAKEN;
 }
 
-static enum option_result take_check(parsing *state, char *value) {
+static enum option_result take_check(parsing *state, const char *value) {
     (void)value;
     return take_task(state, TASK_CHECK);
 }
 
-static enum option_result take_geometry(parsing *state, char *value) {
+static enum option_result take_geometry(parsing *state, const char *value) {
     (void)value;
     return take_task(state, TASK_GEOMETRY);
 }
 
-static enum option_result take_help(parsing *state, char *value) {
+static enum option_result take_help(parsing *state, const char *value) {
     (void)value;
     state->args->task = TASK_HELP;
     return OPTION_LAST;
 }
 
-static enum option_result take_version(parsing *state, char *value) {
+static enum option_result take_version(parsing *state, const char *value) {
     (void)value;
     state->args->task = TASK_VERSION;
     return OPTION_LAST;
@@ -112,7 +112,7 @@ static enum option_result take_version(parsing *state, char *value) {
 
 static const struct {
     option_spec spec;
-    enum option_result (*take)(parsing *state, char *value);
+    enum option_result (*take)(parsing *state, const char *value);
 } options[] = {
     {{"--set", "section.key=value"}, take_override},
     {{"--output", "a file name"}, take_output},
@@ -129,7 +129,7 @@ static const option_spec *option_at(int which) {
     return &options[which].spec;
 }
 
-static enum option_result take_option(void *user, int which, char *value) {
+static enum option_result take_option(void *user, int which, const char *value) {
     return options[which].take(user, value);
 }
 

@@ -12,7 +12,7 @@ enum task { TASK_RUN, TASK_CHECK, TASK_GEOMETRY, TASK_HELP, TASK_VERSION };
 typedef struct arguments {
     enum task task;
     config_request request;
-    char **overrides; /* what request.overrides points to */
+    const char **overrides; /* what request.overrides points to */
 } arguments;
 
 /* Returns 0, or an exit code with nothing allocated after a message. --quiet makes the messages quiet. */
