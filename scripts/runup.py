@@ -249,9 +249,10 @@ def order_cut(run, order, teeth):
 class OrderBlocks:
     """Spectra over the pinion angle: power[block, bin], squared peak amplitude (N^2)."""
 
-    def __init__(self, turns, lowest_rpm, highest_rpm, power, trusted_Hz, sweep_rpm_per_s):
+    def __init__(self, turns, speed_rpm, lowest_rpm, highest_rpm, power, trusted_Hz, sweep_rpm_per_s):
         self.turns = turns  # of the pinion in a block: bins for each order
         self.order = np.arange(power.shape[1]) / turns
+        self.speed_rpm = speed_rpm  # mean of each block
         self.lowest_rpm, self.highest_rpm = lowest_rpm, highest_rpm  # of each block
         self.power = power
         self.trusted_Hz = trusted_Hz
@@ -264,20 +265,27 @@ class OrderBlocks:
     def line(self, order, above_Hz=0.0, left_out=False, on_slope=False):
         """Squared peak amplitude of a line and of the floor under it, one value for each block (N^2).
 
-        Only blocks throughout which the line lies above `above_Hz` and is trusted: one that passes a resonance on its
-        way has an amplitude that changes so fast that it looks like sidebands. `left_out` [block]: others. The line is the sum of 3 bins
-        divided by 1.5, as a Hann window spreads it; the floor is what a noise of the median strength of
-        the bins around puts there (median / ln 2 is the mean of its power; 3 bins / 1.5 = 2). `on_slope` [block]: the
-        line stands on the slope of a wide peak, which falls exponentially; the geometric mean of the next bins to
-        either side, which the line does not reach, tells the floor as well.
+        Only blocks where the line lies above `above_Hz` and is trusted, but those of `left_out` [block].
+
+        The line is the sum of 3 bins divided by 1.5, as a Hann window spreads it. The floor is what a noise of the
+        median strength of the bins around puts there (median / ln 2 is the mean of its power; 3 bins / 1.5 = 2). Where
+        the line stands on the slope of a wide peak, `on_slope` [block], which falls exponentially, the geometric mean of
+        the next bins to either side, which the line does not reach, tells the floor as well.
         """
         middle = int(round(order * self.turns))
+
+        # Bins that tell the noise.
         beside = np.arange(FLOOR_NEAR, FLOOR_FAR + 1)
         around = np.r_[middle - beside, middle + beside]
         around = around[(around > 0) & (around < self.power.shape[1])]
-        counts = (order * self.lowest_rpm / 60.0 > above_Hz) & (order * self.highest_rpm / 60.0 < self.trusted_Hz)
+
+        # Blocks that count.
+        frequency_Hz = order * self.speed_rpm / 60.0
+        counts = (frequency_Hz > above_Hz) & (frequency_Hz < self.trusted_Hz)
         counts = counts & ~np.broadcast_to(left_out, counts.shape)
         power = self.power[counts]
+
+        # The line, and what is under it.
         line = power[:, middle - 1 : middle + 2].sum(axis=1) / 1.5
         floor = np.median(power[:, around], axis=1) / np.log(2.0) * 2.0
         slope = 2.0 * np.sqrt(power[:, middle - 2] * power[:, middle + 2])
@@ -289,8 +297,8 @@ class OrderBlocks:
 
         NaN where there is no such block.
         """
-        is_above = np.outer(self.lowest_rpm / 60.0, self.order) >= above_Hz
-        counts = is_above & (np.outer(self.highest_rpm / 60.0, self.order) < self.trusted_Hz)
+        frequency_Hz = np.outer(self.speed_rpm / 60.0, self.order)
+        counts = (frequency_Hz >= above_Hz) & (frequency_Hz < self.trusted_Hz)
         count = counts.sum(axis=0)
         mean = np.where(counts, self.power, 0.0).sum(axis=0) / np.maximum(count, 1)
         return np.where(count > 0, np.sqrt(mean), np.nan)
@@ -340,7 +348,7 @@ def order_blocks(run, turns, highest_order):
 
     # Each block over even steps of the angle, and its spectrum up to the highest order.
     bins = int(highest_order * turns) + 1
-    power, ends_rpm = np.empty((len(starts), bins), dtype=np.float32), np.empty((2, len(starts)))
+    power, speeds_rpm = np.empty((len(starts), bins), dtype=np.float32), np.empty((3, len(starts)))
     for i, start in enumerate(starts):
         first, last = np.searchsorted(fine_turn, (start, start + turns))
         part = slice(max(0, first - 16), last + 16)
@@ -349,5 +357,6 @@ def order_blocks(run, turns, highest_order):
         spectrum = np.fft.rfft(spline(start + at) * weight)[:bins]
         power[i] = np.abs(2.0 * spectrum / weight.sum()) ** 2
         first, last = np.searchsorted(turn, (start, start + turns))
-        ends_rpm[:, i] = run.speed_rpm[first:last].min(), run.speed_rpm[first:last].max()
-    return OrderBlocks(turns, *ends_rpm, power, run.trusted_Hz, run.sweep_rpm_per_s())
+        inside_rpm = run.speed_rpm[first:last]
+        speeds_rpm[:, i] = inside_rpm.mean(), inside_rpm.min(), inside_rpm.max()
+    return OrderBlocks(turns, *speeds_rpm, power, run.trusted_Hz, run.sweep_rpm_per_s())

@@ -259,8 +259,8 @@ class Orders(unittest.TestCase):
     def test_only_trusted_frequencies_count(self):
         blocks = blocks_of(run_up(lambda t, angle: np.cos(180 * angle), 600.0, 9000.0))
         line, _ = blocks.line(180)
-        self.assertEqual(len(line), (3.0 * blocks.highest_rpm < 0.4 * 25600).sum())
-        self.assertLess(len(line), len(blocks.highest_rpm))
+        self.assertEqual(len(line), (3.0 * blocks.speed_rpm < 0.4 * 25600).sum())
+        self.assertLess(len(line), len(blocks.speed_rpm))
         self.assertAlmostEqual(blocks.mean_amplitude_N()[180 * 82], 1.0, delta=0.02)
 
     def test_blocks_are_whole_turns_of_the_wheel(self):
