@@ -780,6 +780,125 @@ static void every_wrong_value_is_named(void) {
     }
 }
 
+/* Bounds belong to the ranges; what they make together is another matter. */
+static void the_bounds_themselves_are_within_the_ranges(void) {
+    static const wrong_value bounds[] = {
+        INTEGER(pinion_teeth, 3, GM_OK),
+        INTEGER(pinion_teeth, 100000, GM_OK),
+        INTEGER(wheel_teeth, 3, GM_OK),
+        INTEGER(wheel_teeth, 100000, GM_OK),
+        NUMBER(normal_module, 1e-6, GM_OK),
+        NUMBER(normal_module, 1e9, GM_OK),
+        NUMBER(center_distance, 1e-6, GM_OK),
+        NUMBER(center_distance, 1e9, GM_OK),
+        NUMBER(face_width, 1e-6, GM_OK),
+        NUMBER(face_width, 1e9, GM_OK),
+        NUMBER(pinion_face_width, 1e-6, GM_OK),
+        NUMBER(wheel_face_width, 1e9, GM_OK),
+        NUMBER(axial_offset, 1e9, GM_OK),
+        NUMBER(axial_offset, -1e9, GM_OK),
+        NUMBER(pinion_profile_shift, 1000.0, GM_OK),
+        NUMBER(wheel_profile_shift, -1000.0, GM_OK),
+        NUMBER(backlash, 1e9, GM_OK),
+        NUMBER(backlash, -1e9, GM_OK),
+        NUMBER(pinion_normal_thickness, 1e-6, GM_OK),
+        NUMBER(wheel_normal_thickness, 1e9, GM_OK),
+        NUMBER(pinion_rack_addendum, 0.0, GM_OK),
+        NUMBER(wheel_rack_addendum, 10.0, GM_OK),
+        NUMBER(pinion_rack_dedendum, 10.0, GM_OK),
+        NUMBER(wheel_rack_fillet_radius, 0.0, GM_OK),
+        NUMBER(pinion_tip_alteration, 10.0, GM_OK),
+        NUMBER(wheel_tip_alteration, -10.0, GM_OK),
+        NUMBER(pinion_tip_radius, 1e-6, GM_OK),
+        NUMBER(wheel_tip_radius, 1e9, GM_OK),
+        NUMBER(pinion_start_radius, 1e-6, GM_OK),
+        NUMBER(wheel_start_radius, 1e9, GM_OK),
+    };
+    for (size_t i = 0; i < sizeof bounds / sizeof bounds[0]; i++) {
+        gm_test_context("%s = %g", bounds[i].field, bounds[i].value);
+        gm_pair_params params = reference_params(REFERENCE_FACE_WIDTH);
+        set_wrong(&params, &bounds[i]);
+        GM_ASSERT(gm_pair_params_check(&params, NULL, NULL) != GM_ERR_PARAMETER);
+    }
+}
+
+static void the_total_contact_ratio_ends_at_1000(void) {
+    gm_pair_params params = reference_params(REFERENCE_FACE_WIDTH);
+    const gm_pair p = make_pair(&params);
+    const double per_width = p.overlap_ratio / p.face_width;
+    params.face_width = (999.9 - p.transverse_contact_ratio) / per_width;
+    GM_ASSERT_ABS(make_pair(&params).total_contact_ratio, 999.9, 1e-9);
+    params.face_width = (1000.1 - p.transverse_contact_ratio) / per_width;
+    const char *field = "";
+    GM_ASSERT_INT(gm_pair_params_check(&params, &field, NULL), GM_ERR_GEOMETRY);
+    GM_ASSERT_STRING(field, "face_width");
+}
+
+/* Of pairs that mesh far from the pitch point, the largest one that is taken is 1000 base pitches off. */
+static void the_place_of_the_teeth_ends_at_1000_base_pitches(void) {
+    double accepted = 1.0, refused = 400.0;
+    double place = NAN;
+    while (refused - accepted > 1e-6) {
+        const double d = 0.5 * (accepted + refused);
+        gm_pair_params params = reference_params(REFERENCE_FACE_WIDTH);
+        params.center_distance = d;
+        params.pinion_tip_radius = 0.425 * d;
+        params.pinion_start_radius = 0.4125 * d;
+        params.wheel_tip_radius = 0.59 * d;
+        params.wheel_start_radius = 0.575 * d;
+        gm_pair p;
+        const char *field = "";
+        (void)gm_pair_params_check(&params, &field, NULL);
+        if (gm_pair_init(&p, &params) == GM_OK) {
+            accepted = d;
+            place = fabs(p.phase_origin[GM_DRIVE] - p.path_start) / p.transverse_base_pitch;
+        } else {
+            refused = d;
+            GM_ASSERT_STRING(field, "center_distance");
+        }
+    }
+    GM_ASSERT_ABS(place, 1000.0, 0.1);
+}
+
+static void a_helix_below_all_rounding_is_none(void) {
+    gm_pair_params params = reference_params(REFERENCE_FACE_WIDTH);
+    params.center_distance = 72e-3;
+    params.pinion_tip_radius = params.wheel_tip_radius = NAN;
+    params.helix_angle =
+        1e-15; /* 1.7e-17 m over the face; the base pitch is rounded to 5.5e-19 m */
+    GM_ASSERT_REL(make_pair(&params).face_advance, 17.5e-18 * cos(16.0 * degree), 1e-12);
+    params.helix_angle = 1e-17;
+    GM_ASSERT_REL(make_pair(&params).face_advance, 0.0, 0.0);
+}
+
+static void the_narrowest_common_face_is_a_micrometre(void) {
+    gm_pair_params params = reference_params(1e-6);
+    GM_ASSERT_REL(make_pair(&params).face_width, 1e-6, 0.0);
+}
+
+/* A common width may repeat the common face but for rounding, 1e-9 of it. */
+static void a_common_width_may_be_rounded(void) {
+    static const struct {
+        double times;
+        int status;
+    } cases[] = {
+        {1.0 + 0.9e-9, GM_OK},
+        {1.0 - 0.9e-9, GM_OK},
+        {1.0 + 2.0e-9, GM_ERR_GEOMETRY},
+        {1.0 - 2.0e-9, GM_ERR_GEOMETRY},
+    };
+    for (int i = 0; i < 4; i++) {
+        gm_test_context("case %d", i);
+        gm_pair_params params = reference_params(20e-3 * cases[i].times);
+        params.pinion_face_width = 20e-3;
+        params.wheel_face_width = 30e-3;
+        GM_ASSERT_INT(gm_pair_params_check(&params, NULL, NULL), cases[i].status);
+        params.axial_offset = 10e-3; /* 15 of the pinion's 20 mm are left */
+        params.face_width = 15e-3 * cases[i].times;
+        GM_ASSERT_INT(gm_pair_params_check(&params, NULL, NULL), cases[i].status);
+    }
+}
+
 /* The same bounds from the other side. */
 static void racks_just_inside_the_ranges_are_taken(void) {
     gm_pair_params params = reference_params(REFERENCE_FACE_WIDTH);
@@ -1090,6 +1209,31 @@ static void thin_and_pointed_tips_are_warned_of(void) {
     }
 }
 
+/* Normal tip land = 2 r_a (psi_b - inv(alpha_a)) cos(beta_a), tan(beta_a) = tan(beta) r_a / r: 0.2 m_n is enough. */
+static void the_least_tip_land_is_a_fifth_of_a_module(void) {
+    const gm_pair p = reference_pair(REFERENCE_FACE_WIDTH);
+    for (int wheel = 0; wheel < 2; wheel++) {
+        gm_test_context("wheel %d", wheel);
+        const gm_gear *gear = wheel ? &p.wheel : &p.pinion;
+        double low = gear->tip_radius, high = gear->tip_radius + 2e-3;
+        while (high - low > 1e-12) {
+            const double r = 0.5 * (low + high);
+            const double alpha = acos(gear->base_radius / r);
+            const double land = 2.0 * r * (gear->base_half_thickness - (tan(alpha) - alpha)) *
+                                cos(atan(tan(p.helix_angle) * r / gear->reference_radius));
+            *(land > 0.2 * p.normal_module ? &low : &high) = r;
+        }
+        for (int above = 0; above < 2; above++) {
+            gm_pair_params params = reference_params(REFERENCE_FACE_WIDTH);
+            *(wheel ? &params.wheel_tip_radius : &params.pinion_tip_radius) =
+                low + (above ? 1e-8 : -1e-8);
+            const int flag = wheel ? GM_WARN_WHEEL_TIP_LAND : GM_WARN_PINION_TIP_LAND;
+            GM_ASSERT_INT(warnings_of(&params) & (GM_WARN_WHEEL_TIP_LAND | GM_WARN_PINION_TIP_LAND),
+                          above ? flag : 0);
+        }
+    }
+}
+
 static void a_start_below_the_root_form_is_warned_of(void) {
     /* A straight rack flank 0.05 m_n deeper than needed ends near rho = 7 mm: the base circle is deeper. */
     gm_pair_params params = reference_params(REFERENCE_FACE_WIDTH);
@@ -1236,6 +1380,12 @@ int main(int argc, char **argv) {
         GM_TEST(a_later_start_shortens_the_path),
         GM_TEST(pitch_angle_carries_two_doubles),
         GM_TEST(every_wrong_value_is_named),
+        GM_TEST(the_bounds_themselves_are_within_the_ranges),
+        GM_TEST(the_total_contact_ratio_ends_at_1000),
+        GM_TEST(the_place_of_the_teeth_ends_at_1000_base_pitches),
+        GM_TEST(a_helix_below_all_rounding_is_none),
+        GM_TEST(the_narrowest_common_face_is_a_micrometre),
+        GM_TEST(a_common_width_may_be_rounded),
         GM_TEST(racks_just_inside_the_ranges_are_taken),
         GM_TEST(a_rack_deeper_than_the_gear_is_refused),
         GM_TEST(a_tip_below_the_base_circle_is_blamed_on_what_was_given),
@@ -1250,6 +1400,7 @@ int main(int argc, char **argv) {
         GM_TEST(warnings_need_both_pointers),
         GM_TEST(few_teeth_without_shift_are_undercut),
         GM_TEST(thin_and_pointed_tips_are_warned_of),
+        GM_TEST(the_least_tip_land_is_a_fifth_of_a_module),
         GM_TEST(a_start_below_the_root_form_is_warned_of),
         GM_TEST(the_rack_that_is_given_cuts_the_root),
         GM_TEST(the_assumed_rack_suits_the_mates_tip),

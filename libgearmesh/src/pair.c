@@ -248,11 +248,10 @@ static problem check_fields(const gm_pair_params *params) {
     return found;
 }
 
-/* A common width that is given beside those of the gears must agree with them. */
+/* A common width that is given beside those of the gears: the narrower one, or what both faces share. */
 static problem check_common_width(const gm_pair *pair, const gm_pair_params *p) {
     const double narrower = fmin(pair->pinion.face_width, pair->wheel.face_width);
     const double rounding = FACE_WIDTH_ROUNDING * narrower;
-    const int both_given = !isnan(p->pinion_face_width) && !isnan(p->wheel_face_width);
     if (isnan(p->face_width)) {
         return no_problem;
     }
@@ -260,11 +259,9 @@ static problem check_common_width(const gm_pair *pair, const gm_pair_params *p) 
         return geometry_problem("face_width",
                                 "a common width, no larger than the face of either gear");
     }
-    if (both_given && p->face_width < narrower - rounding &&
-        fabs(p->face_width - pair->face_width) > rounding) {
-        return geometry_problem("face_width",
-                                "the width that the faces given for both gears share, or "
-                                "be left out");
+    if (p->face_width < narrower - rounding && fabs(p->face_width - pair->face_width) > rounding) {
+        return geometry_problem(
+            "face_width", "the width that the faces given for both gears share, or be left out");
     }
     return no_problem;
 }
