@@ -162,7 +162,8 @@ static int build_flanks(gear_flanks *flanks, const config *conf, const gm_pair *
     return 0;
 }
 
-int gear_flanks_load(gear_flanks *flanks, const config *conf, const gm_pair *pair, int gear) {
+int gear_flanks_load(gear_flanks *flanks, const config *conf, const gm_pair *pair,
+                     enum gm_role gear) {
     const flank_task task = task_of(conf, pair, gear);
     const int has_deviations = task.files->deviations != NULL;
     const int has_pitch = task.files->pitch != NULL;
@@ -218,7 +219,7 @@ static int note_form(config *conf, const char *flank, const gm_flanks_side_repor
     return status == 0 ? note_value(conf, flank, "error_um", 1e6 * form->error) : status;
 }
 
-int gear_flanks_note(const gear_flanks *flanks, config *conf, int gear) {
+int gear_flanks_note(const gear_flanks *flanks, config *conf, enum gm_role gear) {
     const int status = note_form(conf, flank_names[gear][GM_DRIVE], &flanks->report.drive);
 
     return status == 0 ? note_form(conf, flank_names[gear][GM_COAST], &flanks->report.coast)

@@ -17,10 +17,11 @@ typedef struct gear_flanks {
 
 /* Files and design of one gear (0 = pinion, 1 = wheel) become prepared flanks, if there are any; `flanks` is all zero
  * before. Returns 0 or an exit code after a message. */
-int gear_flanks_load(gear_flanks *flanks, const config *conf, const gm_pair *pair, int gear);
+int gear_flanks_load(gear_flanks *flanks, const config *conf, const gm_pair *pair,
+                     enum gm_role gear);
 void gear_flanks_free(gear_flanks *flanks);
 
 /* Notes for the head of the output what holds the designs of a gear. Returns 0 or EXIT_RUN_FAILED (no memory). */
-int gear_flanks_note(const gear_flanks *flanks, config *conf, int gear);
+int gear_flanks_note(const gear_flanks *flanks, config *conf, enum gm_role gear);
 
 #endif

@@ -107,7 +107,7 @@ int gear_mesh_note(const gear_mesh *mesh, config *conf) {
     const double frequency = gear_mesh_eigenfrequency(mesh, conf);
     int status = 0;
 
-    for (int gear = GM_PINION; gear <= GM_WHEEL && status == 0; ++gear) {
+    for (enum gm_role gear = GM_PINION; gear <= GM_WHEEL && status == 0; ++gear) {
         status = gear_flanks_note(&mesh->flanks[gear], conf, gear);
     }
     if (status == 0 && isfinite(frequency)) {

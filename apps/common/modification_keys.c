@@ -36,7 +36,8 @@ static const struct {
 /* The keys of one modification in one place. */
 typedef struct key_place {
     const config *conf;
-    int gear, place, kind;
+    enum gm_role gear;
+    int place, kind;
 } key_place;
 
 static const modification_values *values_of(const key_place *at) {
@@ -62,8 +63,8 @@ static const char *key_name(char name[KEY_SIZE], const key_place *at, int field)
     return name;
 }
 
-const char *modification_key_name(char name[MODIFICATION_KEY_SIZE], int gear, int place, int kind,
-                                  int field) {
+const char *modification_key_name(char name[MODIFICATION_KEY_SIZE], enum gm_role gear, int place,
+                                  int kind, int field) {
     const key_place at = {NULL, gear, place, kind};
 
     return key_name(name, &at, field);
@@ -73,7 +74,7 @@ void modification_keys_clear(config *conf) {
     const double missing = (double)NAN;
     const modification_values none = {{missing, missing, missing, missing, missing}, -1};
 
-    for (int gear = 0; gear < 2; ++gear) {
+    for (enum gm_role gear = GM_PINION; gear <= GM_WHEEL; ++gear) {
         for (int place = 0; place < PLACES; ++place) {
             for (int kind = 0; kind < GM_MODIFICATION_KINDS; ++kind) {
                 conf->modifications[gear][place][kind] = none;
@@ -98,7 +99,7 @@ static int given_range(const key_place *at) {
 }
 
 /* Where a key that counts for a flank stands: with the flank, else without. */
-static key_place source_of(const config *conf, int gear, int side, int kind, int field) {
+static key_place source_of(const config *conf, enum gm_role gear, int side, int kind, int field) {
     const key_place own = {conf, gear, 1 + side, kind};
     const key_place both = {conf, gear, BOTH_FLANKS, kind};
     const int has_own = is_range(field) ? given_range(&own) >= 0 : is_given(&own, field);
@@ -107,7 +108,7 @@ static key_place source_of(const config *conf, int gear, int side, int kind, int
 }
 
 /* The amount that counts for a flank, 0 = no modification (m). */
-static double amount_of(const config *conf, int gear, int side, int kind) {
+static double amount_of(const config *conf, enum gm_role gear, int side, int kind) {
     const key_place at = source_of(conf, gear, side, kind, MODIFICATION_AMOUNT);
 
     return is_given(&at, MODIFICATION_AMOUNT) ? values_of(&at)->value[MODIFICATION_AMOUNT] : 0;
@@ -146,7 +147,7 @@ static int complain_of_missing(const key_place *amount, int field) {
     return 1;
 }
 
-static int check_flank(const config *conf, int gear, int side, int kind) {
+static int check_flank(const config *conf, enum gm_role gear, int side, int kind) {
     const key_place amount = source_of(conf, gear, side, kind, MODIFICATION_AMOUNT);
     const key_place range = source_of(conf, gear, side, kind, MODIFICATION_LENGTH);
     const key_place width = source_of(conf, gear, side, kind, MODIFICATION_WIDTH);
@@ -165,7 +166,7 @@ static int check_flank(const config *conf, int gear, int side, int kind) {
 }
 
 /* Once for both flanks where the same key is at fault. */
-static int check_kind(const config *conf, int gear, int kind) {
+static int check_kind(const config *conf, enum gm_role gear, int kind) {
     int faults = 0;
 
     for (int place = 0; place < PLACES; ++place) {
@@ -182,7 +183,7 @@ static int check_kind(const config *conf, int gear, int kind) {
 int modification_keys_check(const config *conf) {
     int faults = 0;
 
-    for (int gear = 0; gear < 2; ++gear) {
+    for (enum gm_role gear = GM_PINION; gear <= GM_WHEEL; ++gear) {
         for (int kind = 0; kind < GM_MODIFICATION_KINDS; ++kind) {
             faults += check_kind(conf, gear, kind);
         }
@@ -219,7 +220,7 @@ static void warn_of_key(const key_place *at, int field) {
 }
 
 void modification_keys_warn(const config *conf) {
-    for (int gear = 0; gear < 2; ++gear) {
+    for (enum gm_role gear = GM_PINION; gear <= GM_WHEEL; ++gear) {
         for (int place = 0; place < PLACES; ++place) {
             for (int kind = 0; kind < GM_MODIFICATION_KINDS; ++kind) {
                 const key_place at = {conf, gear, place, kind};
@@ -237,7 +238,7 @@ void modification_keys_warn(const config *conf) {
  * The designs
  * ------------------------------------------------------------------------------------------- */
 
-static gm_modification modification_of(const config *conf, int gear, int side, int kind) {
+static gm_modification modification_of(const config *conf, enum gm_role gear, int side, int kind) {
     static const int range_by[] = {[MODIFICATION_LENGTH] = GM_RANGE_LENGTH,
                                    [MODIFICATION_RADIUS] = GM_RANGE_RADIUS,
                                    [MODIFICATION_SHARE] = GM_RANGE_SHARE};
@@ -288,7 +289,7 @@ static void describe_limit(char *text, size_t size, int field, const char *requi
     }
 }
 
-static int refuse(const config *conf, int gear, int side, const gm_modifications *design) {
+static int refuse(const config *conf, enum gm_role gear, int side, const gm_modifications *design) {
     int index = -1;
     const char *field_name = NULL;
     const char *requirement = NULL;
@@ -311,8 +312,8 @@ static int refuse(const config *conf, int gear, int side, const gm_modifications
     return EXIT_BAD_INPUT;
 }
 
-static int make_side(gear_design *design, const config *conf, const gm_pair *pair, int gear,
-                     int side) {
+static int make_side(gear_design *design, const config *conf, const gm_pair *pair,
+                     enum gm_role gear, int side) {
     gm_modifications *of = &design->of[side];
 
     of->list = design->list[side];
@@ -329,7 +330,8 @@ static int make_side(gear_design *design, const config *conf, const gm_pair *pai
     return refuse(conf, gear, side, of);
 }
 
-int gear_design_make(gear_design *design, const config *conf, const gm_pair *pair, int gear) {
+int gear_design_make(gear_design *design, const config *conf, const gm_pair *pair,
+                     enum gm_role gear) {
     memset(design, 0, sizeof *design);
 
     const int status = make_side(design, conf, pair, gear, GM_DRIVE);

@@ -20,8 +20,8 @@ typedef struct gear_design {
 enum { MODIFICATION_PLACES = 3, MODIFICATION_KEY_SIZE = 80 };
 
 /* "modifications.pinion_drive_tip_relief_um" */
-const char *modification_key_name(char name[MODIFICATION_KEY_SIZE], int gear, int place, int kind,
-                                  int field);
+const char *modification_key_name(char name[MODIFICATION_KEY_SIZE], enum gm_role gear, int place,
+                                  int kind, int field);
 
 /* Marks all keys as not given, those included that a modification does not have. */
 void modification_keys_clear(config *config);
@@ -34,6 +34,7 @@ void modification_keys_warn(const config *config);
 
 /* The designs of a gear (0 = pinion, 1 = wheel), checked against its flanks. Returns 0 or EXIT_BAD_INPUT after a
  * message. */
-int gear_design_make(gear_design *design, const config *config, const gm_pair *pair, int gear);
+int gear_design_make(gear_design *design, const config *config, const gm_pair *pair,
+                     enum gm_role gear);
 
 #endif
