@@ -27,15 +27,19 @@ int main(void) {
 
     static double memory[256]; /* of our own: the library takes none */
     gm_mesh *mesh; /* prepared once, read-only afterwards; NULL: ideal flanks on both gears */
-    if (status == GM_OK)
+    if (status == GM_OK) {
         status = gm_mesh_init(&mesh, &law, &pair, NULL, NULL, memory, sizeof memory);
+    }
 
     const gm_state state = {.pinion_angle = 1.25e-3, .wheel_angle = 0, .pinion_speed = 0.01};
     gm_mesh_result result;
-    if (status == GM_OK)
+    if (status == GM_OK) {
         status = gm_mesh_evaluate(mesh, &state, GM_WANT_DERIVATIVES, NULL, &result);
-    if (status != GM_OK)
-        return fprintf(stderr, "%s\n", gm_status_text(status)), 1;
+    }
+    if (status != GM_OK) {
+        fprintf(stderr, "%s\n", gm_status_text(status));
+        return 1;
+    }
 
     printf("force %.2f N, by pinion angle %.4g N/rad, %d pairs\n", result.force,
            result.force_by_pinion_angle, result.contact.drive_pairs);
