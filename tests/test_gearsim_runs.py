@@ -6,6 +6,7 @@ Whole runs of gearsim against closed forms and against each other.
 
     test_gearsim_runs.py GEARSIM [-v] [name of a test]...
 """
+import cmath
 import math
 import os
 import pty
@@ -206,6 +207,65 @@ class Rows(Case):
             self.assertGreater(spread(one), 0.0)
             self.assertLess(largest_difference(one, other), share * spread(one), name)
             self.assertNotEqual(one, other)
+
+
+def fourier(values):
+    """Discrete Fourier transform of 2^n values."""
+    if len(values) == 1:
+        return values
+    even, odd = fourier(values[0::2]), fourier(values[1::2])
+    turned = [cmath.exp(-2j * math.pi * k / len(values)) * value for k, value in enumerate(odd)]
+    return [a + b for a, b in zip(even, turned)] + [a - b for a, b in zip(even, turned)]
+
+
+class Means(Case):
+    """Filtered samples of force and load are means: the force from the momentum of the bodies."""
+    SPUR = ["gears.pinion_teeth=24", "gears.wheel_teeth=60", "gears.normal_module_mm=3", "gears.helix_angle_deg=0",
+            "gears.normal_pressure_angle_deg=20", "gears.center_distance_mm=126", "gears.face_width_mm=30",
+            "gears.pinion_tip_diameter_mm=78", "gears.wheel_tip_diameter_mm=186", "mesh.stiffness_N_per_m=3e8",
+            "mesh.damping_Ns_per_m=2000", "bodies.wheel_inertia_kg_m2=3e-2", "load.mean_Nm=400"]
+
+    def test_force_is_that_of_the_penetration(self):
+        """Contact is not lost: K penetration + D rate of each row, both filtered, is the force but for rounding."""
+        firm = ["load.mean_Nm=80", "load.noise_amplitude_Nm=10", "drive.start_rpm=3000", "drive.end_rpm=4000", *TIGHT]
+        simple = self.geometry(SIMPLE)["transverse_contact_ratio"]
+        for settings, factor in [([], 1), (TORQUE, 1), (["load.mean_Nm=-80"], 1), (SIMPLE, simple),
+                                 ([*SIMPLE, *TORQUE], simple), (["drive.start_rpm=-3000"], 1),
+                                 (["load.noise_interval_s=1e-7"], 1), (["output.oversampling=16"], 1)]:
+            c = self.run_columns([*firm, *settings])
+            force = [factor * (K * p + D * r) * 1e-6
+                     for p, r in zip(c["penetration_um"], c["penetration_rate_um_per_s"])]
+            self.assertGreater(min(map(abs, force)), 100.0)
+            # The rows at the start see the held past: a value of the one, a mean of the other. Noise beyond the
+            # rate of the samples folds into the one only.
+            self.assertLess(largest_difference(c["contact_force_N"][16:], force[16:]),
+                            0.02 * spread(force), settings)
+            self.assertGreater(spread(force), 1.0)
+
+    def test_force_balances_the_load_in_the_mean(self):
+        """x'' vanishes in the mean: F r_bw is the load, row by row, where it changes slowly."""
+        c = self.run_columns(["load.noise_amplitude_Nm=2", "load.noise_interval_s=5e-3", "analysis.duration_s=0.1",
+                              *SIMPLE, *TIGHT])
+        r_bw = self.geometry()["wheel_base_radius_mm"] * 1e-3
+        # The inertia takes (2 pi 50 Hz / w0)^2 = 6e-4 of the change; 2000 Hz rings in where the noise begins.
+        for force, load in list(zip(c["contact_force_N"], c["load_torque_Nm"]))[1000:]:
+            self.assert_close(force * r_bw, load, absolute=0.02)
+        self.assertGreater(spread(c["load_torque_Nm"]), 0.5)
+
+    def test_spur_gears_show_tooth_orders_alone(self):
+        """A force that jumps has lines far beyond any rate; what folds back is no order."""
+        for rpm in (7123.4, 11811.1):
+            c = self.run_columns([*self.SPUR, f"drive.start_rpm={rpm}", f"drive.end_rpm={rpm}", "analysis.duration_s=0.21",
+                                  "output.columns=contact_force_N"])
+            force, size, mesh = c["contact_force_N"][-4096:], 4096, 24 * rpm / 60 / 25600
+            # Blackman-Harris, four terms: side lobes of -92 dB beyond four places.
+            window = [0.35875 - 0.48829 * math.cos(2 * math.pi * k / size) + 0.14128 * math.cos(4 * math.pi * k / size)
+                      - 0.01168 * math.cos(6 * math.pi * k / size) for k in range(size)]
+            mean = statistics.fmean(force)
+            lines = [abs(value) for value in fourier([(f - mean) * w for f, w in zip(force, window)])]
+            first = max(lines[k] for k in range(size // 2) if abs(k - mesh * size) < 5)
+            other = [lines[k] for k in range(8, int(0.4 * size)) if abs(k / size / mesh - round(k / size / mesh)) * mesh * size > 6]
+            self.assertLess(20 * math.log10(max(other) / first), -50.0, rpm)
 
 
 class ClosedForms(Case):

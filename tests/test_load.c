@@ -141,6 +141,38 @@ static void without_amplitude_it_is_the_mean(void) {
     GM_ASSERT(load_torque(&load, 12.345) == -3.25);
 }
 
+/*
+ * Against Gauss's rule of three points within each piece, which is exact for a cubic times a straight line. The ends
+ * lie anywhere; no noise counts before t = 0, while the weight is that of the whole line.
+ */
+static void integral_is_that_of_the_pieces(void) {
+    static const double nodes[3] = {0.1127016653792583, 0.5, 0.8872983346207417};
+    static const double shares[3] = {5.0 / 18.0, 8.0 / 18.0, 5.0 / 18.0};
+    const load_signal load = load_create(20.0, 10.0, interval, 7);
+    uint64_t seed = 3;
+
+    for (int i = 0; i < 200; ++i) {
+        const double from = gm_test_uniform(&seed, -2.0, 8.0) * interval;
+        const double to = from + gm_test_uniform(&seed, 0.01, 6.0) * interval;
+        const double first = gm_test_uniform(&seed, -1.0, 1.0);
+        const double last = gm_test_uniform(&seed, -1.0, 1.0);
+        double expected = 0.0;
+
+        for (double begin = fmax(from, 0.0), end; begin < to; begin = end) {
+            end = fmin((floor(begin / interval + 1e-9) + 1.0) * interval, to);
+            for (int k = 0; k < 3; ++k) {
+                const double t = begin + nodes[k] * (end - begin);
+                const double weight = first + (last - first) * (t - from) / (to - from);
+                expected += shares[k] * (end - begin) * weight * (load_torque(&load, t) - 20.0);
+            }
+        }
+        gm_test_context("from %g to %g", from, to);
+        GM_ASSERT_ABS(load_noise_integral(&load, from, to, first, last), expected,
+                      1e-12 * interval);
+    }
+    GM_ASSERT(load_noise_integral(&load, -3.0 * interval, 0.0, 1.0, 1.0) == 0.0);
+}
+
 int main(int argc, char **argv) {
     static const gm_test tests[] = {
         GM_TEST(same_seed_same_numbers),
@@ -152,6 +184,7 @@ int main(int argc, char **argv) {
         GM_TEST(half_way_weights_are_those_of_catmull_rom),
         GM_TEST(any_order_of_calls_gives_the_same),
         GM_TEST(without_amplitude_it_is_the_mean),
+        GM_TEST(integral_is_that_of_the_pieces),
     };
     return gm_test_main("gearsim.load", tests, GM_TEST_COUNT(tests), argc, argv);
 }

@@ -157,5 +157,6 @@ const char *config_text(const config *config, const char *section_and_key);
 /* One more line of provenance, at most PROVENANCE_NOTES of them: a value that follows from the keys. Returns 0 or
  * EXIT_RUN_FAILED (no memory). */
 int config_note(config *config, const char *name, double value);
+int config_note_text(config *config, const char *name, const char *text);
 
 #endif

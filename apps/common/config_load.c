@@ -149,6 +149,10 @@ int config_note(config *conf, const char *name, double value) {
     return add_provenance(conf, name, text);
 }
 
+int config_note_text(config *conf, const char *name, const char *text) {
+    return add_provenance(conf, name, text);
+}
+
 /* Everything at its default. */
 static int start(config *conf, const config_request *request) {
     const size_t keys = (size_t)gearsim_keys.count;

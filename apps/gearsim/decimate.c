@@ -18,12 +18,12 @@ static const double kaiser_beta = 9.1;
 
 struct decimator {
     int channels;
-    int half;        /* samples on each side of the middle */
-    int length;      /* 2 half + 1 */
-    int next;        /* place of the next sample */
-    int started;     /* the first sample fills the past */
-    int *filtered;   /* [channels] */
-    double *weights; /* [length] */
+    int half;                /* samples on each side of the middle */
+    int length;              /* 2 half + 1 */
+    int next;                /* place of the next sample */
+    int started;             /* the first sample fills the past */
+    enum sample_kind *kinds; /* [channels] */
+    double *weights;         /* [SAMPLE_KINDS - 1][length], from SAMPLE_VALUES on */
     double
         *samples; /* [channels][2 length]: a ring written twice, so that the last `length` samples
                         are always contiguous, from `next` on */
@@ -44,22 +44,55 @@ static double sinc(double x) {
     return x == 0.0 ? 1.0 : sin(pi * x) / (pi * x);
 }
 
-/* Ideal low-pass at half the row's rate under a Kaiser window, scaled to the sum 1. */
-static void design(double weights[], int half, int factor) {
+/* The gain of a mean at a frequency in terms of the rate of the samples: it is lifted by the filter. */
+static double gain_of_mean(enum sample_kind kind, double frequency) {
+    const double box = sinc(frequency);
+
+    return kind == SAMPLE_HAT ? box * box : kind == SAMPLE_BOX ? box : 1.0;
+}
+
+/*
+ * Weight i of the ideal low-pass at half the row's rate over the gain of the mean: its inverse transform, the integral
+ * of cos(2 pi f i) / gain(f) from -1/(2 factor) to 1/(2 factor), by Simpson's rule. At most 7.5 periods of the
+ * cosine fall into half of it: 256 intervals leave an error of 1e-7.
+ */
+static double ideal_weight(enum sample_kind kind, int i, int factor) {
+    enum { INTERVALS = 256 };
+    const double step = 0.5 / factor / INTERVALS;
     double sum = 0.0;
 
-    for (int i = -half; i <= half; ++i) {
+    if (kind == SAMPLE_VALUES) {
+        return sinc((double)i / factor);
+    }
+    for (int k = 0; k <= INTERVALS; ++k) {
+        const double f = k * step;
+        const double share = k == 0 || k == INTERVALS ? 1.0 : k % 2 == 1 ? 4.0 : 2.0;
+        sum += share * cos(2.0 * pi * f * i) / gain_of_mean(kind, f);
+    }
+    return 2.0 * factor * sum * step / 3.0;
+}
+
+/* The ideal low-pass under a Kaiser window, scaled to the sum 1. */
+static void design(double weights[], enum sample_kind kind, int half, int factor) {
+    double sum = 0.0;
+
+    for (int i = 0; i <= half; ++i) {
         const double reach = half > 0 ? (double)i / (half + 1) : 0.0;
-        weights[half + i] =
-            sinc((double)i / factor) * bessel_i0(kaiser_beta * sqrt(1.0 - reach * reach));
-        sum += weights[half + i];
+        const double window = bessel_i0(kaiser_beta * sqrt(1.0 - reach * reach));
+
+        weights[half + i] = weights[half - i] = window * ideal_weight(kind, i, factor);
+        sum += (i > 0 ? 2.0 : 1.0) * weights[half + i];
     }
     for (int i = 0; i <= 2 * half; ++i) {
         weights[i] /= sum;
     }
 }
 
-decimator *decimator_create(int factor, int channels, const int filtered[]) {
+static double *weights_of(const decimator *filter, enum sample_kind kind) {
+    return filter->weights + (size_t)(kind - SAMPLE_VALUES) * (size_t)filter->length;
+}
+
+decimator *decimator_create(int factor, int channels, const enum sample_kind kinds[]) {
     decimator *created = calloc(1, sizeof *created);
     if (created == NULL) {
         return NULL;
@@ -69,22 +102,26 @@ decimator *decimator_create(int factor, int channels, const int filtered[]) {
     created->channels = channels;
     created->half = factor > 1 ? HALF_WIDTH_ROWS * factor : 0;
     created->length = 2 * created->half + 1;
-    created->filtered = malloc(count * sizeof *created->filtered);
-    created->weights = malloc((size_t)created->length * sizeof *created->weights);
+    created->kinds = malloc(count * sizeof *created->kinds);
+    created->weights =
+        malloc((SAMPLE_KINDS - 1) * (size_t)created->length * sizeof *created->weights);
     created->samples = malloc(count * 2 * (size_t)created->length * sizeof *created->samples);
-    if (created->filtered == NULL || created->weights == NULL || created->samples == NULL) {
+    if (created->kinds == NULL || created->weights == NULL || created->samples == NULL) {
         decimator_free(created);
         return NULL;
     }
 
-    memcpy(created->filtered, filtered, count * sizeof *filtered);
-    design(created->weights, created->half, factor);
+    memcpy(created->kinds, kinds, count * sizeof *kinds);
+    for (int kind = SAMPLE_VALUES; kind < SAMPLE_KINDS; ++kind) {
+        design(weights_of(created, (enum sample_kind)kind), (enum sample_kind)kind, created->half,
+               factor);
+    }
     return created;
 }
 
 void decimator_free(decimator *filter) {
     if (filter != NULL) {
-        free(filter->filtered);
+        free(filter->kinds);
         free(filter->weights);
         free(filter->samples);
         free(filter);
@@ -95,8 +132,8 @@ int decimator_delay(const decimator *filter) {
     return filter->half;
 }
 
-const double *decimator_weights(const decimator *filter) {
-    return filter->weights;
+const double *decimator_weights(const decimator *filter, enum sample_kind kind) {
+    return weights_of(filter, kind);
 }
 
 static void hold(decimator *filter, const double values[]) {
@@ -140,8 +177,10 @@ void decimator_values(const decimator *filter, double values[]) {
     const double *samples = filter->samples + filter->next;
 
     for (int channel = 0; channel < filter->channels; ++channel) {
-        values[channel] = filter->filtered[channel]
-                              ? weighted_sum(samples, filter->weights, filter->half)
+        const enum sample_kind kind = filter->kinds[channel];
+
+        values[channel] = kind != SAMPLE_PLAIN
+                              ? weighted_sum(samples, weights_of(filter, kind), filter->half)
                               : samples[filter->half];
         samples += 2 * (size_t)filter->length;
     }

@@ -6,8 +6,11 @@
  * into it, then every factor-th value.
  *
  * The filter has linear phase and is centred on the row's time: no delay. In terms of the rate of the
- * rows: flat within 0.01 % up to 0.4, and at least 90 dB down from 0.6 on (Kaiser window, 30 samples per
- * factor and one). What lies between folds to 0.4..0.5 of the rate and stays there.
+ * rows: flat within 0.01 % up to 0.4 (SAMPLE_HAT with factor 2: 0.03 %), and at least 90 dB down from 0.6 on (Kaiser
+ * window, 30 samples per factor and one). What lies between folds to 0.4..0.5 of the rate and stays there.
+ *
+ * Samples may be values at their time, or means around it: then the filter lifts what the mean has taken off, so that
+ * rows are the same for a slow signal, but what lies beyond the rate of the samples does not fold into them.
  *
  * Ends: before the first sample its value is taken as held. A row needs the samples up to 15 rows after
  * it, so the run goes on that far beyond its end.
@@ -17,11 +20,19 @@
 
 typedef struct decimator decimator;
 
+/* What the samples of a channel are. */
+enum sample_kind {
+    SAMPLE_PLAIN,  /* not to be filtered: delayed alike */
+    SAMPLE_VALUES, /* values at the sample's time */
+    SAMPLE_BOX,    /* means over the sample's period, from half of it before to half of it after */
+    SAMPLE_HAT,    /* means under a triangle, from one period before to one after */
+    SAMPLE_KINDS
+};
+
 /*
- * For samples of `channels` values each, of which those with filtered[channel] != 0 are filtered and the
- * others delayed alike. Factor 1: no filter, no delay. NULL: out of memory.
+ * For samples of `channels` values each, of the kinds given. Factor 1: no filter, no delay. NULL: out of memory.
  */
-decimator *decimator_create(int factor, int channels, const int filtered[]);
+decimator *decimator_create(int factor, int channels, const enum sample_kind kinds[]);
 void decimator_free(decimator *filter);
 
 /* How many samples after it a sample's filtered value is complete: a multiple of the factor. */
@@ -32,7 +43,7 @@ void decimator_push(decimator *filter, const double values[]);
 /* Values at the sample that was pushed decimator_delay() samples before the last one. */
 void decimator_values(const decimator *filter, double values[]);
 
-/* Weights of the filter, decimator_delay() on each side of the middle; their sum is 1. */
-const double *decimator_weights(const decimator *filter);
+/* Weights for a kind but the plain one, decimator_delay() on each side of the middle; their sum is 1. */
+const double *decimator_weights(const decimator *filter, enum sample_kind kind);
 
 #endif

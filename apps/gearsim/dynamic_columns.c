@@ -3,6 +3,8 @@
 
 #include "dynamic_columns.h"
 
+#include <stddef.h>
+
 static const double rpm = 60.0 / 6.283185307179586; /* of 1 rad/s */
 static const double micro = 1e6;
 
@@ -52,8 +54,16 @@ static double contact_force(const dynamic_sample *sample) {
     return sample->mesh.force;
 }
 
+static double mean_contact_force(const dynamic_sample *sample) {
+    return sample->mean_force;
+}
+
 static double load(const dynamic_sample *sample) {
     return load_torque(&sample->model->load, sample->time);
+}
+
+static double mean_load(const dynamic_sample *sample) {
+    return sample->mean_load;
 }
 
 static double pairs_in_contact(const dynamic_sample *sample) {
@@ -62,17 +72,17 @@ static double pairs_in_contact(const dynamic_sample *sample) {
 
 /* Angles, time and the pinion's speed grow steadily, pairs are counts: a filter has nothing to do there. */
 const dynamic_column dynamic_columns[] = {
-    {"time_s", 0, NEEDS_NOTHING, time_of},
-    {"pinion_speed_rpm", 0, NEEDS_NOTHING, pinion_speed},
-    {"wheel_speed_rpm", 1, NEEDS_NOTHING, wheel_speed},
-    {"pinion_angle_rad", 0, NEEDS_NOTHING, pinion_angle},
-    {"wheel_angle_rad", 0, NEEDS_NOTHING, wheel_angle},
-    {"dte_um", 1, NEEDS_NOTHING, transmission_error},
-    {"penetration_um", 1, NEEDS_MESH, penetration},
-    {"penetration_rate_um_per_s", 1, NEEDS_MESH, penetration_rate},
-    {"contact_force_N", 1, NEEDS_MESH, contact_force},
-    {"load_torque_Nm", 1, NEEDS_NOTHING, load},
-    {"pairs_in_contact", 0, NEEDS_PAIRS, pairs_in_contact},
+    {"time_s", 0, NEEDS_TIME, time_of, NULL},
+    {"pinion_speed_rpm", 0, NEEDS_MOTION, pinion_speed, NULL},
+    {"wheel_speed_rpm", 1, NEEDS_MOTION, wheel_speed, NULL},
+    {"pinion_angle_rad", 0, NEEDS_MOTION, pinion_angle, NULL},
+    {"wheel_angle_rad", 0, NEEDS_MOTION, wheel_angle, NULL},
+    {"dte_um", 1, NEEDS_MOTION, transmission_error, NULL},
+    {"penetration_um", 1, NEEDS_MESH, penetration, NULL},
+    {"penetration_rate_um_per_s", 1, NEEDS_MESH, penetration_rate, NULL},
+    {"contact_force_N", 1, NEEDS_MESH, contact_force, mean_contact_force},
+    {"load_torque_Nm", 1, NEEDS_TIME, load, mean_load},
+    {"pairs_in_contact", 0, NEEDS_PAIRS, pairs_in_contact, NULL},
 };
 
 const int dynamic_column_count = sizeof dynamic_columns / sizeof dynamic_columns[0];

@@ -16,13 +16,16 @@ typedef struct dynamic_sample {
     double time; /* s */
     gear_motion motion;
     gm_mesh_result mesh; /* only where some column asked for needs it */
+    double mean_force;   /* about the time, only where samples are filtered (N) */
+    double mean_load;    /* likewise (N m) */
 } dynamic_sample;
 
-/* What a column takes from the mesh; the more, the dearer. */
+/* What a column takes; the more, the dearer. */
 enum column_need {
-    NEEDS_NOTHING,
-    NEEDS_MESH, /* the penetration */
-    NEEDS_PAIRS /* and the pairs that touch, which a look-up has to count */
+    NEEDS_TIME,   /* and the load */
+    NEEDS_MOTION, /* angles, speeds and x at the time */
+    NEEDS_MESH,   /* the penetration */
+    NEEDS_PAIRS   /* and the pairs that touch, which a look-up has to count */
 };
 
 typedef struct dynamic_column {
@@ -30,6 +33,9 @@ typedef struct dynamic_column {
     int is_filtered;  /* by the low-pass of output.oversampling */
     enum column_need need;
     double (*value)(const dynamic_sample *sample);
+
+    /* In place of the value where samples are filtered: a mean about the time, which needs no mesh. NULL: none. */
+    double (*mean)(const dynamic_sample *sample);
 } dynamic_column;
 
 extern const dynamic_column dynamic_columns[];

@@ -27,7 +27,12 @@ typedef struct dynamic_run {
     progress progress;
     int factor; /* samples per row */
     int is_wanted[COLUMNS_MAX];
-    enum column_need row_need;    /* the most that a column asked for needs of the mesh, */
+    enum sample_kind mean_kind; /* of the columns that show means, SAMPLE_PLAIN: none does */
+    int is_started;             /* there is a sample before */
+    double edge_time;           /* where the mean of the sample before has its end or its middle, */
+    gear_motion edge;           /* and the motion there */
+    gear_motion next;           /* at the next sample */
+    enum column_need row_need;  /* the most that a column asked for needs of the mesh, */
     enum column_need sample_need; /* and of the mesh between the rows, as it is filtered */
     double rows;                  /* number of rows, a whole number */
     dynamic_sample sample;
@@ -53,34 +58,129 @@ static int see_mesh(dynamic_run *run, enum column_need need) {
     return 0;
 }
 
-/* Values at a time; those that nobody needs are left as they were. */
-static int take_sample(dynamic_run *run, double time, int of_row) {
-    const enum column_need need = of_row ? run->row_need : run->sample_need;
+/* Motion at a time. */
+static int see_motion(dynamic_run *run, double time, gear_motion *motion) {
     double state[STATES_MAX];
-    int failed = integrator_advance(run->solver, time, state);
+    const int failed = integrator_advance(run->solver, time, state);
 
+    if (failed == EXIT_INTERRUPTED) {
+        snprintf(run->why, sizeof run->why, "interrupted at t = %.9g s", time);
+    } else if (failed) {
+        snprintf(run->why, sizeof run->why, "%s", integrator_failure(run->solver));
+    } else {
+        *motion = model_motion(&run->model, time, state);
+    }
+    return failed;
+}
+
+/* Time of a sample: divided once, so that k / rate is the time of row k to the last bit. */
+static double sample_time(const dynamic_run *run, double row, double sample) {
+    return (row + sample / run->factor) / run->conf->output_rate;
+}
+
+/* Means of force and load with the mean of x'' and the integral of the noise. */
+static void set_means(dynamic_run *run, double acceleration, double noise) {
+    dynamic_sample *sample = &run->sample;
+
+    sample->mean_load = run->model.load.mean + noise;
+    sample->mean_force = model_mean_force(&run->model, sample->mean_load, acceleration);
+}
+
+/* Over the sample's period: from the middle between two samples to the next, x'' from the change of x'. */
+static int see_box_means(dynamic_run *run, double row, int i) {
+    const double end = sample_time(run, row, i + 0.5);
+    gear_motion motion;
+    const int failed = see_motion(run, end, &motion);
     if (failed) {
-        if (failed == EXIT_INTERRUPTED) {
-            snprintf(run->why, sizeof run->why, "interrupted at t = %.9g s", time);
-        } else {
-            snprintf(run->why, sizeof run->why, "%s", integrator_failure(run->solver));
-        }
         return failed;
     }
 
-    /* Where the gears are, and how they touch if a column needs to know. */
-    run->sample.time = time;
-    run->sample.motion = model_motion(&run->model, time, state);
-    if (need != NEEDS_NOTHING) {
-        failed = see_mesh(run, need);
-        if (failed) {
-            return failed;
-        }
+    /* Before t = 0 the gears rest against each other. */
+    const double begin = run->is_started ? run->edge_time : -end;
+    const double before = run->is_started ? run->edge.offset_rate : 0.0;
+    const double weight = 1.0 / (end - begin);
+    set_means(run, (motion.offset_rate - before) * weight,
+              load_noise_integral(&run->model.load, begin, end, weight, weight));
+
+    run->edge_time = end;
+    run->edge = motion;
+    return 0;
+}
+
+/* Under a triangle from the sample before to the next, x'' from the second difference of x. */
+static int see_hat_means(dynamic_run *run, double row, int i) {
+    const double middle = run->sample.time, end = sample_time(run, row, i + 1.0);
+    gear_motion motion;
+    const int failed = see_motion(run, end, &motion);
+    if (failed) {
+        return failed;
     }
 
-    for (int i = 0; i < dynamic_column_count; ++i) {
-        if (run->is_wanted[i] && (of_row || dynamic_columns[i].is_filtered)) {
-            run->values[i] = dynamic_columns[i].value(&run->sample);
+    const double x = run->sample.motion.offset;
+    const double begin = run->is_started ? run->edge_time : middle - (end - middle);
+    const double before = run->is_started ? run->edge.offset : x;
+    const double peak = 2.0 / (end - begin);
+    const double rise = (x - before) / (middle - begin),
+                 fall = (motion.offset - x) / (end - middle);
+    set_means(run, peak * (fall - rise),
+              load_noise_integral(&run->model.load, begin, middle, 0.0, peak) +
+                  load_noise_integral(&run->model.load, middle, end, peak, 0.0));
+
+    run->edge_time = middle;
+    run->edge = run->sample.motion;
+    run->next = motion;
+    return 0;
+}
+
+/* The motion at the sample's time, where it is needed; the triangle of the sample before has ended there. */
+static int see_sample_motion(dynamic_run *run, enum column_need need) {
+    if (run->mean_kind == SAMPLE_HAT && run->is_started) {
+        run->sample.motion = run->next;
+        return 0;
+    }
+    if (run->mean_kind == SAMPLE_BOX && run->is_started && need == NEEDS_TIME) {
+        run->sample.motion = run->edge; /* near enough for the display of progress */
+        return 0;
+    }
+    return see_motion(run, run->sample.time, &run->sample.motion);
+}
+
+static int see_means(dynamic_run *run, double row, int i) {
+    switch (run->mean_kind) {
+    case SAMPLE_BOX:
+        return see_box_means(run, row, i);
+    case SAMPLE_HAT:
+        return see_hat_means(run, row, i);
+    default:
+        return 0;
+    }
+}
+
+/* Sample i of a row's period; values that nobody needs are left as they were. */
+static int take_sample(dynamic_run *run, double row, int i) {
+    const int of_row = i == 0;
+    const enum column_need need = of_row ? run->row_need : run->sample_need;
+
+    /* Where the gears are, how they touch if a column needs to know, and what they do about that time. */
+    run->sample.time = sample_time(run, row, i);
+    int failed = see_sample_motion(run, need);
+    if (!failed && need >= NEEDS_MESH) {
+        failed = see_mesh(run, need);
+    }
+    if (!failed) {
+        failed = see_means(run, row, i);
+    }
+    if (failed) {
+        return failed;
+    }
+    run->is_started = 1;
+
+    for (int k = 0; k < dynamic_column_count; ++k) {
+        const dynamic_column *column = &dynamic_columns[k];
+        if (run->is_wanted[k] && (of_row || column->is_filtered)) {
+            run->values[k] =
+                (run->factor > 1 && column->mean != NULL ? column->mean
+                                                         : column->value)(&run->sample);
         }
     }
     return 0;
@@ -104,9 +204,7 @@ static void tell_progress(dynamic_run *run) {
 /* Samples of one row period, the first of them at the row's time itself. */
 static int take_row_period(dynamic_run *run, double row) {
     for (int i = 0; i < run->factor; ++i) {
-        /* Divided once: k / rate is the time of row k to the last bit. */
-        const double time = (row + (double)i / run->factor) / run->conf->output_rate;
-        const int failed = take_sample(run, time, i == 0);
+        const int failed = take_sample(run, row, i);
         if (failed) {
             return failed;
         }
@@ -120,7 +218,8 @@ static int take_row_period(dynamic_run *run, double row) {
             double values[COLUMNS_MAX];
             decimator_values(run->filter, values);
             if (output_row(run->output, values) != 0) {
-                snprintf(run->why, sizeof run->why, "the disk took no more at t = %.9g s", time);
+                snprintf(run->why, sizeof run->why, "the disk took no more at t = %.9g s",
+                         run->sample.time);
                 return EXIT_RUN_FAILED;
             }
             if (complete + 1.0 >= run->rows) {
@@ -171,26 +270,48 @@ static enum column_need larger(enum column_need a, enum column_need b) {
     return a > b ? a : b;
 }
 
+/*
+ * How means are taken. A force that jumps has lines far beyond the samples' rate, which the triangle takes off twice
+ * as well; that of helical gears has next to none, and x' alone is known better than the second difference of x.
+ */
+static enum sample_kind mean_kind(const config *conf, const gear_mesh *gears) {
+    return conf->model == MODEL_3D && gears->pair.face_advance == 0.0 ? SAMPLE_HAT : SAMPLE_BOX;
+}
+
+/* What the filter gets of a column. */
+static enum sample_kind kind_of(const dynamic_run *run, const dynamic_column *column) {
+    if (!column->is_filtered) {
+        return SAMPLE_PLAIN;
+    }
+    return run->factor > 1 && column->mean != NULL ? mean_kind(run->conf, run->model.gears)
+                                                   : SAMPLE_VALUES;
+}
+
 /* What is asked for decides what has to be computed, and whether there is anything to filter. */
 static int start_filter(dynamic_run *run) {
-    int filtered[COLUMNS_MAX];
+    enum sample_kind kinds[COLUMNS_MAX];
     int any = 0;
 
     for (int i = 0; i < dynamic_column_count; ++i) {
-        const dynamic_column *column = &dynamic_columns[i];
         run->is_wanted[i] = output_wants(run->output, i);
-        filtered[i] = run->is_wanted[i] && column->is_filtered;
-        any |= filtered[i];
+        any |= run->is_wanted[i] && dynamic_columns[i].is_filtered;
+    }
+    run->factor = any ? run->conf->oversampling : 1;
 
-        if (run->is_wanted[i]) {
+    for (int i = 0; i < dynamic_column_count; ++i) {
+        const dynamic_column *column = &dynamic_columns[i];
+
+        kinds[i] = run->is_wanted[i] ? kind_of(run, column) : SAMPLE_PLAIN;
+        if (kinds[i] == SAMPLE_BOX || kinds[i] == SAMPLE_HAT) {
+            run->mean_kind = kinds[i];
+        } else if (run->is_wanted[i]) {
             run->row_need = larger(run->row_need, column->need);
         }
-        if (filtered[i]) {
+        if (kinds[i] == SAMPLE_VALUES) {
             run->sample_need = larger(run->sample_need, column->need);
         }
     }
-    run->factor = any ? run->conf->oversampling : 1;
-    run->filter = decimator_create(run->factor, dynamic_column_count, filtered);
+    run->filter = decimator_create(run->factor, dynamic_column_count, kinds);
     return run->filter != NULL ? 0 : message_no_memory(run->conf->messages);
 }
 
@@ -230,6 +351,22 @@ static int end_run(dynamic_run *run, int exit_code) {
 
     const int closed = output_close(run->output, exit_code != 0 ? run->why : NULL);
     return exit_code != 0 ? exit_code : closed;
+}
+
+int dynamics_note(const gear_mesh *gears, config *conf) {
+    char text[200] = "values at the time of the row";
+
+    if (conf->analysis != ANALYSIS_DYNAMIC) {
+        return 0;
+    }
+    if (conf->oversampling > 1) {
+        snprintf(text, sizeof text,
+                 "low-pass filtered, contact_force_N and load_torque_Nm from means (%s of %.6g s), "
+                 "but time_s, pinion_speed_rpm, angles and pairs_in_contact",
+                 mean_kind(conf, gears) == SAMPLE_HAT ? "triangle, each side" : "box",
+                 1.0 / (conf->output_rate * conf->oversampling));
+    }
+    return config_note_text(conf, "sampling", text) == 0 ? 0 : message_no_memory(conf->messages);
 }
 
 int dynamics_run(const config *conf, const gear_mesh *gears) {

@@ -65,3 +65,46 @@ double load_torque(const load_signal *load, double time) {
     load_noise_cubic(load, k, c);
     return load->mean + c[0] + s * (c[1] + s * (c[2] + s * c[3]));
 }
+
+/* Integral of weight times cubic over the part [from, to] of a piece, in its own s; the weight is w[0] + w[1] s. */
+static double piece_integral(const double c[4], const double w[2], double from, double to) {
+    double from_power = 1.0, to_power = 1.0, sum = 0.0;
+
+    for (int i = 0; i < 5; ++i) {
+        const double coefficient = (i < 4 ? w[0] * c[i] : 0.0) + (i > 0 ? w[1] * c[i - 1] : 0.0);
+
+        from_power *= from;
+        to_power *= to;
+        sum += coefficient * (to_power - from_power) / (i + 1);
+    }
+    return sum;
+}
+
+double load_noise_integral(const load_signal *load, double from, double to, double first_weight,
+                           double last_weight) {
+    if (load->amplitude == 0.0 || !(to > 0.0) || !(to > from)) {
+        return 0.0;
+    }
+
+    /* In units of the interval; the weight stays that of the whole line where the part before 0 is left out. */
+    const double h = load->interval;
+    const double slope = (last_weight - first_weight) * h / (to - from);
+    const double end = to / h;
+    double position = fmax(from, 0.0) / h;
+    double sum = 0.0;
+
+    /* Beyond 2^52 intervals there is no noise, see load_torque(). */
+    if (!(end < 0x1p52)) {
+        return 0.0;
+    }
+    for (int64_t k = (int64_t)position; position < end; ++k) {
+        const double next = fmin((double)k + 1.0, end);
+        const double weight[2] = {first_weight + slope * ((double)k - from / h), slope};
+        double c[4];
+
+        load_noise_cubic(load, k, c);
+        sum += piece_integral(c, weight, position - (double)k, next - (double)k);
+        position = next;
+    }
+    return h * sum;
+}

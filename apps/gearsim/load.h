@@ -28,6 +28,13 @@ void load_noise_cubic(const load_signal *load, int64_t k, double coefficients[4]
 /* M_w(t), constant cost at any t (N m). */
 double load_torque(const load_signal *load, double time);
 
+/*
+ * Integral of the noise from one time to a later one, weighted by a straight line between the weights at both, exact:
+ * the sum of the closed forms of its cubic pieces (weight times N m s). No noise before t = 0, where the gears rest.
+ */
+double load_noise_integral(const load_signal *load, double from, double to, double first_weight,
+                           double last_weight);
+
 /* Noise value k as a share of the amplitude, uniform in (-1, 1). */
 double load_noise_value(const load_signal *load, int64_t k);
 

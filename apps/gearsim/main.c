@@ -59,6 +59,9 @@ static int load_and_perform(const arguments *args) {
     if (status == 0) {
         status = gear_mesh_note(&mesh, &conf);
         if (status == 0) {
+            status = dynamics_note(&mesh, &conf);
+        }
+        if (status == 0) {
             status = perform(args->task, &conf, &mesh);
         }
         gear_mesh_close(&mesh);

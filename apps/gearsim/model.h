@@ -88,6 +88,12 @@ gear_motion model_motion(const gear_model *model, double time, const double stat
 int model_evaluate(const gear_model *model, const gear_motion *motion, int wanted,
                    gm_mesh_result *result);
 
+/*
+ * Mean of the force over a time in which the load has the mean given (N m) and x'' the mean acceleration (m/s2): the
+ * momentum that neither load nor drive accounts for has come through the mesh. Exact, whatever the force does meanwhile.
+ */
+double model_mean_force(const gear_model *model, double load, double acceleration);
+
 /* d state / dt, and the contact that it belongs to. Returns a library status: > 0 a smaller step may help,
  * < 0 it cannot. */
 int model_derivative(const gear_model *model, double time, const double state[],
