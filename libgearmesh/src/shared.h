@@ -2,8 +2,8 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 
 /*
- * What the core and gearmesh_io share and users never see: constants, limits, short geometry, random bits. All of it is inline,
- * so that gearmesh_io calls nothing of the core that its public header does not declare.
+ * What the core and gearmesh_io share and users never see: constants, limits, short geometry, random bits. All of it
+ * is inline, so that gearmesh_io calls nothing of the core that its public header does not declare.
  */
 #ifndef GEARMESH_SHARED_H
 #define GEARMESH_SHARED_H

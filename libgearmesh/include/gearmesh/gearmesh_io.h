@@ -336,7 +336,7 @@ typedef struct gm_flank_wave {
     double amplitude; /**< along the surface normal, m, >= 0 */
 } gm_flank_wave;
 
-/** An amount that is distributed normally from flank to flank (never farther from the mean than 6 standard deviations). */
+/** An amount that is distributed normally from flank to flank, never beyond 6 standard deviations from the mean. */
 typedef struct gm_scatter_normal {
     double mean;      /**< m */
     double deviation; /**< standard deviation, m, >= 0 */
@@ -403,7 +403,7 @@ GM_API void gm_generate_options_default(gm_generate_options *options);
  * Makes flanks of a gear from random numbers; every tooth is different.
  *
  * Of a class: with the default options of gm_quality_evaluate(), the worst value of every kind is `share` times its
- * tolerance, to 1e-9 m. With scatter: amounts are drawn for each flank; gm_quality_evaluate() says what they measure to.
+ * tolerance, to 1e-9 m. With scatter: amounts are drawn for each flank; gm_quality_evaluate() tells their class.
  *
  * @param[out] deviations  a set for every flank; free it with gm_deviations_free(). All zero on an error
  * @param[out] pitch       all flanks; free it with gm_pitch_free(). All zero on an error
@@ -465,8 +465,8 @@ typedef struct gm_pitch_point {
     int tooth; /**< as in gm_trace */
     int flank; /**< as in gm_trace */
     /** Arc at the measuring circle in the transverse section (m). Cumulative: how far the flank stands ahead of its
-     *  place in the direction of counting. Single: how much too long the pitch from the flank before (tooth - 1) to this
-     *  one is */
+     *  place in the direction of counting. Single: how much too long the pitch from the flank before (tooth - 1)
+     *  to this one is */
     double value;
     long line; /**< in the file; 0 = unknown */
 } gm_pitch_point;
@@ -495,7 +495,7 @@ typedef struct gm_measurement {
     int counting;
     int first_number; /**< number of the first tooth, 0 or 1; the last is z - 1 higher [1] */
     int first_tooth;  /**< which tooth of gearmesh that is, 0 .. z - 1 [0] */
-    /** Deviations of traces are 0 = along the surface normal, 1 = in the transverse section along the base tangent [0] */
+    /** Deviations of traces: 0 = along the surface normal, 1 = in the transverse section along the base tangent [0] */
     int transverse;
     /** Measuring circle of the pitch, from base to tip circle, m [NaN: reference diameter] */
     double pitch_diameter;
@@ -505,10 +505,10 @@ typedef struct gm_measurement {
 GM_API void gm_measurement_default(gm_measurement *measurement);
 
 /** GM_DRIVE or GM_COAST for a measured flank: from face II, left is drive, on both gears; -1 if the flank
- *  or the datum face is none. */
+ *  or the datum face is unknown. */
 GM_API int gm_measurement_side(const gm_measurement *measurement, int flank);
 
-/** Which tooth of gearmesh a number on the machine is, 0 .. teeth - 1; -1 if it is none of this gear. */
+/** Which tooth of gearmesh a number on the machine is, 0 .. teeth - 1; -1 if the gear has no such tooth. */
 GM_API int gm_measurement_tooth(const gm_measurement *measurement, const gm_pair *pair, int wheel,
                                 int number);
 

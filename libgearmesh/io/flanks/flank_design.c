@@ -1,7 +1,7 @@
 /* SPDX-FileCopyrightText: The gearmesh authors */
 /* SPDX-License-Identifier: BSD-3-Clause */
 
-/* The ramps of a flank's designed modifications, and the table of the others, on a grid that refines that of the file. */
+/* The ramps of a flank's designed modifications, and the table of the others on a refined grid of the file. */
 
 #include "flank_design.h"
 

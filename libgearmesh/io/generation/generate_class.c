@@ -47,7 +47,7 @@ static double draw_sign(generator *make) {
     return gmi_random_bits(make->random) >> 63 ? 1.0 : -1.0;
 }
 
-/* Uniform in 0 .. count - 1, as good as it need be. */
+/* Uniform in 0 .. count - 1, but for a share of count / 2^64. */
 static int draw_below(generator *make, int count) {
     return (int)(gmi_random_bits(make->random) % (uint64_t)count);
 }

@@ -24,7 +24,8 @@ enum { LEAST_REPEATS = 3, LEAST_POINTS_FOR_ZERO = 20 };
 /* A filter smears a step over up to so many intervals; so many intervals behind it show the new level. */
 enum { WIDEST_STEP = 4, LEVEL_INTERVALS = 2 };
 
-/* On the new level neighbours differ by less than this share of the step. On a straight relief it is 1 / WIDEST_STEP. */
+/* On the new level neighbours differ by less than this share of the step. On a straight relief it would be
+ * 1 / WIDEST_STEP. */
 static const double level_share = 0.15;
 
 /* A step is more than so many standard deviations of neighbours' differences ... */

@@ -56,7 +56,7 @@ static void find_levels(surface *of) {
         of->helix.level[k] = 0.0;
     }
 
-    /* A profile is moved by the mean of its differences from the helices, a helix against its mean from the profiles. */
+    /* A profile is moved by its mean difference from the helices, a helix against its own from the profiles. */
     for (int i = 0; i < of->profile.count; ++i) {
         double sum = 0.0;
         for (int k = 0; k < of->helix.count; ++k) {
