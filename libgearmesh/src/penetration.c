@@ -213,15 +213,6 @@ gm_penetration gmi_penetration_nan(void) {
  * Checks
  * ------------------------------------------------------------------------------------------- */
 
-int gmi_check_offset(double offset, double offset_rate) {
-    if (!gmi_is_finite(offset) || !gmi_is_finite(offset_rate)) {
-        return GM_STATE_NOT_FINITE;
-    }
-    const int is_within =
-        fabs(offset) <= GMI_LARGEST_OFFSET && fabs(offset_rate) <= GMI_LARGEST_SPEED;
-    return is_within ? GM_OK : GM_STATE_OUT_OF_RANGE;
-}
-
 int gmi_check_flanks(const gm_pair *pair, const gm_flanks *pinion_flanks,
                      const gm_flanks *wheel_flanks) {
     const int pinion_fits = pinion_flanks == NULL || pinion_flanks->teeth == pair->pinion.teeth;

@@ -85,6 +85,15 @@ static int check_state(const gm_state *state) {
     return GM_OK;
 }
 
+int gmi_check_offset(double offset, double offset_rate) {
+    if (!gmi_is_finite(offset) || !gmi_is_finite(offset_rate)) {
+        return GM_STATE_NOT_FINITE;
+    }
+    const int is_within =
+        fabs(offset) <= GMI_LARGEST_OFFSET && fabs(offset_rate) <= GMI_LARGEST_SPEED;
+    return is_within ? GM_OK : GM_STATE_OUT_OF_RANGE;
+}
+
 /* An approach that is too fast comes from speeds that are each within their range, on gears of the size of a ship. */
 static int finish(gm_position *position) {
     const int status = gmi_check_offset(position->offset, position->offset_rate);
