@@ -1080,6 +1080,16 @@ static void a_thin_tooth_is_blamed_on_what_was_given(void) {
     }
 }
 
+/* Base circles that just touch leave no line of action. */
+static void base_circles_must_be_apart(void) {
+    gm_pair_params params = reference_params(REFERENCE_FACE_WIDTH);
+    const gm_pair p = make_pair(&params);
+    params.center_distance = p.pinion.base_radius + p.wheel.base_radius;
+    const char *field = "";
+    GM_ASSERT_INT(gm_pair_params_check(&params, &field, NULL), GM_ERR_GEOMETRY);
+    GM_ASSERT_STRING(field, "center_distance");
+}
+
 static void the_gear_at_fault_is_named(void) {
     gm_pair_params params = reference_params(REFERENCE_FACE_WIDTH);
     params.pinion_start_radius = 42.5e-3;
@@ -1245,6 +1255,9 @@ static void a_start_below_the_root_form_is_warned_of(void) {
     /* Below the base circle both warnings are named. */
     params.wheel_start_radius = 38.0e-3;
     GM_ASSERT_INT(warnings_of(&params), GM_WARN_WHEEL_ROOT_FORM | GM_WARN_WHEEL_START_RADIUS);
+    /* A start on the base circle is where it is said to be. */
+    params.wheel_start_radius = make_pair(&params).wheel.base_radius;
+    GM_ASSERT_INT(warnings_of(&params), GM_WARN_WHEEL_ROOT_FORM);
     params = reference_params(REFERENCE_FACE_WIDTH);
     params.pinion_start_radius = 41.0e-3;
     GM_ASSERT_INT(warnings_of(&params), GM_WARN_PINION_ROOT_FORM | GM_WARN_PINION_START_RADIUS);
@@ -1257,18 +1270,21 @@ static void the_rack_that_is_given_cuts_the_root(void) {
     const struct {
         double dedendum, fillet;
         int undercut;
+        double shift;
     } cases[] = {
-        {1.419, NAN, 0}, {1.421, NAN, 1}, /* 1.1690 and 1.1710 straight */
-        {NAN, 0.0, 1},                    /* 1.25 straight */
-        {NAN, 0.13, 0},                   /* 1.1645 straight */
-        {1.30, 0.19, 1}, {1.30, 0.21, 0}, /* 1.1750 and 1.1618 */
-        {NAN, NAN, 0},                    /* 1.05: the mate's tip, and a little more */
+        {1.419, NAN, 0, 0.0}, {1.421, NAN, 1, 0.0}, /* 1.1690 and 1.1710 straight */
+        {NAN, 0.0, 1, 0.0},                         /* 1.25 straight */
+        {NAN, 0.13, 0, 0.0},                        /* 1.1645 straight */
+        {1.30, 0.19, 1, 0.0}, {1.30, 0.21, 0, 0.0}, /* 1.1750 and 1.1618 */
+        {NAN, NAN, 0, 0.0},                         /* 1.05: the mate's tip, and a little more */
+        {1.50, NAN, 0, 0.1},  {1.60, NAN, 1, 0.1},  /* 1.15 and 1.25 below the reference circle */
     };
     for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
         for (int wheel = 0; wheel < 2; wheel++) {
             gm_test_context("case %d, wheel %d", (int)i, wheel);
-            gm_pair_params params =
-                catalogue_params(wheel ? 60 : 20, wheel ? 20 : 60, 2.0, 0.0, 80.0, 0.0, 0.0);
+            gm_pair_params params = catalogue_params(wheel ? 60 : 20, wheel ? 20 : 60, 2.0, 0.0,
+                                                     80.0, wheel ? -cases[i].shift : cases[i].shift,
+                                                     wheel ? cases[i].shift : -cases[i].shift);
             params.backlash = 50e-6;
             *(wheel ? &params.wheel_rack_dedendum : &params.pinion_rack_dedendum) =
                 cases[i].dedendum;
@@ -1352,6 +1368,10 @@ static void short_paths_are_warned_of(void) {
     params.wheel_tip_radius = 41.3e-3;
     GM_ASSERT(make_pair(&params).transverse_contact_ratio < 1.0);
     GM_ASSERT_INT(warnings_of(&params), GM_WARN_CONTACT_RATIO);
+    params.wheel_tip_radius = 41.9e-3;
+    const double enough = make_pair(&params).transverse_contact_ratio;
+    GM_ASSERT(enough > 1.0 && enough < 1.1);
+    GM_ASSERT_INT(warnings_of(&params), 0);
 }
 
 int main(int argc, char **argv) {
@@ -1393,6 +1413,7 @@ int main(int argc, char **argv) {
         GM_TEST(teeth_far_from_their_path_of_contact_are_refused),
         GM_TEST(tips_that_do_not_reach_each_other_are_refused),
         GM_TEST(a_thin_tooth_is_blamed_on_what_was_given),
+        GM_TEST(base_circles_must_be_apart),
         GM_TEST(the_gear_at_fault_is_named),
         GM_TEST(null_pointers_are_refused),
         GM_TEST(success_means_finite),

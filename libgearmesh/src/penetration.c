@@ -217,7 +217,15 @@ int gmi_check_flanks(const gm_pair *pair, const gm_flanks *pinion_flanks,
                      const gm_flanks *wheel_flanks) {
     const int pinion_fits = pinion_flanks == NULL || pinion_flanks->teeth == pair->pinion.teeth;
     const int wheel_fits = wheel_flanks == NULL || wheel_flanks->teeth == pair->wheel.teeth;
-    return pinion_fits && wheel_fits ? GM_OK : GM_ERR_TOOTH;
+    if (!(pinion_fits && wheel_fits)) {
+        return GM_ERR_TOOTH;
+    }
+
+    /* Both gears' tables run along one t1. */
+    const int faces_are_equal = pair->wheel.face_start == pair->pinion.face_start &&
+                                pair->wheel.face_width == pair->pinion.face_width;
+    const int is_ideal = pinion_flanks == NULL && wheel_flanks == NULL;
+    return is_ideal || faces_are_equal ? GM_OK : GM_ERR_GEOMETRY;
 }
 
 /* ---------------------------------------------------------------------------------------------

@@ -736,8 +736,8 @@ GM_API size_t gm_mesh_size(const gm_mesh_params *params, const gm_pair *pair);
  * @param[in]  wheel_flanks   deviations of the wheel's teeth, NULL = ideal
  * @param[in]  memory         at least gm_mesh_size() bytes, aligned for double
  * @param[in]  memory_size    bytes in memory
- * @return GM_OK, GM_ERR_NULL, GM_ERR_PARAMETER, GM_ERR_GEOMETRY (not a pair), GM_ERR_TOOTH (flanks of another number
- *         of teeth), GM_ERR_MEMORY (too little, or not aligned)
+ * @return GM_OK, GM_ERR_NULL, GM_ERR_PARAMETER, GM_ERR_GEOMETRY (not a pair; or flanks for faces that do not begin
+ *         and end together), GM_ERR_TOOTH (flanks of another number of teeth), GM_ERR_MEMORY (too little, or not aligned)
  */
 GM_API int gm_mesh_init(gm_mesh **mesh, const gm_mesh_params *params, const gm_pair *pair,
                         const gm_flanks *pinion_flanks, const gm_flanks *wheel_flanks, void *memory,
