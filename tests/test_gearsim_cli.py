@@ -701,11 +701,12 @@ class Geometry(Case):
         self.refused_value("gears", "axial_offset_mm", "17.5", "faces of both gears overlap")
         self.refused_value("gears", "axial_offset_mm", "-1e13", "from -1e+12 to 1e+12")
 
-    def test_flanks_need_equal_faces(self):
-        self.write("flanks.csv", DEVIATIONS)
-        params = with_key(PARAMS, "flanks", "pinion", "flanks.csv")
-        self.refused("gears.axial_offset_mm: must leave both gears the same face", params=params,
-                     arguments=["--set", "gears.axial_offset_mm=1"])
+    def test_pose_out_of_mesh(self):
+        for key, amount in [("center_distance_change_um", 6000), ("center_distance_change_um", -2000), ("offset_um", 40000),
+                            ("axial_shift_um", -17500)]:
+            self.refused(f"pose.{key}: must leave the gears in mesh", f"(got {amount})",
+                         arguments=["--set", f"pose.{key}={amount}", "--set", "pose.axial_shift_um=1"]
+                         if key != "axial_shift_um" else ["--set", f"pose.{key}={amount}"])
 
     def test_zero_backlash_is_not_taken_for_negative(self):
         # These leave -5e-14 and -1e-14 um where the profile shifts are derived for zero.

@@ -71,6 +71,8 @@ typedef struct config {
     double damping;          /* D of one tooth pair, N s/m */
     double simple_stiffness; /* of the simple model, N/m; NaN: stiffness * eps_alpha */
 
+    gm_pose pose; /* of the wheel against the drawing */
+
     double pinion_inertia; /* kg m2 */
     double wheel_inertia;
 

@@ -8,39 +8,37 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Flanks with deviations are evaluated on faces that both begin and end together. */
-static int check_faces(const gear_mesh *mesh, const config *conf) {
-    static const char *const keys[] = {"gears.axial_offset_mm", "gears.pinion_face_width_mm",
-                                       "gears.wheel_face_width_mm"};
-    const gm_pair *pair = &mesh->pair;
-    int key = 0;
-
-    if (pair->wheel.face_start == 0 && pair->pinion.face_width == pair->wheel.face_width) {
-        return 0;
-    }
-    while (key < 2 && config_text(conf, keys[key]) == NULL) {
-        ++key;
-    }
-    config_complain(
-        conf, keys[key],
-        "must leave both gears the same face for flanks with deviations or "
-        "modifications (got a pinion from 0 to %.9g mm and a wheel from %.9g to %.9g mm)",
-        1e3 * pair->pinion.face_width, 1e3 * pair->wheel.face_start,
-        1e3 * (pair->wheel.face_start + pair->wheel.face_width));
-    return EXIT_BAD_INPUT;
-}
-
 static int load_flanks(gear_mesh *mesh, const config *conf) {
     int status = gear_flanks_load(&mesh->flanks[GM_PINION], conf, &mesh->pair, GM_PINION);
 
     if (status == 0) {
         status = gear_flanks_load(&mesh->flanks[GM_WHEEL], conf, &mesh->pair, GM_WHEEL);
     }
-    if (status == 0 &&
-        (mesh->flanks[GM_PINION].prepared != NULL || mesh->flanks[GM_WHEEL].prepared != NULL)) {
-        status = check_faces(mesh, conf);
-    }
     return status;
+}
+
+/* The key of the pose that moves the wheel most is the one to look at. */
+static int refuse_pose(const config *conf) {
+    const struct {
+        const char *key;
+        double amount;
+    } moves[] = {
+        {"pose.center_distance_change_um", conf->pose.center_distance_change},
+        {"pose.offset_um", conf->pose.offset},
+        {"pose.axial_shift_um", conf->pose.axial_shift},
+    };
+    int largest = 0;
+
+    for (int k = 1; k < (int)(sizeof moves / sizeof moves[0]); ++k) {
+        if (fabs(moves[k].amount) > fabs(moves[largest].amount)) {
+            largest = k;
+        }
+    }
+    config_complain(conf, moves[largest].key,
+                    "must leave the gears in mesh, with tips that reach each other and stay clear "
+                    "of the roots, and faces that overlap (got %.9g)",
+                    1e6 * moves[largest].amount);
+    return EXIT_BAD_INPUT;
 }
 
 /* Pair, flanks and law as one object; none without a stiffness, which only a run requires. */
@@ -52,6 +50,7 @@ static int prepare(gear_mesh *mesh, const config *conf) {
     params.stiffness = conf->stiffness;
     params.damping = conf->damping;
     params.simple_stiffness = conf->simple_stiffness;
+    params.pose = conf->pose;
 
     const size_t size = gm_mesh_size(&params, &mesh->pair);
     if (size == 0) {
@@ -61,10 +60,14 @@ static int prepare(gear_mesh *mesh, const config *conf) {
     if (memory == NULL) {
         return message_no_memory(conf->messages);
     }
-    return gm_mesh_init(&mesh->prepared, &params, &mesh->pair, mesh->flanks[GM_PINION].prepared,
-                        mesh->flanks[GM_WHEEL].prepared, memory, size) == GM_OK
-               ? 0
-               : EXIT_RUN_FAILED;
+    const int status =
+        gm_mesh_init(&mesh->prepared, &params, &mesh->pair, mesh->flanks[GM_PINION].prepared,
+                     mesh->flanks[GM_WHEEL].prepared, memory, size);
+    if (status == GM_OK) {
+        return 0;
+    }
+    free(memory);
+    return status == GM_POSE_OUT_OF_MESH ? refuse_pose(conf) : EXIT_RUN_FAILED;
 }
 
 int gear_mesh_open(gear_mesh *mesh, const config *conf) {

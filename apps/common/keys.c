@@ -117,6 +117,13 @@ static const key_spec keys[] = {
      .derived = "stiffness_N_per_m * eps_alpha", .used = FOR_SIMPLE,
      .help = "of the simple model"},
 
+    {NAME("pose", "center_distance_change_um"), NUMBER(UNIT_UM, UP_TO(1e9)), INTO(pose.center_distance_change),
+     .standard = "0", .help = "the wheel's axis has moved away from the pinion's"},
+    {NAME("pose", "offset_um"), NUMBER(UNIT_UM, UP_TO(1e9)), INTO(pose.offset),
+     .standard = "0", .help = "and along +y, to the left seen from the pinion's axis against +z"},
+    {NAME("pose", "axial_shift_um"), NUMBER(UNIT_UM, UP_TO(1e9)), INTO(pose.axial_shift),
+     .standard = "0", .help = "and the wheel along its axis, +z"},
+
     {NAME("bodies", "pinion_inertia_kg_m2"), NUMBER(UNIT_SI, INERTIA), INTO(pinion_inertia),
      .used = FOR_DYNAMIC | FOR_TORQUE, .required = FOR_RUN | FOR_DYNAMIC | FOR_TORQUE,
      .help = "about its axis"},

@@ -89,11 +89,11 @@ typedef struct field_ends {
     double lower, upper;
 } field_ends;
 
-static field_ends find_field(const gm_pair *pair, double delta) {
-    const double reach = pair->line_of_action + delta;
+static field_ends find_field(const gm_pair *pair, const gmi_engagement *at, double delta) {
+    const double reach = at->line_of_action + delta;
     const field_ends ends = {
-        fmax(pair->pinion.start_roll_length, reach - pair->wheel.tip_roll_length),
-        fmin(pair->pinion.tip_roll_length, reach - pair->wheel.start_roll_length)};
+        fmax(at->start_roll_length[GM_PINION], reach - pair->wheel.tip_roll_length),
+        fmin(pair->pinion.tip_roll_length, reach - at->start_roll_length[GM_WHEEL])};
     return ends;
 }
 
@@ -108,17 +108,19 @@ static void insert_knot(double knots[KNOTS], int *count, double phase) {
 /* Line k is in a corner where origin + k p_bt + t1 advance = end, with t1 = 0 or 1; see contact.c. */
 static void find_knots(const gm_cache *cache, double knots[KNOTS]) {
     const gm_pair *pair = cache->pair;
+    const gmi_engagement *at = &cache->mesh->engagement;
     const double p_bt = pair->transverse_base_pitch;
     const double sign = cache->side == GM_DRIVE ? 1.0 : -1.0;
-    const field_ends low = find_field(pair, cache->lowest);
-    const field_ends high = find_field(pair, fmax(0.0, cache->lowest) + 2.0 * cache->depth);
+    const field_ends low = find_field(pair, at, cache->lowest);
+    const field_ends high = find_field(pair, at, fmax(0.0, cache->lowest) + 2.0 * cache->depth);
     const double margin = kink_margin * p_bt;
     int count = 0;
     insert_knot(knots, &count, 0.0);
     insert_knot(knots, &count, p_bt);
     for (int corner = 0; corner < CORNERS; ++corner) {
         const double origin =
-            pair->phase_origin[cache->side] + (corner % 2 == 0 ? 0.0 : sign * pair->face_advance);
+            at->phase_origin[cache->side] +
+            (corner % 2 == 0 ? at->face_from : at->face_to) * (sign * pair->face_advance);
         const double ends[2] = {(corner < 2 ? low.lower : low.upper) - margin,
                                 (corner < 2 ? high.lower : high.upper) + margin};
         for (int end = 0; end < 2; ++end) {
@@ -278,14 +280,15 @@ int gm_cache_passes(const gm_cache *cache) {
  * ------------------------------------------------------------------------------------------- */
 
 static gmi_side_sum exact_at(const gm_cache *cache, gm_position *position, double delta) {
-    const double offset = delta + 0.5 * cache->pair->backlash;
+    const double offset = delta + 0.5 * cache->mesh->engagement.backlash;
     const gmi_side *side = &cache->mesh->side[cache->side];
     gmi_side_sum sum;
     position->offset = gmi_side_sign(cache->side) * offset;
-    if (gmi_side_is_clear(cache->pair, side, cache->side, position->offset)) {
+    if (gmi_side_is_clear(&cache->mesh->engagement, side, cache->side, position->offset)) {
         return gmi_no_contact();
     }
-    gmi_side_sum_3d(cache->pair, side, cache->side, position, GMI_DERIVATIVES, &sum);
+    gmi_side_sum_3d(cache->pair, &cache->mesh->engagement, side, cache->side, position,
+                    GMI_DERIVATIVES, &sum);
     return sum;
 }
 
@@ -472,7 +475,8 @@ static void join_columns(const gm_cache *cache, int index, double phase, const c
 }
 
 int gmi_cache_look_up(gm_cache *cache, const gm_position *position, gmi_side_sum *sum) {
-    const double delta = gmi_ideal_penetration(cache->pair, cache->side, position->offset);
+    const double delta =
+        gmi_ideal_penetration(&cache->mesh->engagement, cache->side, position->offset);
     *sum = gmi_no_contact();
     if (delta <= cache->lowest) {
         return 1;

@@ -33,12 +33,12 @@ static int wrap_tooth(int tooth, int teeth) {
 }
 
 /* Limits of rho_p: those of the pinion, and those of the wheel seen from the pinion. */
-static void find_limits(const gm_pair *pair, gmi_lines *lines) {
-    const double reach = pair->line_of_action + lines->delta; /* rho_p + rho_w */
+static void find_limits(const gm_pair *pair, const gmi_engagement *at, gmi_lines *lines) {
+    const double reach = at->line_of_action + lines->delta; /* rho_p + rho_w */
     const double wheel_tip = reach - pair->wheel.tip_roll_length;
-    const double wheel_start = reach - pair->wheel.start_roll_length;
+    const double wheel_start = reach - at->start_roll_length[GM_WHEEL];
 
-    lines->lower = pair->pinion.start_roll_length;
+    lines->lower = at->start_roll_length[GM_PINION];
     lines->upper = pair->pinion.tip_roll_length;
     lines->lower_by_delta = lines->upper_by_delta = 0.0;
     if (wheel_tip > lines->lower) {
@@ -51,26 +51,30 @@ static void find_limits(const gm_pair *pair, gmi_lines *lines) {
     }
 }
 
-void gmi_lines_find(const gm_pair *pair, int side, const gm_position *position, gmi_lines *lines) {
+void gmi_lines_find(const gm_pair *pair, const gmi_engagement *at, int side,
+                    const gm_position *position, gmi_lines *lines) {
     const double direction = gmi_side_sign(side);
-    lines->origin = pair->phase_origin[side] + direction * position->phase;
+    lines->origin = at->phase_origin[side] + direction * position->phase;
     lines->advance = direction * pair->face_advance;
-    lines->delta = gmi_ideal_penetration(pair, side, position->offset);
-    find_limits(pair, lines);
+    lines->delta = gmi_ideal_penetration(at, side, position->offset);
+    find_limits(pair, at, lines);
 
     /* Line k covers origin + k p_bt + [fall, rise] of the line of action: those that meet [lower, upper]. */
-    const double rise = lines->advance > 0.0 ? lines->advance : 0.0;
-    const double fall = lines->advance > 0.0 ? 0.0 : lines->advance;
+    const int climbs = lines->advance > 0.0;
+    lines->fall = lines->advance * (climbs ? at->face_from : at->face_to);
+    lines->rise = lines->advance * (climbs ? at->face_to : at->face_from);
     const double below = lines->lower - lines->origin;
     const double above = lines->upper - lines->origin;
     const double per_pitch = 1.0 / pair->transverse_base_pitch;
-    lines->first = -floor_to_int((rise - below) * per_pitch);
-    lines->last = floor_to_int((above - fall) * per_pitch);
+    lines->first = -floor_to_int((lines->rise - below) * per_pitch);
+    lines->last = floor_to_int((above - lines->fall) * per_pitch);
 }
 
-gmi_line_ends gmi_line_ends_find(const gm_pair *pair, const gmi_lines *lines) {
+gmi_line_ends gmi_line_ends_find(const gm_pair *pair, const gmi_engagement *at,
+                                 const gmi_lines *lines) {
     /* Spur gears: a line is inside as a whole, or not at all. */
-    gmi_line_ends ends = {0.0, 0.0, 1.0, 0.0, 0.0, 0.0};
+    gmi_line_ends ends = {0.0, at->face_from, at->face_to,   0.0,
+                          0.0, 0.0,           at->face_from, at->face_to};
     if (lines->advance == 0.0) {
         return ends;
     }
@@ -101,8 +105,9 @@ gmi_teeth gmi_lines_teeth(const gm_pair *pair, int side, const gm_position *posi
 }
 
 /* First moments between ideal flanks: of 1 over t1 and rho_p; delta times them for the sum. */
-static void add_ideal_moments(const gm_pair *pair, const gmi_lines *lines, gmi_side_sum *total) {
-    const gmi_line_ends ends = gmi_line_ends_find(pair, lines);
+static void add_ideal_moments(const gm_pair *pair, const gmi_engagement *at, const gmi_lines *lines,
+                              gmi_side_sum *total) {
+    const gmi_line_ends ends = gmi_line_ends_find(pair, at, lines);
     for (int k = lines->first; k <= lines->last; ++k) {
         const gmi_interval part = gmi_line_clip(&ends, k);
         const double length = part.to - part.from;
@@ -120,15 +125,16 @@ static void add_ideal_moments(const gm_pair *pair, const gmi_lines *lines, gmi_s
 
 /*
  * Between ideal flanks the integrand is delta on all lines, so only their length within the limits counts. Line k covers
- * the line of action from start + k p_bt on over the length |advance|. The parts below the lower limit grow by p_bt from
+ * the line of action from start + k p_bt on over the length that a line advances by. The parts below the lower limit grow by p_bt from
  * line to line, and so do those above the upper limit: both are arithmetic series, which are subtracted from the whole.
  */
-void gmi_side_sum_ideal(const gm_pair *pair, int side, const gm_position *position, int wanted,
-                        gmi_side_sum *total) {
+void gmi_side_sum_ideal(const gm_pair *pair, const gmi_engagement *at, int side,
+                        const gm_position *position, int wanted, gmi_side_sum *total) {
     gmi_lines lines;
-    gmi_lines_find(pair, side, position, &lines);
-    const double start = lines.origin + (lines.advance < 0.0 ? lines.advance : 0.0);
-    const double cover = fabs(lines.advance);
+    gmi_lines_find(pair, at, side, position, &lines);
+    const double start = lines.origin + lines.fall;
+    const double cover = lines.rise - lines.fall;
+    const double face = at->face_to - at->face_from; /* of one line that is not cut */
     const double below = lines.lower - start;
     const double above = lines.upper - start;
 
@@ -137,7 +143,7 @@ void gmi_side_sum_ideal(const gm_pair *pair, int side, const gm_position *positi
         return;
     }
     total->pairs = count;
-    total->contact = (double)count;
+    total->contact = (double)count * face;
 
     if (cover > 0.0) {
         /* How many lines are cut at each limit, and by how much on average. */
@@ -151,25 +157,25 @@ void gmi_side_sum_ideal(const gm_pair *pair, int side, const gm_position *positi
             cover - above + pitch * ((double)lines.last - 0.5 * (upper_ends - 1.0));
 
         /* Rounding may take more than there is where the lines hardly climb. */
-        const double per_cover = 1.0 / cover;
-        const double cut = (lower_ends * mean_below + upper_ends * mean_above) * per_cover;
-        const double contact = (double)count - (cut > 0.0 ? cut : 0.0);
+        const double per_advance = 1.0 / fabs(lines.advance);
+        const double cut = (lower_ends * mean_below + upper_ends * mean_above) * per_advance;
+        const double contact = (double)count * face - (cut > 0.0 ? cut : 0.0);
         total->contact = contact > 0.0 ? contact : 0.0;
 
         /* An end moves with the line's origin, and with delta where the wheel sets the limit. */
-        const double flow = lines.delta * per_cover;
+        const double flow = lines.delta * per_advance;
         total->by_origin = flow * (lower_ends - upper_ends);
         total->by_delta =
             flow * (upper_ends * lines.upper_by_delta - lower_ends * lines.lower_by_delta);
         if (wanted & GMI_CONTACT_DERIVATIVES) {
-            total->contact_by_origin = per_cover * (lower_ends - upper_ends);
-            total->contact_by_delta =
-                per_cover * (upper_ends * lines.upper_by_delta - lower_ends * lines.lower_by_delta);
+            total->contact_by_origin = per_advance * (lower_ends - upper_ends);
+            total->contact_by_delta = per_advance * (upper_ends * lines.upper_by_delta -
+                                                     lower_ends * lines.lower_by_delta);
         }
     }
     total->by_delta += total->contact;
     total->sum = lines.delta * total->contact;
     if (wanted & GMI_MOMENTS) {
-        add_ideal_moments(pair, &lines, total);
+        add_ideal_moments(pair, at, &lines, total);
     }
 }

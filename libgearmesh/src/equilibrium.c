@@ -111,12 +111,13 @@ static int solve(const problem *p, bracket within, double travel, double reach, 
  */
 static double departure(const problem *p, double lower) {
     const gm_pair *pair = p->pair;
+    const gmi_engagement *at = &p->mesh->engagement;
     gmi_lines lines;
-    gmi_lines_find(pair, loaded_side(p), &p->position, &lines);
+    gmi_lines_find(pair, at, loaded_side(p), &p->position, &lines);
     /* Line 0 begins to leave where T0 + delta - rho_w(tip) passes its lowest rho_p. */
-    const double delta = lines.origin + fmin(lines.advance, 0.0) + pair->wheel.tip_roll_length -
-                         pair->line_of_action;
-    const double travel = delta + 0.5 * pair->backlash;
+    const double delta =
+        lines.origin + lines.fall + pair->wheel.tip_roll_length - at->line_of_action;
+    const double travel = delta + 0.5 * at->backlash;
     const double pitch = pair->transverse_base_pitch;
     return travel + pitch * ceil((lower - travel) / pitch);
 }
@@ -137,7 +138,8 @@ static int solve_before_departure(const problem *p, double lower, double reached
 static int find_loaded(const problem *p, double guess, double *found, gm_mesh_result *result) {
     const double limit = largest_offset(p);
     const double peak = sum_peak(p, loaded_side(p));
-    const double lower = clamp(0.5 * p->pair->backlash - peak, limit); /* nothing touches */
+    const double lower =
+        clamp(0.5 * p->mesh->engagement.backlash - peak, limit); /* nothing touches */
     /* Beyond all deviations the sum is next to linear: from there Newton's method comes close at once. */
     const double reach = fmax(p->target + 3.0 * fmax(peak, 0.0), p->resolution);
     const double start = fmin(lower + reach, limit);
@@ -161,7 +163,7 @@ static int find_loaded(const problem *p, double guess, double *found, gm_mesh_re
 
 /* No torque: equilibrium only where both sides press against each other (negative backlash). */
 static int find_unloaded(const problem *p, double guess, double *found, gm_mesh_result *result) {
-    const double half_backlash = 0.5 * p->pair->backlash;
+    const double half_backlash = 0.5 * p->mesh->engagement.backlash;
     const double limit = largest_offset(p);
     const bracket within = {
         clamp(half_backlash - sum_peak(p, GM_DRIVE), limit),  /* below: no drive contact */
@@ -182,7 +184,7 @@ static int find_unloaded(const problem *p, double guess, double *found, gm_mesh_
 
 /* The spring with backlash in closed form. */
 static int find_simple(const problem *p, double *found) {
-    const double clearance = 0.5 * p->pair->backlash;
+    const double clearance = 0.5 * p->mesh->engagement.backlash;
     const double compression = p->target;
     if (compression > 0.0) {
         /* Negative backlash: both flanks touch up to |x| = -clearance and push against each other. */
@@ -229,6 +231,13 @@ int gm_static_equilibrium(const gm_mesh *mesh, double pinion_angle, double wheel
         return status;
     }
 
+    /* From here on in the coordinates of the posed pair. */
+    const double shift = mesh->engagement.offset_shift;
+    if (mesh->is_posed) {
+        p.position.phase += mesh->engagement.phase_shift;
+        guess += shift;
+    }
+
     /* Torque below zero loads the coast flanks. */
     p.direction = wheel_torque < 0.0 ? -1.0 : 1.0;
     p.target =
@@ -239,7 +248,7 @@ int gm_static_equilibrium(const gm_mesh *mesh, double pinion_angle, double wheel
     gm_mesh_result at_equilibrium;
     status = find(&p, p.direction * guess, &travel, &at_equilibrium);
     if (status == GM_OK) {
-        *offset = p.direction * travel;
+        *offset = p.direction * travel - shift;
         if (result != NULL) {
             *result = at_equilibrium;
         }

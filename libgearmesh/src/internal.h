@@ -99,6 +99,30 @@ int gmi_meshing_find(const gm_pair *pair, double center_distance, gmi_meshing *m
 /* The first part of it, which needs no teeth: line_of_action, working_pressure_angle, involute_difference. */
 void gmi_meshing_find_angles(const gm_pair *pair, double center_distance, gmi_meshing *meshing);
 
+/*
+ * The pair as it is posed: all of it that moves. t1 runs over the common face of the drawing, also where the faces have
+ * moved against each other. Without a pose it is the drawing, to the last bit.
+ */
+typedef struct gmi_engagement {
+    double center_distance;               /* (m) */
+    double working_pressure_angle;        /* alpha_wt (rad) */
+    double line_of_action;                /* T (m) */
+    double backlash;                      /* (m) */
+    double phase_origin[2];               /* [side] as in gm_pair (m) */
+    double start_roll_length[2];          /* [enum gm_role] where the active profile begins (m) */
+    double face_from, face_to;            /* t1 between which both gears have a face */
+    double face_origin[2], face_scale[2]; /* [enum gm_role] own t1 = face_origin + face_scale t1 */
+
+    /* From the coordinates of the drawing to those of the posed pair; 0 without a pose. */
+    double offset_shift; /* added to x (m) */
+    double phase_shift;  /* added to the phase (m) */
+    double
+        axis_direction; /* of the wheel's axis, seen from the pinion's, counter-clockwise from +x (rad) */
+} gmi_engagement;
+
+/* NULL = no pose. Returns GM_OK, GM_STATE_NOT_FINITE or GM_POSE_OUT_OF_MESH. */
+int gmi_engagement_find(const gm_pair *pair, const gm_pose *pose, gmi_engagement *engagement);
+
 /* What an evaluation accumulates beside sum, contact and pairs: a mask. */
 enum gmi_wanted {
     GMI_SUM = 0,
@@ -150,7 +174,8 @@ typedef struct gmi_lines {
     double
         lower_by_delta; /* 1 where the wheel sets the limit, so that it moves with delta; else 0 */
     double upper_by_delta;
-    int first, last; /* lines that can exist, none if first > last */
+    double fall, rise; /* a line covers origin + [fall, rise] of the line of action (m) */
+    int first, last;   /* lines that can exist, none if first > last */
 } gmi_lines;
 
 /* Where the lines enter and leave the flanks as t1 grows: line k at enter - k spacing and leave - k spacing. */
@@ -159,6 +184,7 @@ typedef struct gmi_line_ends {
         per_advance; /* 1 / advance; 0 for spur gears, whose lines have no ends within the face (1/m) */
     double enter, leave, spacing;
     double enter_by_delta, leave_by_delta; /* 1 where the end moves with delta, else 0 */
+    double face_from, face_to;             /* where the face begins and ends */
 } gmi_line_ends;
 
 /* The teeth of line `first`, and how they go on: step = +1 or -1 from line k to line k + 1. */
@@ -168,16 +194,18 @@ typedef struct gmi_teeth {
 } gmi_teeth;
 
 /* Ideal penetration of one side at x: x - backlash / 2, or -x - backlash / 2 [Paper, Eqs. 10, 20]. */
-static inline double gmi_ideal_penetration(const gm_pair *pair, int side, double offset) {
-    return (side == GM_DRIVE ? offset : -offset) - 0.5 * pair->backlash;
+static inline double gmi_ideal_penetration(const gmi_engagement *at, int side, double offset) {
+    return (side == GM_DRIVE ? offset : -offset) - 0.5 * at->backlash;
 }
 
-void gmi_lines_find(const gm_pair *pair, int side, const gm_position *position, gmi_lines *lines);
-gmi_line_ends gmi_line_ends_find(const gm_pair *pair, const gmi_lines *lines);
+void gmi_lines_find(const gm_pair *pair, const gmi_engagement *at, int side,
+                    const gm_position *position, gmi_lines *lines);
+gmi_line_ends gmi_line_ends_find(const gm_pair *pair, const gmi_engagement *at,
+                                 const gmi_lines *lines);
 gmi_teeth gmi_lines_teeth(const gm_pair *pair, int side, const gm_position *position,
                           const gmi_lines *lines);
-void gmi_side_sum_ideal(const gm_pair *pair, int side, const gm_position *position, int wanted,
-                        gmi_side_sum *total);
+void gmi_side_sum_ideal(const gm_pair *pair, const gmi_engagement *at, int side,
+                        const gm_position *position, int wanted, gmi_side_sum *total);
 
 /* Part of t1 in which line k exists; empty if from >= to. */
 typedef struct gmi_interval {
@@ -188,7 +216,8 @@ static inline gmi_interval gmi_line_clip(const gmi_line_ends *ends, int k) {
     const double shift = (double)k * ends->spacing;
     const double enter = ends->enter - shift;
     const double leave = ends->leave - shift;
-    const gmi_interval part = {enter > 0.0 ? enter : 0.0, leave < 1.0 ? leave : 1.0};
+    const gmi_interval part = {enter > ends->face_from ? enter : ends->face_from,
+                               leave < ends->face_to ? leave : ends->face_to};
     return part;
 }
 
@@ -253,24 +282,27 @@ static inline gmi_flank gmi_flank_of(const gmi_tables *tables, int tooth) {
  * and no tables is one cell, so that v2 = t2.
  */
 typedef struct gmi_grid {
-    int last_face, last_profile; /* indices of the last cell */
-    ptrdiff_t row;               /* doubles from one face line to the next */
-    ptrdiff_t step;              /* doubles from one profile line to the next, signed */
-    ptrdiff_t corner;            /* doubles from node 0 of a face line to that with u = 0 */
-    double base, direction;      /* u = base + direction v2, direction +1 or -1 */
-    double profile_cells;        /* largest u */
-    double face_rate;            /* d v1 / d t1 */
-    double climb;                /* d u / d t1 >= 0 */
-    double per_rho;              /* d v2 / d rho (1/m) */
-    double face_ratio;           /* d v1 / d s: 1 for the table that leads */
-    double rate;                 /* d u / d s > 0 */
-    double profile_spacing;      /* its inverse */
+    int shares_faces; /* of the wheel's: the face lines of both gears' tables are the same */
+    int last_face, last_profile;    /* indices of the last cell */
+    ptrdiff_t row;                  /* doubles from one face line to the next */
+    ptrdiff_t step;                 /* doubles from one profile line to the next, signed */
+    ptrdiff_t corner;               /* doubles from node 0 of a face line to that with u = 0 */
+    double base, direction;         /* u = base + direction v2, direction +1 or -1 */
+    double profile_cells;           /* largest u */
+    double face_base, face_rate;    /* v1 = face_base + face_rate t1, t1 of the common face */
+    double face_origin, face_scale; /* t1 of this gear = face_origin + face_scale t1 */
+    double climb;                   /* d u / d t1 >= 0 */
+    double per_rho;                 /* d v2 / d rho (1/m) */
+    double face_ratio;              /* d v1 / d s: 1 for the table that leads */
+    double rate;                    /* d u / d s > 0 */
+    double profile_spacing;         /* its inverse */
     /* Half slope and curvature of f change by these times the second difference of the nodes. */
     double face_kick, profile_kick, bend;
 } gmi_grid;
 
-/* climb: d rho / d t1 of this gear along a line, signed (m); length: rho from start to tip (m). */
-void gmi_grid_init(gmi_grid *grid, const gmi_tables *tables, double climb, double length);
+/* climb: d rho / d t1 of this gear along a line, signed (m); length: rho from start to tip (m); own t1 of the gear. */
+void gmi_grid_init(gmi_grid *grid, const gmi_tables *tables, double climb, double length,
+                   double face_origin, double face_scale);
 
 /* One line: t1 from `from` to `to`, with f = gap + 2 half_slope (t1 - from) + tables of both flanks. */
 typedef struct gmi_line {
@@ -321,27 +353,29 @@ typedef struct gmi_side {
     double peak; /* most material of both flanks: nothing touches at a delta <= -peak (m) */
 } gmi_side;
 
-void gmi_side_init(gmi_side *prepared, const gm_pair *pair, const gm_flanks *pinion_flanks,
-                   const gm_flanks *wheel_flanks, int side);
+void gmi_side_init(gmi_side *prepared, const gm_pair *pair, const gmi_engagement *at,
+                   const gm_flanks *pinion_flanks, const gm_flanks *wheel_flanks, int side);
 
-void gmi_side_sum_tables(const gm_pair *pair, const gmi_side *prepared, int side,
-                         const gm_position *position, int wanted, gmi_side_sum *total);
-void gmi_side_sum_simple(const gm_pair *pair, int side, double offset, gmi_side_sum *total);
+void gmi_side_sum_tables(const gm_pair *pair, const gmi_engagement *at, const gmi_side *prepared,
+                         int side, const gm_position *position, int wanted, gmi_side_sum *total);
+void gmi_side_sum_simple(const gm_pair *pair, const gmi_engagement *at, int side, double offset,
+                         gmi_side_sum *total);
 
 /* Nothing reaches across the gap: the usual state of one of both sides. */
-static inline int gmi_side_is_clear(const gm_pair *pair, const gmi_side *prepared, int side,
+static inline int gmi_side_is_clear(const gmi_engagement *at, const gmi_side *prepared, int side,
                                     double offset) {
-    return gmi_ideal_penetration(pair, side, offset) + prepared->peak <= 0.0;
+    return gmi_ideal_penetration(at, side, offset) + prepared->peak <= 0.0;
 }
 
 /* The sum of a side that is not clear; wanted: mask of enum gmi_wanted. */
-static inline void gmi_side_sum_3d(const gm_pair *pair, const gmi_side *prepared, int side,
-                                   const gm_position *position, int wanted, gmi_side_sum *total) {
+static inline void gmi_side_sum_3d(const gm_pair *pair, const gmi_engagement *at,
+                                   const gmi_side *prepared, int side, const gm_position *position,
+                                   int wanted, gmi_side_sum *total) {
     *total = gmi_no_contact();
     if (prepared->pinion == NULL && prepared->wheel == NULL) {
-        gmi_side_sum_ideal(pair, side, position, wanted, total);
+        gmi_side_sum_ideal(pair, at, side, position, wanted, total);
     } else {
-        gmi_side_sum_tables(pair, prepared, side, position, wanted, total);
+        gmi_side_sum_tables(pair, at, prepared, side, position, wanted, total);
     }
 }
 
@@ -460,8 +494,11 @@ static inline void gmi_law_force(const gmi_law *law, const gmi_side_sum *sum, do
 double gmi_law_sum_of_torque(const gmi_law *law, double torque, double base_radius);
 
 /* wrench.c: adds the forces of one side. */
-void gmi_wrench_add_side(const gm_pair *pair, const gmi_side_force *force, int side,
-                         gm_wrench *wrench);
+void gmi_wrench_add_side(const gm_pair *pair, const gmi_engagement *at, const gmi_side_force *force,
+                         int side, gm_wrench *wrench);
+
+/* From the frame in which the posed wheel's axis is on +x to that of the drawing. */
+void gmi_wrench_turn(gm_wrench *wrench, double angle);
 
 static inline void gmi_wrench_set(gm_wrench *wrench, double value) {
     for (int k = 0; k < 3; ++k) {
@@ -472,16 +509,26 @@ static inline void gmi_wrench_set(gm_wrench *wrench, double value) {
 
 /* mesh.c: the prepared mesh. */
 struct gm_mesh {
-    const gm_pair *pair;
+    const gm_pair *pair;       /* as drawn */
+    gmi_engagement engagement; /* as posed */
+    int is_posed;
     gmi_side side[2]; /* GM_DRIVE, GM_COAST */
     int model;        /* enum gm_model */
     gmi_law law;
     gm_cache *cache; /* NULL = exact */
 };
 
-/* As gm_mesh_evaluate_at() without the cache, of a position that has been checked. */
+/* As gm_mesh_evaluate_at() without the cache, of a position that has been checked and posed. */
 void gmi_mesh_evaluate_exact(const gm_mesh *mesh, const gm_position *position, int wanted,
                              gm_mesh_result *result);
 void gmi_mesh_result_set_nan(gm_mesh_result *result);
+
+/* The position in the coordinates of the posed pair. */
+static inline gm_position gmi_mesh_posed(const gm_mesh *mesh, const gm_position *position) {
+    gm_position posed = *position;
+    posed.offset += mesh->engagement.offset_shift;
+    posed.phase += mesh->engagement.phase_shift;
+    return posed;
+}
 
 #endif

@@ -65,7 +65,8 @@ static void set_rates(gmi_grid *grid, double face_ratio) {
     grid->bend = grid->rate * face_ratio;
 }
 
-void gmi_grid_init(gmi_grid *grid, const gmi_tables *tables, double climb, double length) {
+void gmi_grid_init(gmi_grid *grid, const gmi_tables *tables, double climb, double length,
+                   double face_origin, double face_scale) {
     if (tables == NULL || tables->profile_nodes == 0) {
         *grid = ideal_grid;
         return;
@@ -80,7 +81,10 @@ void gmi_grid_init(gmi_grid *grid, const gmi_tables *tables, double climb, doubl
     grid->direction = upwards ? 1.0 : -1.0;
     grid->base = upwards ? 0.0 : profile_cells;
     grid->profile_cells = profile_cells;
-    grid->face_rate = (double)(tables->face_nodes - 1);
+    grid->face_origin = face_origin;
+    grid->face_scale = face_scale;
+    grid->face_rate = (double)(tables->face_nodes - 1) * face_scale;
+    grid->face_base = (double)(tables->face_nodes - 1) * face_origin;
     grid->per_rho = profile_cells / length;
     grid->climb = fabs(climb) * grid->per_rho;
     set_rates(grid, 1.0);
@@ -370,8 +374,11 @@ SPECIALIZED void walk(walk_state at, const gmi_grid *first, const gmi_grid *seco
     const double per_rate = 1.0 / first->face_rate; /* from s to t1 */
     result->sum = per_rate * (result->sum + at.three_sums * (1.0 / 3.0));
     result->contact = per_rate * (result->contact + at.contact);
-    result->sum_t1 *= per_rate * per_rate;
-    result->contact_t1 *= per_rate * per_rate;
+    if (wanted & GMI_MOMENTS) { /* from v1 = face_base + face_rate t1 */
+        const double base = first->face_base * per_rate;
+        result->sum_t1 = result->sum_t1 * (per_rate * per_rate) - base * result->sum;
+        result->contact_t1 = result->contact_t1 * (per_rate * per_rate) - base * result->contact;
+    }
     if (wanted & GMI_DERIVATIVES) {
         result->pinion = per_rate * first->direction * (result->pinion + 0.5 * at.two_first);
         result->wheel = per_rate * second->direction * (result->wheel + 0.5 * at.two_second);
@@ -406,8 +413,8 @@ static void integrate_tables(const gmi_line *line, const gmi_grid *first, const 
                              double first_profile, const gmi_grid *second,
                              const double *second_table, double second_profile, int wanted,
                              gmi_line_sum *result) {
-    const double v1 = line->from * first->face_rate;
-    const double to = line->to * first->face_rate;
+    const double v1 = line->from * first->face_rate + first->face_base;
+    const double to = line->to * first->face_rate + first->face_base;
     const int face = cell_of(v1, first->last_face);
     const double s = v1 - (double)face;
     int same_faces = 1;
@@ -423,7 +430,7 @@ static void integrate_tables(const gmi_line *line, const gmi_grid *first, const 
     if (second_table == NULL) {
         begin_ideal(&at.second);
         second = &ideal_grid;
-    } else if (first->last_face == second->last_face) {
+    } else if (second->shares_faces) {
         at.second.faces = 0;
         end = smaller(end, begin(&at.second, second, second_table, second_profile, line->from, face,
                                  s, s, &at.f));
@@ -432,10 +439,12 @@ static void integrate_tables(const gmi_line *line, const gmi_grid *first, const 
         scaled = *second;
         set_rates(&scaled, second->face_rate / first->face_rate);
         second = &scaled;
-        const double second_v1 = line->from * second->face_rate;
+        const double second_v1 = line->from * second->face_rate + second->face_base;
         const int second_face = cell_of(second_v1, second->last_face);
         const double p = second_v1 - (double)second_face;
-        at.second.faces = cell_of(line->to * second->face_rate, second->last_face) - second_face;
+        at.second.faces =
+            cell_of(line->to * second->face_rate + second->face_base, second->last_face) -
+            second_face;
         at.second.next_face = s + (1.0 - p) / second->face_ratio;
         end = smaller(end, begin(&at.second, second, second_table, second_profile, line->from,
                                  second_face, p, s, &at.f));

@@ -25,6 +25,7 @@ void gm_mesh_params_default(gm_mesh_params *params) {
         .stiffness = gmi_nan(),
         .damping = 0.0,
         .simple_stiffness = gmi_nan(),
+        .pose = {0.0, 0.0, 0.0},
     };
     *params = defaults;
 }
@@ -115,6 +116,10 @@ int gm_mesh_init(gm_mesh **mesh, const gm_mesh_params *params, const gm_pair *pa
     if (status == GM_OK && (memory_size < gm_mesh_size(params, pair) || !gmi_is_aligned(memory))) {
         status = GM_ERR_MEMORY;
     }
+    gmi_engagement engagement;
+    if (status == GM_OK) {
+        status = gmi_engagement_find(pair, &params->pose, &engagement);
+    }
     if (status != GM_OK) {
         return status;
     }
@@ -127,11 +132,14 @@ int gm_mesh_init(gm_mesh **mesh, const gm_mesh_params *params, const gm_pair *pa
     made->pair = own_pair;
     made->model = params->model;
     made->law = law_of(params, pair);
+    made->engagement = engagement;
+    made->is_posed = engagement.offset_shift != 0.0 || engagement.phase_shift != 0.0;
     if (params->model == GM_MODEL_SIMPLE) {
         pinion_flanks = wheel_flanks = NULL;
     }
     for (int side = GM_DRIVE; side <= GM_COAST; ++side) {
-        gmi_side_init(&made->side[side], own_pair, pinion_flanks, wheel_flanks, side);
+        gmi_side_init(&made->side[side], own_pair, &made->engagement, pinion_flanks, wheel_flanks,
+                      side);
     }
     *mesh = made;
     return GM_OK;
@@ -145,7 +153,8 @@ double gm_mesh_clearance(const gm_mesh *mesh, int side) {
     if (mesh == NULL || (side != GM_DRIVE && side != GM_COAST)) {
         return gmi_nan();
     }
-    return 0.5 * mesh->pair->backlash - mesh->side[side].peak;
+    return 0.5 * mesh->engagement.backlash - mesh->side[side].peak -
+           gmi_side_sign(side) * mesh->engagement.offset_shift;
 }
 
 int gm_mesh_use_cache(gm_mesh *mesh, gm_cache *cache) {
@@ -230,8 +239,11 @@ SPECIALIZED void set_result(const gm_mesh *mesh, const gmi_side_sum *drive,
     }
     if (wanted & GM_WANT_WRENCH) {
         gmi_wrench_set(&result->wrench, 0.0);
-        gmi_wrench_add_side(mesh->pair, drive_force, GM_DRIVE, &result->wrench);
-        gmi_wrench_add_side(mesh->pair, coast_force, GM_COAST, &result->wrench);
+        gmi_wrench_add_side(mesh->pair, &mesh->engagement, drive_force, GM_DRIVE, &result->wrench);
+        gmi_wrench_add_side(mesh->pair, &mesh->engagement, coast_force, GM_COAST, &result->wrench);
+        if (mesh->engagement.axis_direction != 0.0) {
+            gmi_wrench_turn(&result->wrench, mesh->engagement.axis_direction);
+        }
     } else {
         gmi_wrench_set(&result->wrench, gmi_nan());
     }
@@ -241,13 +253,13 @@ SPECIALIZED void set_result(const gm_mesh *mesh, const gmi_side_sum *drive,
 SPECIALIZED const gmi_side_sum *exact_sum(const gm_mesh *mesh, int side,
                                           const gm_position *position, int wanted,
                                           gmi_side_sum *memory) {
-    if (gmi_side_is_clear(mesh->pair, &mesh->side[side], side, position->offset)) {
+    if (gmi_side_is_clear(&mesh->engagement, &mesh->side[side], side, position->offset)) {
         return &no_contact;
     }
     if (mesh->model == GM_MODEL_SIMPLE) {
-        gmi_side_sum_simple(mesh->pair, side, position->offset, memory);
+        gmi_side_sum_simple(mesh->pair, &mesh->engagement, side, position->offset, memory);
     } else {
-        gmi_side_sum_3d(mesh->pair, &mesh->side[side], side, position,
+        gmi_side_sum_3d(mesh->pair, &mesh->engagement, &mesh->side[side], side, position,
                         accumulated(mesh, position->offset_rate, wanted), memory);
     }
     return memory;
@@ -307,6 +319,11 @@ int gm_mesh_evaluate_at(const gm_mesh *mesh, const gm_position *position, int wa
     (void)workspace;
     if (result == NULL) {
         return GM_ERR_NULL;
+    }
+    gm_position posed;
+    if (mesh != NULL && position != NULL && mesh->is_posed) {
+        posed = gmi_mesh_posed(mesh, position);
+        position = &posed;
     }
     const int status = check_evaluation(mesh, position, wanted);
     if (status != GM_OK) {

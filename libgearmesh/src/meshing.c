@@ -76,3 +76,103 @@ int gmi_meshing_find(const gm_pair *pair, double center_distance, gmi_meshing *m
     meshing->tip_clearance[GM_WHEEL] = center_distance - wheel->tip_radius - pinion->root_radius;
     return meshing->path_end > meshing->path_start;
 }
+
+/* ---------------------------------------------------------------------------------------------
+ * The pair as it is posed
+ * ------------------------------------------------------------------------------------------- */
+
+/* The pair as drawn. */
+static gmi_engagement drawn(const gm_pair *pair) {
+    const gm_gear *pinion = &pair->pinion;
+    const gm_gear *wheel = &pair->wheel;
+    const gmi_engagement at = {
+        .center_distance = pair->center_distance,
+        .working_pressure_angle = pair->working_pressure_angle,
+        .line_of_action = pair->line_of_action,
+        .backlash = pair->backlash,
+        .phase_origin = {pair->phase_origin[GM_DRIVE], pair->phase_origin[GM_COAST]},
+        .start_roll_length = {pinion->start_roll_length, wheel->start_roll_length},
+        .face_from = 0.0,
+        .face_to = 1.0,
+        .face_origin = {(pair->face_start - pinion->face_start) / pinion->face_width,
+                        (pair->face_start - wheel->face_start) / wheel->face_width},
+        .face_scale = {pair->face_width / pinion->face_width, pair->face_width / wheel->face_width},
+    };
+    return at;
+}
+
+/* Axes at another distance and in another direction: exact, as it is another drawing of the same gears. */
+static int move_axes(const gm_pair *pair, double along_x, double along_y, gmi_engagement *at) {
+    const double distance = hypot(pair->center_distance + along_x, along_y);
+    gmi_meshing moved;
+    if (!gmi_meshing_find(pair, distance, &moved)) {
+        return GM_POSE_OUT_OF_MESH;
+    }
+
+    /* Tips that the drawing keeps clear of the mate's root must stay so. */
+    const double clearance[2] = {pair->pinion_tip_clearance, pair->wheel_tip_clearance};
+    for (int role = GM_PINION; role <= GM_WHEEL; ++role) {
+        if (clearance[role] > 0.0 && !(moved.tip_clearance[role] > 0.0)) {
+            return GM_POSE_OUT_OF_MESH;
+        }
+    }
+
+    at->center_distance = distance;
+    at->working_pressure_angle = moved.working_pressure_angle;
+    at->line_of_action = moved.line_of_action;
+    at->backlash = moved.backlash;
+    for (int k = 0; k < 2; ++k) {
+        at->phase_origin[k] = moved.phase_origin[k];
+        at->start_roll_length[k] = moved.start_roll_length[k];
+    }
+
+    /* Both gears have turned back by the direction of the axes: phi_p - psi, phi_w + psi. */
+    const double psi = atan2(along_y, pair->center_distance + along_x);
+    const double r_bp = pair->pinion.base_radius;
+    at->axis_direction = psi;
+    at->phase_shift = -r_bp * psi;
+    at->offset_shift = -(r_bp + pair->wheel.base_radius) * psi;
+    return GM_OK;
+}
+
+/*
+ * The wheel moved along its axis: its flanks at a z are those that were at z - shift, which the helix turns into a
+ * movement along the line of action; and both faces end elsewhere against each other.
+ */
+static int move_face(const gm_pair *pair, double shift, gmi_engagement *at) {
+    const double wheel_start = pair->wheel.face_start + shift;
+    const double from = fmax(0.0, wheel_start);
+    const double to = fmin(pair->pinion.face_width, wheel_start + pair->wheel.face_width);
+    if (!(from < to)) {
+        return GM_POSE_OUT_OF_MESH;
+    }
+
+    at->face_from = (from - pair->face_start) / pair->face_width;
+    at->face_to = (to - pair->face_start) / pair->face_width;
+    at->face_origin[GM_WHEEL] = (pair->face_start - wheel_start) / pair->wheel.face_width;
+    at->offset_shift += shift * (pair->face_advance / pair->face_width);
+    return GM_OK;
+}
+
+int gmi_engagement_find(const gm_pair *pair, const gm_pose *pose, gmi_engagement *engagement) {
+    *engagement = drawn(pair);
+    if (pose == NULL) {
+        return GM_OK;
+    }
+    const double along_x = pose->center_distance_change;
+    const double along_y = pose->offset;
+    const double along_z = pose->axial_shift;
+    if (!gmi_is_finite(along_x) || !gmi_is_finite(along_y) || !gmi_is_finite(along_z)) {
+        return GM_STATE_NOT_FINITE;
+    }
+
+    /* What does not move stays as drawn, to the last bit. */
+    int status = GM_OK;
+    if (along_x != 0.0 || along_y != 0.0) {
+        status = move_axes(pair, along_x, along_y, engagement);
+    }
+    if (status == GM_OK && along_z != 0.0) {
+        status = move_face(pair, along_z, engagement);
+    }
+    return status;
+}

@@ -24,8 +24,8 @@ static int ramp_count(const gmi_tables *tables) {
     return tables == NULL ? 0 : tables->ramp_count;
 }
 
-void gmi_side_init(gmi_side *prepared, const gm_pair *pair, const gm_flanks *pinion_flanks,
-                   const gm_flanks *wheel_flanks, int side) {
+void gmi_side_init(gmi_side *prepared, const gm_pair *pair, const gmi_engagement *at,
+                   const gm_flanks *pinion_flanks, const gm_flanks *wheel_flanks, int side) {
     prepared->pinion = gmi_flanks_side(pinion_flanks, side);
     prepared->wheel = gmi_flanks_side(wheel_flanks, side);
     prepared->ramps = 0;
@@ -36,8 +36,14 @@ void gmi_side_init(gmi_side *prepared, const gm_pair *pair, const gm_flanks *pin
 
     /* On the wheel the same line runs the other way: rho_w falls as rho_p grows. */
     const double advance = gmi_side_sign(side) * pair->face_advance;
-    gmi_grid_init(&prepared->pinion_grid, prepared->pinion, advance, flank_length(&pair->pinion));
-    gmi_grid_init(&prepared->wheel_grid, prepared->wheel, -advance, flank_length(&pair->wheel));
+    gmi_grid_init(&prepared->pinion_grid, prepared->pinion, advance, flank_length(&pair->pinion),
+                  at->face_origin[GM_PINION], at->face_scale[GM_PINION]);
+    gmi_grid_init(&prepared->wheel_grid, prepared->wheel, -advance, flank_length(&pair->wheel),
+                  at->face_origin[GM_WHEEL], at->face_scale[GM_WHEEL]);
+    prepared->wheel_grid.shares_faces =
+        prepared->wheel_grid.last_face == prepared->pinion_grid.last_face &&
+        prepared->wheel_grid.face_base == prepared->pinion_grid.face_base &&
+        prepared->wheel_grid.face_rate == prepared->pinion_grid.face_rate;
     prepared->ramps = ramp_count(prepared->pinion) + ramp_count(prepared->wheel);
     prepared->peak = gm_flanks_peak(pinion_flanks, side) + gm_flanks_peak(wheel_flanks, side);
 }
@@ -62,12 +68,12 @@ typedef struct side_view {
  */
 static inline void add_end_derivatives(const gmi_line_ends *ends, gmi_interval part, double f_from,
                                        double f_to, gmi_side_sum *side) {
-    if (part.from > 0.0 && f_from > 0.0) {
+    if (part.from > ends->face_from && f_from > 0.0) {
         const double flow = f_from * ends->per_advance;
         side->by_origin += flow;
         side->by_delta -= flow * ends->enter_by_delta;
     }
-    if (part.to < 1.0 && f_to > 0.0) {
+    if (part.to < ends->face_to && f_to > 0.0) {
         const double flow = f_to * ends->per_advance;
         side->by_origin -= flow;
         side->by_delta += flow * ends->leave_by_delta;
@@ -93,11 +99,11 @@ static void add_contact_derivatives(const side_view *view, gmi_interval part,
     side->contact_by_delta += line->roots + by_wheel;
 
     const gmi_line_ends *ends = &view->ends;
-    if (part.from > 0.0 && line->at_from > 0.0) {
+    if (part.from > ends->face_from && line->at_from > 0.0) {
         side->contact_by_origin += ends->per_advance;
         side->contact_by_delta -= ends->per_advance * ends->enter_by_delta;
     }
-    if (part.to < 1.0 && line->at_to > 0.0) {
+    if (part.to < ends->face_to && line->at_to > 0.0) {
         side->contact_by_origin -= ends->per_advance;
         side->contact_by_delta += ends->per_advance * ends->leave_by_delta;
     }
@@ -160,14 +166,14 @@ static int next_tooth(int tooth, int step, int teeth) {
     return next < 0 ? teeth - 1 : next == teeth ? 0 : next;
 }
 
-void gmi_side_sum_tables(const gm_pair *pair, const gmi_side *prepared, int side,
-                         const gm_position *position, int wanted, gmi_side_sum *total) {
+void gmi_side_sum_tables(const gm_pair *pair, const gmi_engagement *at, const gmi_side *prepared,
+                         int side, const gm_position *position, int wanted, gmi_side_sum *total) {
     side_view view;
     view.pair = pair;
     view.prepared = prepared;
-    gmi_lines_find(pair, side, position, &view.lines);
-    view.ends = gmi_line_ends_find(pair, &view.lines);
-    view.wheel_reach = pair->line_of_action + view.lines.delta - pair->wheel.start_roll_length;
+    gmi_lines_find(pair, at, side, position, &view.lines);
+    view.ends = gmi_line_ends_find(pair, at, &view.lines);
+    view.wheel_reach = at->line_of_action + view.lines.delta - pair->wheel.start_roll_length;
 
     gmi_teeth teeth = gmi_lines_teeth(pair, side, position, &view.lines);
     for (int k = view.lines.first; k <= view.lines.last; ++k) {
@@ -182,14 +188,15 @@ void gmi_side_sum_tables(const gm_pair *pair, const gmi_side *prepared, int side
 }
 
 /* One pair, always there, which touches in the pitch point at mid-face. */
-void gmi_side_sum_simple(const gm_pair *pair, int side, double offset, gmi_side_sum *total) {
-    const double delta = gmi_ideal_penetration(pair, side, offset);
+void gmi_side_sum_simple(const gm_pair *pair, const gmi_engagement *at, int side, double offset,
+                         gmi_side_sum *total) {
+    const double delta = gmi_ideal_penetration(at, side, offset);
     *total = gmi_no_contact();
     if (!(delta > 0.0)) {
         return;
     }
 
-    const double pitch_point = pair->pinion.base_radius * tan(pair->working_pressure_angle);
+    const double pitch_point = pair->pinion.base_radius * tan(at->working_pressure_angle);
     total->sum = delta;
     total->contact = total->by_delta = 1.0;
     total->pairs = 1;
@@ -217,15 +224,7 @@ int gmi_check_flanks(const gm_pair *pair, const gm_flanks *pinion_flanks,
                      const gm_flanks *wheel_flanks) {
     const int pinion_fits = pinion_flanks == NULL || pinion_flanks->teeth == pair->pinion.teeth;
     const int wheel_fits = wheel_flanks == NULL || wheel_flanks->teeth == pair->wheel.teeth;
-    if (!(pinion_fits && wheel_fits)) {
-        return GM_ERR_TOOTH;
-    }
-
-    /* Both gears' tables run along one t1. */
-    const int faces_are_equal = pair->wheel.face_start == pair->pinion.face_start &&
-                                pair->wheel.face_width == pair->pinion.face_width;
-    const int is_ideal = pinion_flanks == NULL && wheel_flanks == NULL;
-    return is_ideal || faces_are_equal ? GM_OK : GM_ERR_GEOMETRY;
+    return pinion_fits && wheel_fits ? GM_OK : GM_ERR_TOOTH;
 }
 
 /* ---------------------------------------------------------------------------------------------
@@ -239,9 +238,11 @@ static int simple(const gm_pair *pair, const gm_state *state, gm_penetration *re
         status = gmi_check_offset(position.offset, position.offset_rate);
     }
     if (status == GM_OK) {
+        gmi_engagement at;
         gmi_side_sum drive, coast;
-        gmi_side_sum_simple(pair, GM_DRIVE, position.offset, &drive);
-        gmi_side_sum_simple(pair, GM_COAST, position.offset, &coast);
+        (void)gmi_engagement_find(pair, NULL, &at);
+        gmi_side_sum_simple(pair, &at, GM_DRIVE, position.offset, &drive);
+        gmi_side_sum_simple(pair, &at, GM_COAST, position.offset, &coast);
         gmi_penetration_set(pair, &drive, &coast, position.offset_rate, GMI_DERIVATIVES, result);
     }
     return status;
@@ -256,15 +257,16 @@ int gm_penetration_simple(const gm_pair *pair, const gm_state *state, gm_penetra
 }
 
 /* One side of two gears that no mesh has been prepared for. */
-static gmi_side_sum side_sum(const gm_pair *pair, const gm_flanks *pinion_flanks,
-                             const gm_flanks *wheel_flanks, int side, const gm_position *position) {
+static gmi_side_sum side_sum(const gm_pair *pair, const gmi_engagement *at,
+                             const gm_flanks *pinion_flanks, const gm_flanks *wheel_flanks,
+                             int side, const gm_position *position) {
     gmi_side prepared;
     gmi_side_sum sum;
-    gmi_side_init(&prepared, pair, pinion_flanks, wheel_flanks, side);
-    if (gmi_side_is_clear(pair, &prepared, side, position->offset)) {
+    gmi_side_init(&prepared, pair, at, pinion_flanks, wheel_flanks, side);
+    if (gmi_side_is_clear(at, &prepared, side, position->offset)) {
         return gmi_no_contact();
     }
-    gmi_side_sum_3d(pair, &prepared, side, position, GMI_DERIVATIVES, &sum);
+    gmi_side_sum_3d(pair, at, &prepared, side, position, GMI_DERIVATIVES, &sum);
     return sum;
 }
 
@@ -291,8 +293,12 @@ int gm_penetration_3d(const gm_pair *pair, const gm_flanks *pinion_flanks,
         return status;
     }
 
-    const gmi_side_sum drive = side_sum(pair, pinion_flanks, wheel_flanks, GM_DRIVE, &position);
-    const gmi_side_sum coast = side_sum(pair, pinion_flanks, wheel_flanks, GM_COAST, &position);
+    gmi_engagement at;
+    (void)gmi_engagement_find(pair, NULL, &at);
+    const gmi_side_sum drive =
+        side_sum(pair, &at, pinion_flanks, wheel_flanks, GM_DRIVE, &position);
+    const gmi_side_sum coast =
+        side_sum(pair, &at, pinion_flanks, wheel_flanks, GM_COAST, &position);
     gmi_penetration_set(pair, &drive, &coast, position.offset_rate, GMI_DERIVATIVES, result);
     return GM_OK;
 }

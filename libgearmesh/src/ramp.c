@@ -28,8 +28,9 @@ typedef struct traces {
 static trace trace_of(const gm_flank_ramp *ramp, const gmi_grid *grid, double profile) {
     trace along;
     along.per_profile = ramp->per_t2 / grid->profile_cells;
-    along.at_zero = ramp->offset + along.per_profile * profile;
-    along.per_t1 = ramp->per_t1 + along.per_profile * (grid->direction * grid->climb);
+    along.at_zero = ramp->offset + ramp->per_t1 * grid->face_origin + along.per_profile * profile;
+    along.per_t1 =
+        ramp->per_t1 * grid->face_scale + along.per_profile * (grid->direction * grid->climb);
     return along;
 }
 

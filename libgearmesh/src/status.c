@@ -17,6 +17,10 @@ const char *gm_status_text(int status) {
         return "no contact within half a base pitch carries the torque";
     case GM_UNDETERMINED:
         return "without torque the position within the backlash is undetermined";
+    case GM_POSE_OUT_OF_MESH:
+        return "the gears are posed so that they do not mesh: tips or faces miss each other, or a "
+               "tip meets the "
+               "mate's root";
     case GM_ERR_NULL:
         return "a required pointer is NULL";
     case GM_ERR_PARAMETER:

@@ -15,11 +15,11 @@
  * wheel acts force * (sin(alpha), sign cos(alpha), -sign tan(beta_b)) at
  *     (r_bp cos(alpha) + rho sin(alpha), sign (rho cos(alpha) - r_bp sin(alpha)), z_0 + b t1).
  */
-void gmi_wrench_add_side(const gm_pair *pair, const gmi_side_force *side, int side_of_teeth,
-                         gm_wrench *wrench) {
+void gmi_wrench_add_side(const gm_pair *pair, const gmi_engagement *at, const gmi_side_force *side,
+                         int side_of_teeth, gm_wrench *wrench) {
     const double sign = gmi_side_sign(side_of_teeth);
-    const double sin_alpha = sin(pair->working_pressure_angle);
-    const double cos_alpha = cos(pair->working_pressure_angle);
+    const double sin_alpha = sin(at->working_pressure_angle);
+    const double cos_alpha = cos(at->working_pressure_angle);
     const double force = side->force;
     const double f_x = force * sin_alpha;
     const double f_y = force * sign * cos_alpha;
@@ -36,7 +36,7 @@ void gmi_wrench_add_side(const gm_pair *pair, const gmi_side_force *side, int si
     const double m_z = force * sign * r_b;
 
     /* About the wheel axis: less d e_x cross force. */
-    const double d = pair->center_distance;
+    const double d = at->center_distance;
     const double on_wheel_force[3] = {f_x, f_y, f_z};
     const double about_pinion[3] = {m_x, m_y, m_z};
     const double about_wheel[3] = {m_x, m_y + d * f_z, -force * sign * pair->wheel.base_radius};
@@ -48,4 +48,20 @@ void gmi_wrench_add_side(const gm_pair *pair, const gmi_side_force *side, int si
         wrench->pinion_force[k] -= on_wheel_force[k];
         wrench->pinion_moment[k] -= about_pinion[k];
     }
+}
+
+/* The same vector, seen from axes that are turned back by the angle. */
+static void turn(double vector[3], double cosine, double sine) {
+    const double x = vector[0];
+    vector[0] = cosine * x - sine * vector[1];
+    vector[1] = sine * x + cosine * vector[1];
+}
+
+void gmi_wrench_turn(gm_wrench *wrench, double angle) {
+    const double cosine = cos(angle);
+    const double sine = sin(angle);
+    turn(wrench->pinion_force, cosine, sine);
+    turn(wrench->pinion_moment, cosine, sine);
+    turn(wrench->wheel_force, cosine, sine);
+    turn(wrench->wheel_moment, cosine, sine);
 }

@@ -105,6 +105,8 @@ enum gm_status {
                 1e9 rad/s or m/s */
     GM_NO_EQUILIBRIUM = 3, /**< no contact within |x| < p_bt / 2 carries the torque */
     GM_UNDETERMINED = 4,   /**< no torque: any position within the backlash is in equilibrium */
+    GM_POSE_OUT_OF_MESH =
+        5, /**< posed so that tips or faces miss each other, or a tip meets the root of its mate */
 
     GM_ERR_NULL = -1,      /**< a required pointer is NULL */
     GM_ERR_PARAMETER = -2, /**< a parameter is out of its range, see gm_pair_params_check() */
@@ -685,6 +687,16 @@ enum gm_law {
 };
 
 /**
+ * How the wheel stands against the drawing: where its axis and its face have moved, along the axes of the file comment.
+ * The drawing stays what it is; angles are counted from its zeros, so that the transmission error contains the shift.
+ */
+typedef struct gm_pose {
+    double center_distance_change; /**< along +x, away from the pinion (m) [0] */
+    double offset;                 /**< along +y (m) [0] */
+    double axial_shift;            /**< along +z (m) [0] */
+} gm_pose;
+
+/**
  * Model and law of a mesh. Fill with gm_mesh_params_default(), then set at least the stiffness.
  *
  * The simple model takes the same K and D of one pair of teeth: its spring is K eps_alpha, its damper D eps_alpha, so
@@ -699,6 +711,7 @@ typedef struct gm_mesh_params {
     double damping; /**< D of one pair of teeth likewise, 0 .. 1e30 N s/m [0] */
     double
         simple_stiffness; /**< spring of the simple model, 1e-30 .. 1e30 N/m [NaN: K eps_alpha] */
+    gm_pose pose;         /**< of the wheel [as drawn] */
 } gm_mesh_params;
 
 /**
@@ -736,8 +749,8 @@ GM_API size_t gm_mesh_size(const gm_mesh_params *params, const gm_pair *pair);
  * @param[in]  wheel_flanks   deviations of the wheel's teeth, NULL = ideal
  * @param[in]  memory         at least gm_mesh_size() bytes, aligned for double
  * @param[in]  memory_size    bytes in memory
- * @return GM_OK, GM_ERR_NULL, GM_ERR_PARAMETER, GM_ERR_GEOMETRY (not a pair; or flanks for faces that do not begin
- *         and end together), GM_ERR_TOOTH (flanks of another number of teeth), GM_ERR_MEMORY (too little, or not aligned)
+ * @return GM_OK, GM_ERR_NULL, GM_ERR_PARAMETER, GM_ERR_GEOMETRY (not a pair), GM_ERR_TOOTH (flanks of another number
+ *         of teeth), GM_ERR_MEMORY (too little, or not aligned), GM_STATE_NOT_FINITE or GM_POSE_OUT_OF_MESH (the pose)
  */
 GM_API int gm_mesh_init(gm_mesh **mesh, const gm_mesh_params *params, const gm_pair *pair,
                         const gm_flanks *pinion_flanks, const gm_flanks *wheel_flanks, void *memory,
