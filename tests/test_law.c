@@ -137,6 +137,74 @@ static void gradient_of_the_force_is_that_of_differences(void) {
     GM_ASSERT(kinks < compared / 4);
 }
 
+/*
+ * How the touching part moves with the flanks: K is next to nothing here, so that the force of the side that is approached
+ * is D v contact, and its derivatives are those of the contact of the second model, whose differences in long double are
+ * exact to 1e-8. At a kink (a line that enters, a root that merges) the one-sided differences disagree: left out, and
+ * counted.
+ */
+static void touching_part_moves_as_in_the_second_model(void) {
+    uint64_t seed = UINT64_C(63);
+    int compared = 0, kinks = 0, by_flanks = 0;
+    for (int i = 0; i < 4000; ++i) {
+        random_case c;
+        gm_test_context("case %d, seed %llx", i, (unsigned long long)seed);
+        GM_ASSERT_INT(random_case_make(&c, &seed, i % 4 != 0), GM_OK);
+        const double r_bp = c.pair.pinion.base_radius, r_bw = c.pair.wheel.base_radius;
+        const int side = i % 3 == 0 ? GM_COAST : GM_DRIVE;
+        const double approach = side == GM_DRIVE ? 1.0 : -1.0;
+        const gm_state state = {c.pinion_angle, c.wheel_angle, approach / r_bp, 0.0};
+        plain_mesh room;
+        gm_mesh *mesh;
+        gm_mesh_result r;
+        GM_ASSERT_INT(plain_mesh_make(&room, &c.pair, c.use[0], c.use[1], 1e-30, 1.0, &mesh),
+                      GM_OK);
+        const int status = gm_mesh_evaluate(mesh, &state, GM_WANT_DERIVATIVES, NULL, &r);
+        const double contact = side == GM_DRIVE ? r.contact.drive_contact : r.contact.coast_contact;
+        const int is_spur = fabs((double)c.model.face_advance) < 1e-3 * c.params.normal_module;
+        if (status != GM_OK || !(contact > 0.0) || is_spur || fabs(c.pinion_angle) > 10.0) {
+            random_case_free(&c);
+            continue;
+        }
+
+        /* By x alone, as the wheel turns; and by the phase alone, as both gears roll. */
+        const double by_offset = -r.force_by_wheel_angle / r_bw;
+        const double by_phase = (r.force_by_pinion_angle - r_bp * by_offset) / r_bp;
+        for (int rolls = 0; rolls < 2; ++rolls) {
+            const long double h = 1e-7L * c.params.normal_module;
+            long double moved[3];
+            for (int k = 0; k < 3; ++k) {
+                model_result m;
+                const long double step = (k - 1) * h;
+                const long double pinion =
+                    c.pinion_angle + (rolls ? step / c.model.base_radius[0] : 0.0L);
+                const long double wheel =
+                    c.wheel_angle + (rolls ? step : -step) / c.model.base_radius[1];
+                model_evaluate(&c.model, c.model_use[0], c.model_use[1], pinion, wheel, 0.0L, 0.0L,
+                               &m);
+                moved[k] = m.contact[side];
+            }
+            const double exact = approach * (rolls ? by_phase : by_offset);
+            const double forward = (double)((moved[2] - moved[1]) / h);
+            const double backward = (double)((moved[1] - moved[0]) / h);
+            const double size = fabs(exact) + fabs(by_offset);
+            if (fabs(forward - backward) > 1e-3 * size) {
+                ++kinks;
+                continue;
+            }
+            ++compared;
+            by_flanks += rolls && c.amplitude > 0.0 && exact != 0.0;
+            GM_ASSERT_ABS(0.5 * (forward + backward), exact,
+                          1e-5 * size + 1e-6 / c.params.normal_module);
+        }
+        random_case_free(&c);
+    }
+    gm_test_context("all cases");
+    GM_ASSERT(compared > 1000);
+    GM_ASSERT(by_flanks > 200);
+    GM_ASSERT(kinks < compared / 4);
+}
+
 /* [Paper, Eqs. 9-11] with |x| in Eq. 10 */
 static void simple_model_is_a_spring_with_backlash(void) {
     const gm_pair pair = reference_pair(REFERENCE_FACE_WIDTH);
@@ -218,6 +286,7 @@ int main(int argc, char **argv) {
         GM_TEST(force_is_stiffness_and_damping_of_a_side),
         GM_TEST(force_of_a_mesh_is_that_of_its_sides),
         GM_TEST(gradient_of_the_force_is_that_of_differences),
+        GM_TEST(touching_part_moves_as_in_the_second_model),
         GM_TEST(simple_model_is_a_spring_with_backlash),
         GM_TEST(mean_stiffness_and_eigenfrequency_are_those_of_the_contact_ratio),
     };
