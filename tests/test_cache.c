@@ -1,7 +1,7 @@
 /* SPDX-FileCopyrightText: The gearmesh authors */
 /* SPDX-License-Identifier: BSD-3-Clause */
 
-/* The look-up cache against the exact evaluation: the same at nodes, as near as stated between them, exact or
+/* The cache against the exact evaluation: the same at nodes, as near as stated between them, exact or
  * exactly zero outside, and no more memory or work than asked for. */
 #include "cache.h" /* what the objects hold */
 #include "gearmesh/gearmesh_io.h"

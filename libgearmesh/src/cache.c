@@ -2,7 +2,7 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 
 /*
- * Look-up in place of the 3D model for one flank side: per tooth pass a table over phase and delta.
+ * A cache in place of the 3D model for one flank side: per tooth pass a table over phase and delta.
  *
  * A column is one phase of one tooth pass. Its nodes stand at equal steps of delta from where that phase begins to
  * touch; each keeps the exact sum, the exact derivatives by delta and phase, and the mixed derivative from its
