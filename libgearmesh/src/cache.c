@@ -113,7 +113,10 @@ static void find_knots(const gm_cache *cache, double knots[KNOTS]) {
     const double sign = cache->side == GM_DRIVE ? 1.0 : -1.0;
     const field_ends low = find_field(pair, at, cache->lowest);
     const field_ends high = find_field(pair, at, fmax(0.0, cache->lowest) + 2.0 * cache->depth);
+
+    /* Columns stand a margin off the range that a kink moves over. */
     const double margin = kink_margin * p_bt;
+
     int count = 0;
     insert_knot(knots, &count, 0.0);
     insert_knot(knots, &count, p_bt);
@@ -295,6 +298,8 @@ static gmi_side_sum exact_at(const gm_cache *cache, gm_position *position, doubl
 /* Where contact begins, or a little below; infinite if no line exists at this phase. */
 static double find_start(const gm_cache *cache, gm_position *position) {
     const double fine = ldexp(cache->depth, -START_BISECTIONS);
+
+    /* In growing steps upwards to the first delta at which something touches. */
     double without = cache->lowest;
     double step = cache->depth;
     for (; exact_at(cache, position, without + step).sum == 0.0; step *= 2.0) {
@@ -303,6 +308,8 @@ static double find_start(const gm_cache *cache, gm_position *position) {
             return HUGE_VAL;
         }
     }
+
+    /* Bisection between there and the last delta without contact. */
     while (step > fine) {
         step *= 0.5;
         if (exact_at(cache, position, without + step).sum == 0.0) {
@@ -337,6 +344,8 @@ static void fill_column(gm_cache *cache, int pass, int index) {
     const size_t column = (size_t)pass * (size_t)cache->columns + (size_t)index;
     gm_position position = {0, 0, cache->phases[index], 0.0, 0.0};
     set_teeth(cache, pass, &position);
+
+    /* Nodes from the first touch on; none where no line exists. */
     const double start = find_start(cache, &position);
     if (start < HUGE_VAL) {
         float *values = values_of(cache, column);
@@ -416,12 +425,16 @@ static int read_column(const gm_cache *cache, size_t column, double delta, colum
     const double place = (delta - cache->starts[column]) * cache->per_step;
     const column_value none = {0.0, 0.0, 0.0, 0.0};
     *value = none;
+
+    /* Before the first node nothing touches; beyond the last one nothing is known. */
     if (!(place > 0.0)) {
         return 1;
     }
     if (place >= (double)(cache->nodes - 1)) {
         return 0;
     }
+
+    /* The nodes around it. */
     const int n = (int)place;
     const float *a = values_of(cache, column) + (size_t)n * NODE_VALUES;
     const float *b = a + NODE_VALUES;
@@ -429,6 +442,8 @@ static int read_column(const gm_cache *cache, size_t column, double delta, colum
     const double b_sum = (double)b[NODE_SUM], b_by_delta = (double)b[NODE_BY_DELTA];
     const double a_by_phase = (double)a[NODE_BY_PHASE], a_mixed = (double)a[NODE_MIXED];
     const double b_by_phase = (double)b[NODE_BY_PHASE], b_mixed = (double)b[NODE_MIXED];
+
+    /* Cubic in delta: the sum and its slope, and their derivatives by the phase. */
     const hermite at = hermite_value(place - (double)n);
     const hermite slope = hermite_slope(place - (double)n);
     value->sum = combine(&at, a_sum, a_by_delta, b_sum, b_by_delta);
@@ -457,6 +472,8 @@ static void join_columns(const gm_cache *cache, int index, double phase, const c
                          const column_value *b, gmi_side_sum *sum) {
     const double width = cache->phases[index + 1] - cache->phases[index];
     const double place = (phase - cache->phases[index]) / width;
+
+    /* Sum and derivative by delta, each cubic in the phase. */
     const hermite at = hermite_value(place);
     const double value = combine(&at, a->sum, a->by_phase * width, b->sum, b->by_phase * width);
     const double by_delta =
@@ -464,9 +481,13 @@ static void join_columns(const gm_cache *cache, int index, double phase, const c
     if (!(value > 0.0)) {
         return;
     }
+
+    /* The derivative by the phase is that of the same cubic. */
     const hermite slope = hermite_slope(place);
     const double by_phase =
         combine(&slope, a->sum, a->by_phase * width, b->sum, b->by_phase * width) / width;
+
+    /* The touching part is the derivative by delta, but for the slope of the flanks. */
     sum->sum = value;
     sum->by_delta = by_delta * cache->per_step;
     sum->by_origin = cache->side == GM_DRIVE ? by_phase : -by_phase;
@@ -481,14 +502,19 @@ int gmi_cache_look_up(gm_cache *cache, const gm_position *position, gmi_side_sum
     if (delta <= cache->lowest) {
         return 1;
     }
+
+    /* Teeth that never meet, or a phase outside the table: the exact evaluation answers. */
     const int pass = pass_of(cache, position);
     if (pass < 0 || position->phase < 0.0 || position->phase > cache->phases[cache->columns - 1]) {
         return 0;
     }
+
+    /* Both columns around the phase, filled where they are not yet. */
     const int index = column_before(cache, position->phase);
     const size_t column = (size_t)pass * (size_t)cache->columns + (size_t)index;
     need_column(cache, pass, index);
     need_column(cache, pass, index + 1);
+
     column_value a, b;
     if (!read_column(cache, column, delta, &a) || !read_column(cache, column + 1, delta, &b)) {
         return 0;
@@ -523,6 +549,7 @@ int gm_cache_error(gm_cache *cache, int states, unsigned seed, gm_cache_errors *
     double sum_largest = 0.0, sum_squares = 0.0, contact_largest = 0.0, contact_squares = 0.0;
     uint64_t random = seed;
     for (int i = 0; i < states; ++i) {
+        /* A random tooth pass, phase and depth behind the first touch. */
         const int pass = (int)(gmi_random_unit(&random) * (double)cache->passes);
         gm_position position = {0, 0, gmi_random_unit(&random) * last_phase, 0.0, 0.0};
         const int index = column_before(cache, position.phase);

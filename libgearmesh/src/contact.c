@@ -142,6 +142,8 @@ void gmi_side_sum_ideal(const gm_pair *pair, const gmi_engagement *at, int side,
     if (count <= 0 || !(below < above)) {
         return;
     }
+
+    /* Whole lines; what is cut off helical ones is taken away below. */
     total->pairs = count;
     total->contact = (double)count * face;
 

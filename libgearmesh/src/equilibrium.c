@@ -78,6 +78,8 @@ static int solve(const problem *p, bracket within, double travel, double reach, 
         if (fabs(value) <= p->resolution * slope) {
             return 1;
         }
+
+        /* Where the load is reached is the upper end, where it is not the lower one. */
         if (value >= 0.0) {
             within.upper = travel;
             within.end = CARRIES;
@@ -92,6 +94,8 @@ static int solve(const problem *p, bracket within, double travel, double reach, 
         if (within.end != RANGE_ENDS && within.upper - within.lower <= p->resolution) {
             return within.end == CARRIES; /* a step of the sum */
         }
+
+        /* Newton, if it stays within the bracket; else half of it, or outwards. */
         const double newton = k < NEWTON_STEPS && slope > 0.0 ? travel - value / slope : gmi_nan();
         if (within.end == RANGE_ENDS) {
             travel = fmin(fmin(newton, travel + reach), within.upper);
@@ -140,6 +144,7 @@ static int find_loaded(const problem *p, double guess, double *found, gm_mesh_re
     const double peak = sum_peak(p, loaded_side(p));
     const double lower =
         clamp(0.5 * p->mesh->engagement.backlash - peak, limit); /* nothing touches */
+
     /* Beyond all deviations the sum is next to linear: from there Newton's method comes close at once. */
     const double reach = fmax(p->target + 3.0 * fmax(peak, 0.0), p->resolution);
     const double start = fmin(lower + reach, limit);
@@ -147,6 +152,7 @@ static int find_loaded(const problem *p, double guess, double *found, gm_mesh_re
     const bracket open = {lower, limit, RANGE_ENDS};
     const bracket bent = {lower, limit, LOAD_FALLS};
 
+    /* From the guess, from beyond all deviations, and with a falling load in mind. */
     int carried = guessed && solve(p, open, guess, reach, found, result);
     if (!carried) {
         carried = solve(p, open, start, reach, found, result);
@@ -154,6 +160,8 @@ static int find_loaded(const problem *p, double guess, double *found, gm_mesh_re
     if (!carried) {
         carried = solve(p, bent, start, reach, found, result);
     }
+
+    /* An earlier place, before a line leaves, counts first. */
     const double reached = carried ? *found : limit;
     if (solve_before_departure(p, lower, reached, found, result)) {
         carried = 1;
@@ -173,6 +181,8 @@ static int find_unloaded(const problem *p, double guess, double *found, gm_mesh_
     if (!(within.lower < within.upper)) {
         return GM_UNDETERMINED;
     }
+
+    /* Both sides have to press there, or any place nearby would do as well. */
     const int guessed = guess > within.lower && guess < within.upper;
     const double middle = within.lower + 0.5 * (within.upper - within.lower);
     if (!solve(p, within, guessed ? guess : middle, 0.0, found, result) ||

@@ -62,6 +62,8 @@ static double *side_init(gmi_tables *side, int tables, int face_nodes, int profi
     side->count = 0;
     side->ramp_count = 0;
     side->peak = 0.0;
+
+    /* Tables, their peaks and the pitch deviations one behind the other. */
     side->values = doubles;
     doubles +=
         (size_t)tables * (size_t)side->face_nodes * (size_t)side->profile_nodes * GMI_NODE_DOUBLES;
@@ -69,6 +71,8 @@ static double *side_init(gmi_tables *side, int tables, int face_nodes, int profi
     doubles += tables;
     side->pitch = doubles;
     doubles += teeth;
+
+    /* All teeth ideal. */
     side->table = ints;
     for (int tooth = 0; tooth < teeth; ++tooth) {
         side->pitch[tooth] = 0.0;
@@ -216,9 +220,12 @@ static void fill_table(const gmi_tables *side, double *table, const double *devi
                        double factor) {
     const size_t nodes = (size_t)side->face_nodes * (size_t)side->profile_nodes;
     const size_t row = (size_t)side->profile_nodes * GMI_NODE_DOUBLES;
+
+    /* Values first: differences look at their neighbours. */
     for (size_t k = 0; k < nodes; ++k) {
         table[k * GMI_NODE_DOUBLES] = deviation[k] * factor;
     }
+
     for (int face = 0; face < side->face_nodes; ++face) {
         for (int profile = 0; profile < side->profile_nodes; ++profile) {
             double *node = table + (size_t)face * row + (size_t)profile * GMI_NODE_DOUBLES;
@@ -256,10 +263,13 @@ int gm_flanks_set_table(gm_flanks *flanks, int side, int tooth, const double *de
         return GM_ERR_DEVIATION;
     }
 
+    /* The next place, prepared for the walk along a line. */
     const int place = tables->count++;
     double *table = tables->values + (size_t)place * table_doubles(tables);
     fill_table(tables, table, deviation, factor);
     tables->table_peak[place] = table_maximum(table, table_doubles(tables));
+
+    /* Hand it to its tooth, or to all. */
     const double before = tooth == GM_ALL_TEETH ? 0.0 : tooth_peak(tables, tooth);
     if (tooth != GM_ALL_TEETH) {
         tables->table[tooth] = place;
@@ -309,6 +319,7 @@ int gm_flanks_set_ramps(gm_flanks *flanks, int side, const gm_flank_ramp *ramps,
         return GM_ERR_PARAMETER;
     }
 
+    /* All of them are checked before one is taken. */
     gm_flank_ramp scaled[GM_FLANK_RAMPS_MAX];
     for (int k = 0; k < count; ++k) {
         const gm_flank_ramp ramp = {factor * ramps[k].offset, factor * ramps[k].per_t1,
@@ -319,6 +330,7 @@ int gm_flanks_set_ramps(gm_flanks *flanks, int side, const gm_flank_ramp *ramps,
         }
         scaled[k] = ramp;
     }
+
     memcpy(tables->ramps, scaled, (size_t)count * sizeof scaled[0]);
     tables->ramp_count = count;
     if (tables->capacity == 0) { /* places on the flank are then in t1, t2 */

@@ -24,8 +24,8 @@
 #define GMI_LARGEST_ANGLE 1e9
 
 /*
- * Numbers beyond these are refused where they come in. Nobody means them, and within them no product in an evaluation
- * overflows, so that nothing is looked for on the way.
+ * Numbers beyond these are refused where they come in. No gear has them, and within them no product in an evaluation
+ * overflows, so that evaluations need no checks of their own.
  */
 #define GMI_LARGEST_SPEED      1e9   /* of a gear (rad/s), and of approach (m/s) */
 #define GMI_LARGEST_OFFSET     1e18  /* of the simple model, which takes any other x (m) */

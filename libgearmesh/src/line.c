@@ -12,7 +12,7 @@
  *
  * The place on the line is s, in cells of the leading table from the face line behind: it begins again with each face
  * line, so it is also the place between two nodes of a profile line. Along the profile u counts cells in the
- * direction in which the line climbs, whichever that is.
+ * direction in which the line climbs.
  *
  * Crossings come in order from two to four arithmetic sequences: face lines (constant t1; one sequence for both
  * tables if their grids agree) and profile lines (constant t2) of each table. Rounding may place a crossing just
@@ -71,6 +71,8 @@ void gmi_grid_init(gmi_grid *grid, const gmi_tables *tables, double climb, doubl
         *grid = ideal_grid;
         return;
     }
+
+    /* Cells and strides, counted the way the line climbs. */
     const int upwards = climb > 0.0;
     const double profile_cells = (double)(tables->profile_nodes - 1);
     grid->last_face = tables->face_nodes - 2;
@@ -83,6 +85,8 @@ void gmi_grid_init(gmi_grid *grid, const gmi_tables *tables, double climb, doubl
     grid->profile_cells = profile_cells;
     grid->face_origin = face_origin;
     grid->face_scale = face_scale;
+
+    /* Grid lines per t1, and per length along the line of action. */
     grid->face_rate = (double)(tables->face_nodes - 1) * face_scale;
     grid->face_base = (double)(tables->face_nodes - 1) * face_origin;
     grid->per_rho = profile_cells / length;
@@ -125,6 +129,7 @@ SPECIALIZED double begin(trace *path, const gmi_grid *grid, const double *table,
     f->half_slope += grid->face_kick * (along_face + mixed * q) + grid->profile_kick * path->slope;
     f->curvature += grid->bend * mixed;
 
+    /* The profile line ahead, and the place where the table ends. */
     path->next_profile = s + larger(1.0 - q, LEAST_DISTANCE) * grid->profile_spacing;
     return s + larger(grid->profile_cells - u, LEAST_DISTANCE) * grid->profile_spacing;
 }
@@ -134,6 +139,8 @@ SPECIALIZED void cross_face(trace *path, const gmi_grid *grid, double s, int wan
     path->ahead += grid->row;
     const double ahead = path->ahead[GMI_NODE_FACE];
     const double back = path->ahead[GMI_NODE_FACE - grid->step] - ahead;
+
+    /* Interpolated to where the line is between two profile lines. */
     const double distance = (path->next_profile - s) * grid->rate;
     f->half_slope += grid->face_kick * (ahead + distance * back);
     f->curvature -= grid->bend * back;
@@ -178,6 +185,8 @@ static inline void add_moments(const piece *part, double begin, double end, gmi_
     const double middle = 0.5 * (begin + end);
     const double s = part->s + middle;
     const double slope_at_middle = 2.0 * (part->f.half_slope + middle * part->f.curvature);
+
+    /* About the middle: mean times place, and what the slope adds. */
     total->sum_t1 += s * integral_of(&part->f, length, middle) +
                      length * (length * length * (1.0 / 12.0)) * slope_at_middle;
     total->contact_t1 += s * length;
@@ -189,6 +198,7 @@ static inline void add_touching(const piece *part, double begin, double end, int
     const double length = end - begin;
     const double middle = 0.5 * (begin + end);
     const double integral = integral_of(&part->f, length, middle);
+
     total->sum += larger(integral, 0.0); /* below 0 by rounding where f is next to nothing */
     total->contact += length;
     if (wanted & GMI_DERIVATIVES) {
@@ -218,6 +228,8 @@ static void add_split(const piece *part, int wanted, gmi_line_sum *total) {
     if (!(part->length > 0.0)) { /* two crossings at the same t1, up to rounding */
         return;
     }
+
+    /* Roots within the piece divide it into three parts at most. */
     double cuts[4] = {0.0, 0.0, 0.0, part->length};
     const double discriminant = f.half_slope * f.half_slope - f.curvature * f.value;
     if (discriminant > 0.0) {
@@ -235,6 +247,8 @@ static void add_split(const piece *part, int wanted, gmi_line_sum *total) {
             add_root(part, cuts[2], per_slope, total);
         }
     }
+
+    /* In each part f has one sign, which it shows in the middle. */
     for (int k = 0; k < 3; ++k) {
         const double middle = 0.5 * (cuts[k] + cuts[k + 1]);
         const double at_middle = f.value + middle * (2.0 * f.half_slope + middle * f.curvature);
@@ -274,8 +288,12 @@ SPECIALIZED void advance(walk_state *at, double end, int wanted, gmi_line_sum *s
     const double control = value + length * at->f.half_slope;
     const double end_half_slope = at->f.half_slope + length * at->f.curvature;
     const double end_value = control + length * end_half_slope;
+
+    /* The slopes of both tables at the end. */
     const double first_slope = at->first.slope + length * at->first.slope_rate;
     const double second_slope = at->second.slope + length * at->second.slope_rate;
+
+    /* Touching all along, which is two pieces of three; or in part; or not at all. */
     if (smaller(smaller(value, control), end_value) > 0.0) {
         at->three_sums += length * (value + control + end_value);
         at->contact += length;
@@ -291,6 +309,8 @@ SPECIALIZED void advance(walk_state *at, double end, int wanted, gmi_line_sum *s
         const piece part = piece_ahead(at, length, wanted);
         add_split(&part, wanted, split);
     }
+
+    /* Go there. */
     at->s = end;
     at->f.value = end_value;
     at->f.half_slope = end_half_slope;
@@ -309,6 +329,8 @@ SPECIALIZED void walk_cell(walk_state *at, const gmi_grid *first, const gmi_grid
     for (;;) {
         const double face_line =
             same_faces || at->second.faces <= 0 ? end : smaller(end, at->second.next_face);
+
+        /* Profile lines of both tables in their order, up to the face line. */
         for (;;) {
             if (at->first.next_profile < at->second.next_profile) {
                 if (!(at->first.next_profile < face_line)) {
@@ -326,6 +348,8 @@ SPECIALIZED void walk_cell(walk_state *at, const gmi_grid *first, const gmi_grid
                 cross_profile(&at->second, second, p, wanted, &at->f);
             }
         }
+
+        /* On to the face line of the second table, or to the end. */
         advance(at, face_line, wanted, split);
         if (same_faces || !(face_line < end)) {
             return;
@@ -343,12 +367,15 @@ SPECIALIZED void enter_next_cell(walk_state *at, const gmi_grid *first, const gm
     if (wanted & GMI_MOMENTS) {
         at->faces += 1.0;
     }
+
+    /* All places on the line are counted from the new face line on. */
     at->first.faces -= 1;
     at->first.next_profile -= 1.0;
     at->second.next_profile -= 1.0;
     if (!same_faces) {
         at->second.next_face -= 1.0;
     }
+
     cross_face(&at->first, first, 0.0, wanted, &at->f);
     if (same_faces) {
         cross_face(&at->second, second, 0.0, wanted, &at->f);
@@ -417,6 +444,7 @@ static void integrate_tables(const gmi_line *line, const gmi_grid *first, const 
     const double to = line->to * first->face_rate + first->face_base;
     const int face = cell_of(v1, first->last_face);
     const double s = v1 - (double)face;
+
     int same_faces = 1;
     gmi_grid scaled;
     walk_state at; /* every field is set below; zeroing all first costs as much as ten pieces */
@@ -424,6 +452,8 @@ static void integrate_tables(const gmi_line *line, const gmi_grid *first, const 
     at.faces = (double)face;
     at.f = (quadratic){line->gap, line->half_slope / first->face_rate, 0.0};
     at.three_sums = at.contact = at.two_first = at.two_second = 0.0;
+
+    /* Into both tables. Face lines are shared, or those of the second one are counted in cells of the first. */
     at.first.faces = cell_of(to, first->last_face) - face;
     double end = smaller(to - (double)face, begin(&at.first, first, first_table, first_profile,
                                                   line->from, face, s, s, &at.f));
@@ -449,7 +479,9 @@ static void integrate_tables(const gmi_line *line, const gmi_grid *first, const 
         end = smaller(end, begin(&at.second, second, second_table, second_profile, line->from,
                                  second_face, p, s, &at.f));
     }
+
     result->at_from = at.f.value;
+
     /* A walk of its own for each mask that solvers use: what is not wanted costs nothing in it. */
     enum { DAMPED = GMI_DERIVATIVES | GMI_CONTACT_DERIVATIVES };
     if (!same_faces) {
@@ -474,12 +506,16 @@ void gmi_line_integrate(const gmi_line *line, const gmi_grid *pinion, const gmi_
     if (wanted & GMI_CONTACT_DERIVATIVES) {
         result->roots = result->roots_pinion = result->roots_wheel = 0.0;
     }
+
+    /* The flank with a table leads; if both have one, the pinion. */
     if (line->pinion != NULL) {
         integrate_tables(line, pinion, line->pinion, line->pinion_profile, wheel, line->wheel,
                          line->wheel_profile, wanted, result);
     } else if (line->wheel != NULL) {
         integrate_tables(line, wheel, line->wheel, line->wheel_profile, &ideal_grid, NULL, 0.0,
                          wanted, result);
+
+        /* The first flank was the wheel. */
         result->wheel = result->pinion;
         result->pinion = 0.0;
         if (wanted & GMI_CONTACT_DERIVATIVES) {

@@ -109,6 +109,7 @@ int gm_mesh_init(gm_mesh **mesh, const gm_mesh_params *params, const gm_pair *pa
         return GM_ERR_NULL;
     }
     *mesh = NULL;
+
     int status = memory == NULL ? GM_ERR_NULL : check(params, pair);
     if (status == GM_OK) {
         status = gmi_check_flanks(pair, pinion_flanks, wheel_flanks);
@@ -131,6 +132,8 @@ int gm_mesh_init(gm_mesh **mesh, const gm_mesh_params *params, const gm_pair *pa
     *own_pair = *pair;
     made->pair = own_pair;
     made->model = params->model;
+
+    /* What its evaluations have in common. */
     made->law = law_of(params, pair);
     made->engagement = engagement;
     made->is_posed = engagement.offset_shift != 0.0 || engagement.phase_shift != 0.0;
@@ -227,10 +230,12 @@ SPECIALIZED void set_result(const gm_mesh *mesh, const gmi_side_sum *drive,
         gmi_law_force(&mesh->law, coast, -offset_rate, mask, &forces[GM_COAST]);
         coast_force = &forces[GM_COAST];
     }
+
     result->drive_force = drive_force->force;
     result->coast_force = coast_force->force;
     result->force = drive_force->force - coast_force->force;
 
+    /* What was asked for; NaN in place of the rest. */
     if (wanted & GM_WANT_DERIVATIVES) {
         set_force_derivatives(mesh->pair, drive_force, coast_force, result);
     } else {
@@ -288,6 +293,7 @@ static void evaluate_cached(const gm_mesh *mesh, const gm_position *position, in
         gmi_mesh_evaluate_exact(mesh, position, wanted, result);
         return;
     }
+
     const int other = held == GM_DRIVE ? GM_COAST : GM_DRIVE;
     const gmi_side_sum *sums[2];
     sums[held] = &memory[held];
@@ -330,6 +336,8 @@ int gm_mesh_evaluate_at(const gm_mesh *mesh, const gm_position *position, int wa
         gmi_mesh_result_set_nan(result);
         return status;
     }
+
+    /* Most calls want the force alone: a copy for them leaves all else out. */
     if (mesh->cache != NULL) {
         evaluate_cached(mesh, position, wanted, result);
     } else if (wanted == GM_WANT_FORCE) {

@@ -118,6 +118,8 @@ static problem problem_of(const char *field, const char *requirement) {
 static problem check_profile_range(const gm_modifications *of, const gm_modification *m) {
     const double range = m->profile_range;
     static const char field[] = "profile_range";
+
+    /* Each way to give it has its own range. */
     switch (m->profile_range_by) {
     case GM_RANGE_LENGTH:
         if (!(range > 0.0 && range <= roll_of(of) * (1.0 + 4.0 * DBL_EPSILON))) {
@@ -167,6 +169,8 @@ static problem check_one(const gm_modifications *of, const gm_modification *m) {
     if (is_relief(m->kind) && m->amount < 0.0) {
         return problem_of("amount", "a number >= 0: reliefs remove material");
     }
+
+    /* Ranges, of the kinds that have them. */
     if (has_face_range(m->kind) && !(m->face_range > 0.0 && m->face_range <= of->face_width)) {
         return problem_of("face_range", "a length above 0 and at most the face width");
     }
@@ -176,6 +180,7 @@ static problem check_one(const gm_modifications *of, const gm_modification *m) {
             return found;
         }
     }
+
     return check_shape(of, m);
 }
 
@@ -219,6 +224,8 @@ int gm_modifications_check(const gm_modifications *modifications, int *index, co
     if (status == GM_ERR_PARAMETER) {
         found = check_all(modifications, &at);
     }
+
+    /* What the caller wants to hear of it. */
     if (index != NULL) {
         *index = at;
     }
@@ -263,6 +270,8 @@ static double share_of_range(const gm_modifications *of, const gm_modification *
     if (m->kind == GM_MOD_PROFILE_CROWNING) {
         return fabs(2.0 * t2 - 1.0);
     }
+
+    /* Reliefs: along the face, the profile, or for corners both, which falls off along the diagonal. */
     if (has_face_range(m->kind)) {
         s -= (is_at_face_ii(m->kind) ? 1.0 - t1 : t1) / range_share(of, m, FACE);
     }
@@ -316,6 +325,8 @@ int gm_modifications_add(const gm_modifications *modifications, int face_nodes, 
     if (!are_nodes(face_nodes) || !are_nodes(profile_nodes)) {
         return GM_ERR_PARAMETER;
     }
+
+    /* Row by row, as the table lies in memory. */
     for (int face = 0; face < face_nodes; ++face) {
         const double t1 = (double)face / (face_nodes - 1);
         for (int profile = 0; profile < profile_nodes; ++profile) {
@@ -359,6 +370,8 @@ int gm_modifications_split(const gm_modifications *modifications,
     if (ramps == NULL || (rest == NULL && modifications->count > 0)) {
         return GM_ERR_NULL;
     }
+
+    /* Linear reliefs become ramps while there is room for them. */
     for (int k = 0; k < modifications->count; ++k) {
         const gm_modification *m = &modifications->list[k];
         if (m->amount == 0.0) {
@@ -399,9 +412,13 @@ static double error_of(const gm_modifications *of, const gm_modification *m, int
         const double cell = (m->kind == GM_MOD_CROWNING) == (axis == FACE) ? 2.0 / cells : 0.0;
         return curvature_of(m, length_of(of, m)) * cell * cell / 8.0;
     }
+
+    /* Kinds that are linear along this axis have no error along it. */
     if (!(share > 0.0)) {
         return 0.0;
     }
+
+    /* What its curvature loses within a cell, or its kink costs; never more than the whole amount. */
     const double cell = 1.0 / (cells * share);
     const double at = cells * share;
     const double part = at - floor(at);
@@ -444,6 +461,7 @@ static int most_cells(int axis, const int base[2], int others) {
 static int divide_limit(const gm_modifications *of, const int base[2], double limit, int cells[2]) {
     static const double face_part[] = {1e-6,  0.125, 0.25,  0.375,     0.5,
                                        0.625, 0.75,  0.875, 1.0 - 1e-6};
+
     int fewest = 0;
     for (size_t k = 0; k < sizeof face_part / sizeof face_part[0]; ++k) {
         const int face = fewest_cells(of, FACE, base[FACE], most_cells(FACE, base, base[PROFILE]),
@@ -451,6 +469,8 @@ static int divide_limit(const gm_modifications *of, const int base[2], double li
         if (face == 0) {
             continue;
         }
+
+        /* The rest of the limit is for the profile. */
         const int profile =
             fewest_cells(of, PROFILE, base[PROFILE], most_cells(PROFILE, base, face),
                          (1.0 - face_part[k]) * limit);

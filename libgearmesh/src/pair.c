@@ -373,11 +373,15 @@ static problem check_thickness(const gm_pair *pair, const gm_pair_params *p) {
     const int backlash_given = !isnan(p->backlash);
     const int pinion_fits = pair->pinion.normal_thickness > 0.0;
     const int wheel_fits = pair->wheel.normal_thickness > 0.0;
+
+    /* A tooth has to be there at the reference circle. */
     if (!(pinion_fits && wheel_fits)) {
         const enum gm_role thin = pinion_fits ? GM_WHEEL : GM_PINION;
         return geometry_problem(backlash_given ? "backlash" : thickness_field(p, thin),
                                 "a value that leaves the teeth thicker than 0");
     }
+
+    /* Thicker ones would overlap by more than a tooth. */
     if (!(pair->backlash > -pair->transverse_base_pitch)) {
         const int pinion_thicker = pair->pinion.normal_thickness > pair->wheel.normal_thickness;
         const enum gm_role thick = pinion_thicker ? GM_PINION : GM_WHEEL;

@@ -138,6 +138,7 @@ static void add_line(const side_view *view, const gmi_flank *pinion, const gmi_f
         (rho_origin - pair->pinion.start_roll_length) * prepared->pinion_grid.per_rho,
         (view->wheel_reach - rho_origin) * prepared->wheel_grid.per_rho,
     };
+
     gmi_line_sum sum;
     if (prepared->ramps > 0) {
         gmi_ramps_integrate(&line, &prepared->pinion_grid, &prepared->wheel_grid, prepared->pinion,
@@ -175,6 +176,7 @@ void gmi_side_sum_tables(const gm_pair *pair, const gmi_engagement *at, const gm
     view.ends = gmi_line_ends_find(pair, at, &view.lines);
     view.wheel_reach = at->line_of_action + view.lines.delta - pair->wheel.start_roll_length;
 
+    /* Line by line, each with the teeth that meet on it; those that cannot reach each other are left out. */
     gmi_teeth teeth = gmi_lines_teeth(pair, side, position, &view.lines);
     for (int k = view.lines.first; k <= view.lines.last; ++k) {
         const gmi_flank pinion = gmi_flank_of(prepared->pinion, teeth.pinion);

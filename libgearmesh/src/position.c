@@ -133,6 +133,7 @@ int gm_position_from_pinion_angle(const gm_pair *pair, double pinion_angle, doub
     if (pair == NULL) {
         return GM_ERR_NULL;
     }
+
     if (!gmi_is_finite(pinion_angle) || !gmi_is_finite(offset) || !gmi_is_finite(offset_rate)) {
         return GM_STATE_NOT_FINITE;
     }

@@ -106,6 +106,7 @@ void gmi_ramps_integrate(const gmi_line *line, const gmi_grid *pinion, const gmi
     ramps.pinion = ramps.all;
     add_traces(&ramps, wheel_tables, wheel, line->wheel_profile, line->from, line->to);
 
+    /* From edge to edge: between two of them all ramps together are one straight line. */
     *result = none;
     for (double from = line->from; from < line->to;) {
         gmi_line part = *line;
@@ -114,6 +115,8 @@ void gmi_ramps_integrate(const gmi_line *line, const gmi_grid *pinion, const gmi
         part.to = next_edge(&ramps, from, line->to);
         const double by_pinion = take_off(&part, &ramps, 0, ramps.pinion);
         const double by_wheel = take_off(&part, &ramps, ramps.pinion, ramps.all);
+
+        /* Tables and straight line as one; the slope of the ramps counts where the flanks touch. */
         gmi_line_integrate(&part, pinion, wheel, wanted, &sum);
         sum.pinion -= by_pinion * sum.contact;
         sum.wheel -= by_wheel * sum.contact;
@@ -121,6 +124,7 @@ void gmi_ramps_integrate(const gmi_line *line, const gmi_grid *pinion, const gmi
             sum.roots_pinion -= by_pinion * sum.roots;
             sum.roots_wheel -= by_wheel * sum.roots;
         }
+
         add_part(&sum, wanted, result);
         if (from == line->from) {
             result->at_from = sum.at_from;
