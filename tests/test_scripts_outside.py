@@ -274,6 +274,17 @@ class Packages(Case):
             self.assertIn("there is no such folder", self.call(script, "run.csv", "--output", "no/where")[2])
 
 
+    def test_help_of_the_bash_scripts_is_their_whole_head(self):
+        for name in ("bench", "demo", "reference", "setup", "test"):
+            with open(os.path.join(SCRIPTS, name), encoding="utf-8") as file:
+                head = file.read().split("#\n", 1)[1].split("\nset ", 1)[0]
+            text = re.sub("(?m)^# ?", "", head) + "\n"
+            result = subprocess.run([os.path.join(SCRIPTS, name), "--help"], capture_output=True, text=True)
+            self.assertEqual((result.returncode, result.stdout, result.stderr), (0, text, ""), name)
+            self.assertIn("Exit status:", text)
+            self.assertIn(f"    scripts/{name} ", text)
+
+
 class BrokenFiles(Case):
     def test_broken_runs_are_refused_by_name(self):
         good = run_text(400)
