@@ -4,7 +4,7 @@
 /*
  * The result file: `FILE.part` while it grows, renamed to FILE when it is whole. Its name says the format:
  * HDF5 if it ends in .h5 or .hdf5, else CSV. A run that ends early leaves FILE.part with the rows until
- * then and, where the disk lets it, the reason.
+ * then and the reason.
  */
 #ifndef GEARSIM_OUTPUT_H
 #define GEARSIM_OUTPUT_H

@@ -3,7 +3,7 @@
 
 /*
  * CSV: provenance lines that begin with '#', a line of names, rows; a run that ends early leaves whole
- * lines and, where the disk lets it, a last line `# incomplete: why`.
+ * lines and a last line `# incomplete: why`, which takes the place of rows where the disk is full.
  */
 #include "number.h"
 #include "output_format.h"
@@ -16,6 +16,7 @@
 enum { BUFFER_SIZE = 1 << 16, ROW_SIZE_MAX = COLUMNS_MAX * NUMBER_TEXT_SIZE };
 
 typedef struct csv_memory {
+    off_t head;    /* bytes of the lines before the first row */
     off_t written; /* bytes of whole lines in the file */
     size_t used;   /* bytes in the buffer; whole lines only */
     char buffer[BUFFER_SIZE];
@@ -106,9 +107,11 @@ static int begin(output_file *output, const config *conf, const char *const name
         }
         strcat(header, names[output->columns.name[i]]);
     }
-    failed = failed || put_line(output, header, "");
+    failed = failed || put_line(output, header, "") || flush(output) != 0;
 
-    return failed ? EXIT_RUN_FAILED : flush(output);
+    csv_memory *memory = output->memory;
+    memory->head = memory->written;
+    return failed ? EXIT_RUN_FAILED : 0;
 }
 
 static int row(output_file *output, const double values[]) {
@@ -130,14 +133,32 @@ static int row(output_file *output, const double values[]) {
     return output->error != 0 ? EXIT_RUN_FAILED : 0;
 }
 
-/* Says in the file that it is not whole, if the disk takes that line as a whole. */
-static void mark_incomplete(output_file *output, const char *why) {
+/* Gives up as many of the last rows as hold so many bytes. Uses the buffer, which is empty by now. */
+static void give_up_rows(const output_file *output, size_t bytes) {
+    csv_memory *memory = output->memory;
+    const off_t rows = memory->written - memory->head;
+    const size_t size = rows < BUFFER_SIZE ? (size_t)rows : BUFFER_SIZE;
+
+    /* The end of the file, and within it the end of the last row that can stay. */
+    if (size >= bytes && pread(output->result.data, memory->buffer, size,
+                               memory->written - (off_t)size) == (ssize_t)size) {
+        memory->written -= (off_t)(size - whole_lines(memory->buffer, size - bytes));
+    }
+    cut_to_whole_lines(output);
+}
+
+/* Says in the file that it is not whole; if the disk takes no more, in the place of the last rows. */
+static void mark_incomplete(const output_file *output, const char *why) {
     char line[512];
     size_t done;
     const int length = snprintf(line, sizeof line, "# incomplete: %s\n", why);
 
-    if (length > 0 && (size_t)length < sizeof line &&
-        write_all(output->result.data, line, (size_t)length, &done) != 0) {
+    if (length < 0 || (size_t)length >= sizeof line ||
+        write_all(output->result.data, line, (size_t)length, &done) == 0) {
+        return;
+    }
+    give_up_rows(output, (size_t)length);
+    if (write_all(output->result.data, line, (size_t)length, &done) != 0) {
         cut_to_whole_lines(output);
     }
 }
