@@ -486,10 +486,12 @@ class Values(Case):
                 self.accepted("run.ini", "--check", "--set", override)
 
     def test_whole_numbers(self):
-        for section, key in [("gears", "pinion_teeth"), ("output", "oversampling"), ("output", "digits"),
-                             ("analysis", "positions")]:
-            with self.subTest(key):
-                self.refused_value(section, key, "10.5", "must be a whole number")
+        for section, key, requirement in [("gears", "pinion_teeth", "from 3 to 100000"),
+                                          ("output", "oversampling", "from 1 to 64"), ("output", "digits", "from 3 to 17"),
+                                          ("analysis", "positions", "from 1 to 100000000")]:
+            for value in ["10.5", "0.5", "1000000000.5"]:
+                with self.subTest(key, value=value):
+                    self.refused_value(section, key, value, "must be a whole number " + requirement)
 
     def test_seed_is_an_unsigned_64_bit_integer(self):
         self.write("run.ini", PARAMS)

@@ -219,15 +219,17 @@ static int check_range(const key_spec *key, double value, const char *text, char
     const key_range *range = &key->range;
     const int low = range->open_low ? value <= range->low : value < range->low;
     const int high = range->open_high ? value >= range->high : value > range->high;
+    const int broken = key->kind == KEY_COUNT && value != floor(value);
     char requirement[80];
     char slip[80];
 
-    if (!low && !high) {
+    if (!low && !high && !broken) {
         return 0;
     }
     describe_range(range, requirement, sizeof requirement);
     describe_slip(key, value, slip, sizeof slip);
-    snprintf(fault, KEY_FAULT_SIZE, "must be %s (got %.80s)%s", requirement, text, slip);
+    snprintf(fault, KEY_FAULT_SIZE, "must be %s%s (got %.80s)%s", broken ? "a whole number " : "",
+             requirement, text, slip);
     return 1;
 }
 
@@ -244,14 +246,7 @@ static int assign_number(const key_spec *key, double *target, const char *text, 
 static int assign_count(const key_spec *key, int *target, const char *text, char *fault) {
     double value = 0.0;
 
-    if (read_number(text, &value, fault)) {
-        return 1;
-    }
-    if (check_range(key, value, text, fault)) {
-        return 1;
-    }
-    if (value != floor(value)) {
-        snprintf(fault, KEY_FAULT_SIZE, "must be a whole number (got %.80s)", text);
+    if (read_number(text, &value, fault) || check_range(key, value, text, fault)) {
         return 1;
     }
     *target = (int)value;
