@@ -151,7 +151,7 @@ GM_TEST_UNUSED static void gm_test_set_up(void) {
 }
 
 static int gm_test_wanted(const char *name, int argc, char **argv) {
-    for (int i = 1; i < argc; i++) {
+    for (int i = 1; i < argc; ++i) {
         if (strcmp(argv[i], name) == 0) {
             return 1;
         }
@@ -169,7 +169,7 @@ GM_TEST_UNUSED static int gm_test_main(const char *suite_name, const gm_test *te
     CU_pSuite suite =
         CU_add_suite_with_setup_and_teardown(suite_name, NULL, NULL, gm_test_set_up, NULL);
     int added = suite != NULL;
-    for (size_t i = 0; added && i < count; i++) {
+    for (size_t i = 0; added && i < count; ++i) {
         if (gm_test_wanted(tests[i].name, argc, argv)) {
             added = CU_add_test(suite, tests[i].name, tests[i].function) != NULL;
         }

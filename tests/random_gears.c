@@ -68,7 +68,7 @@ static void any_radii(uint64_t *seed, gm_pair_params *params) {
     model_pair_init(&model, params);
     double *const tip[2] = {&params->pinion_tip_radius, &params->wheel_tip_radius};
     double *const start[2] = {&params->pinion_start_radius, &params->wheel_start_radius};
-    for (int g = 0; g < 2; g++) {
+    for (int g = 0; g < 2; ++g) {
         if (chance(seed, 70)) {
             const double height = gm_test_uniform(seed, 0.7, 1.5) + (double)model.shift[g];
             *tip[g] = (double)model.reference_radius[g] + params->normal_module * height;
@@ -143,7 +143,7 @@ static double *any_table(uint64_t *seed, int face_nodes, int profile_nodes, doub
     double *values = calloc((size_t)(face_nodes * profile_nodes), sizeof *values);
     const int kind = gm_test_integer(seed, 0, 9);
     const double level = gm_test_uniform(seed, -amplitude, amplitude);
-    for (int i = 0; i < face_nodes * profile_nodes; i++) {
+    for (int i = 0; i < face_nodes * profile_nodes; ++i) {
         const double u = 2.0 * (i / profile_nodes) / (face_nodes - 1) - 1.0;
         const double v = 2.0 * (i % profile_nodes) / (profile_nodes - 1) - 1.0;
         values[i] = kind == 0   ? level
@@ -156,7 +156,7 @@ static double *any_table(uint64_t *seed, int face_nodes, int profile_nodes, doub
 static void fill_side(random_flanks *f, uint64_t *seed, int side, int tables, int face_nodes,
                       int profile_nodes, double amplitude, double factor, long double exact) {
     const int teeth = gm_flanks_teeth(f->flanks);
-    for (int k = 0; k < tables; k++) {
+    for (int k = 0; k < tables; ++k) {
         /* One table: mostly for all teeth. As many as teeth: one each. Else: all, then some. */
         const int tooth = tables == teeth ? k
                           : k == 0 && (tables == 1 ? chance(seed, 70) : 1)
@@ -165,14 +165,14 @@ static void fill_side(random_flanks *f, uint64_t *seed, int side, int tables, in
         double *values = any_table(seed, face_nodes, profile_nodes, amplitude / factor);
         f->tables[side][f->table_count[side]++] = values;
         GM_ASSERT_INT(gm_flanks_set_table(f->flanks, side, tooth, values, factor), GM_OK);
-        for (int t = 0; t < teeth; t++) {
+        for (int t = 0; t < teeth; ++t) {
             if (tooth == GM_ALL_TEETH || tooth == t) {
                 f->model.table[side][t] = (model_table){face_nodes, profile_nodes, values, exact};
             }
         }
     }
     if (chance(seed, 40)) {
-        for (int t = 0; t < teeth; t++) {
+        for (int t = 0; t < teeth; ++t) {
             const double pitch = gm_test_uniform(seed, -amplitude, amplitude);
             GM_ASSERT_INT(gm_flanks_set_pitch(f->flanks, side, t, pitch), GM_OK);
             f->model.pitch[side][t] = pitch;
@@ -222,7 +222,7 @@ static void set_ramps(random_flanks *f, uint64_t *seed, int side, double amplitu
     const int count = chance(seed, 50)  ? 0
                       : chance(seed, 5) ? MODEL_RAMPS
                                         : gm_test_integer(seed, 1, 5);
-    for (int k = 0; k < count; k++) {
+    for (int k = 0; k < count; ++k) {
         ramps[k] = k > 0 && chance(seed, 10) ? ramps[k - 1] : any_ramp(seed, amplitude, climb);
         f->model.ramp[side][k] =
             (model_ramp){exact, ramps[k].offset, ramps[k].per_t1, ramps[k].per_t2};
@@ -240,7 +240,7 @@ void random_flanks_make(random_flanks *f, uint64_t *seed, const gm_pair *pair, i
     int tables[2];
     int face_nodes[2];
     int profile_nodes[2];
-    for (int side = 0; side < 2; side++) {
+    for (int side = 0; side < 2; ++side) {
         tables[side] = chance(seed, 10) ? teeth : table_counts[gm_test_integer(seed, 0, 3)];
         any_grid(seed, &face_nodes[side], &profile_nodes[side]);
         f->model.table[side] = calloc((size_t)teeth, sizeof(model_table));
@@ -260,7 +260,7 @@ void random_flanks_make(random_flanks *f, uint64_t *seed, const gm_pair *pair, i
     const long double exact =
         1.0L / cosl(atanl((long double)pair->face_advance / pair->face_width));
     uint64_t ramp_seed = *seed; /* a sequence of their own */
-    for (int side = 0; side < 2; side++) {
+    for (int side = 0; side < 2; ++side) {
         fill_side(f, seed, side, tables[side], face_nodes[side], profile_nodes[side], amplitude,
                   normal ? pair->normal_to_transverse : 1.0, normal ? exact : 1.0L);
         const double climb = (side == wheel ? 1.0 : -1.0) * pair->face_advance /
@@ -271,8 +271,8 @@ void random_flanks_make(random_flanks *f, uint64_t *seed, const gm_pair *pair, i
 }
 
 void random_flanks_free(random_flanks *f) {
-    for (int side = 0; side < 2; side++) {
-        for (int k = 0; k < f->table_count[side]; k++) {
+    for (int side = 0; side < 2; ++side) {
+        for (int k = 0; k < f->table_count[side]; ++k) {
             free(f->tables[side][k]);
         }
         free(f->model.table[side]);
@@ -314,7 +314,7 @@ int random_case_make(random_case *c, uint64_t *seed, int with_flanks) {
     random_params(seed, &c->params, &c->model);
     const int status = gm_pair_init(&c->pair, &c->params);
     c->amplitude = with_flanks ? c->params.normal_module * any_size(seed, -4.0, -2.3) : 0.0;
-    for (int g = 0; g < 2 && status == GM_OK; g++) {
+    for (int g = 0; g < 2 && status == GM_OK; ++g) {
         if (with_flanks && chance(seed, 80)) {
             random_flanks_make(&c->flanks[g], seed, &c->pair, g, c->amplitude);
             c->use[g] = c->flanks[g].flanks;

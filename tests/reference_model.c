@@ -43,9 +43,9 @@ static void set_thickness(model_pair *pair, const gm_pair_params *params) {
     const long double cos_beta = cosl(params->helix_angle);
     const double given[2] = {params->pinion_normal_thickness, params->wheel_normal_thickness};
     long double change = 0.0L;
-    for (int pass = 0; pass < 2; pass++) {
+    for (int pass = 0; pass < 2; ++pass) {
         long double thick = 0.0L;
-        for (int g = 0; g < 2; g++) {
+        for (int g = 0; g < 2; ++g) {
             const long double nominal = m_n * (pi / 2 + 2 * pair->shift[g] * tanl(alpha_n));
             pair->normal_thickness[g] = or_else(given[g], nominal) + change;
             const long double transverse = pair->normal_thickness[g] / cos_beta;
@@ -73,13 +73,13 @@ static void set_active_profile(model_pair *pair, const gm_pair_params *params) {
     const long double distance = pair->reference_radius[0] + pair->reference_radius[1];
     const long double too_close = apart - (pair->center_distance - distance) / m_n;
     const long double cut = maximum(0.0L, too_close);
-    for (int g = 0; g < 2; g++) {
+    for (int g = 0; g < 2; ++g) {
         const long double r_b = pair->base_radius[g];
         pair->tip_radius[g] =
             or_else(tip[g], pair->reference_radius[g] + m_n * (1 + pair->shift[g] - cut));
         pair->rho_end[g] = sqrtl(pair->tip_radius[g] * pair->tip_radius[g] - r_b * r_b);
     }
-    for (int g = 0; g < 2; g++) {
+    for (int g = 0; g < 2; ++g) {
         const long double r_b = pair->base_radius[g];
         if (isnan(start[g])) {
             pair->rho_start[g] = maximum(0.0L, pair->line_of_action - pair->rho_end[1 - g]);
@@ -104,7 +104,7 @@ void model_pair_init(model_pair *pair, const gm_pair_params *params) {
     pair->beta_b = params->base_helix == GM_BASE_HELIX_PAPER
                        ? atanl(tanl(beta) / cosl(pair->alpha_t))
                        : asinl(sinl(beta) * cosl(alpha_n));
-    for (int g = 0; g < 2; g++) {
+    for (int g = 0; g < 2; ++g) {
         pair->reference_radius[g] = pair->transverse_module * pair->teeth[g] / 2;
         pair->base_radius[g] = pair->reference_radius[g] * cosl(pair->alpha_t);
     }
@@ -185,10 +185,10 @@ static long double plane_of(const model_ramp *ramp, long double t1, long double 
 
 static long double approach_at(const line *l, long double t1) {
     long double delta = l->rho[0] + l->rho[1] - l->pair->line_of_action + l->extra;
-    for (int g = 0; g < 2; g++) {
+    for (int g = 0; g < 2; ++g) {
         const long double t2 = profile_position(l, g, t1);
         delta += deviation(l->table[g], t1, t2);
-        for (int k = 0; k < l->ramp_count[g]; k++) {
+        for (int k = 0; k < l->ramp_count[g]; ++k) {
             delta -= maximum(0.0L, plane_of(&l->ramp[g][k], t1, t2));
         }
     }
@@ -206,8 +206,8 @@ static int find_breaks(const line *l, long double low, long double high, long do
     int count = 0;
     breaks[count++] = low;
     breaks[count++] = high;
-    for (int g = 0; g < 2; g++) {
-        for (int k = 0; k < l->ramp_count[g]; k++) {
+    for (int g = 0; g < 2; ++g) {
+        for (int k = 0; k < l->ramp_count[g]; ++k) {
             const long double first = plane_of(&l->ramp[g][k], 0.0L, profile_position(l, g, 0.0L));
             const long double last = plane_of(&l->ramp[g][k], 1.0L, profile_position(l, g, 1.0L));
             if (first != last) {
@@ -218,12 +218,12 @@ static int find_breaks(const line *l, long double low, long double high, long do
         if (table == NULL || table->face_nodes == 0) {
             continue;
         }
-        for (int k = 0; k < table->face_nodes; k++) {
+        for (int k = 0; k < table->face_nodes; ++k) {
             breaks[count++] = (long double)k / (table->face_nodes - 1);
         }
         const long double t2_first = profile_position(l, g, 0.0L);
         const long double slope = profile_position(l, g, 1.0L) - t2_first;
-        for (int k = 0; k < table->profile_nodes && slope != 0.0L; k++) {
+        for (int k = 0; k < table->profile_nodes && slope != 0.0L; ++k) {
             breaks[count++] = ((long double)k / (table->profile_nodes - 1) - t2_first) / slope;
         }
         if (count > MAX_BREAKS) {
@@ -231,7 +231,7 @@ static int find_breaks(const line *l, long double low, long double high, long do
         }
     }
     int inside = 0;
-    for (int i = 0; i < count; i++) {
+    for (int i = 0; i < count; ++i) {
         if (breaks[i] >= low && breaks[i] <= high) {
             breaks[inside++] = breaks[i];
         }
@@ -244,7 +244,7 @@ static int find_breaks(const line *l, long double low, long double high, long do
 static void add_touching(const line *l, const long double c[3], long double low, long double high,
                          long double u_a, long double u_b, int side, model_result *result) {
     const long double length = (high - low) * (u_b - u_a);
-    for (int k = 0; k < 3; k++) {
+    for (int k = 0; k < 3; ++k) {
         /* Simpson's rule: exact for delta times a linear function. */
         const long double weight = (k == 1 ? 4.0L : 1.0L) / 6.0L * length;
         const long double u = u_a + (u_b - u_a) * k / 2;
@@ -275,14 +275,14 @@ static void add_piece(const line *l, long double low, long double high, int side
         const long double q = -(c[1] + copysignl(sqrtl(discriminant), c[1])) / 2;
         const long double roots[2] = {c[2] != 0.0L ? q / c[2] : -1.0L,
                                       q != 0.0L ? c[0] / q : -1.0L};
-        for (int i = 0; i < 2; i++) {
+        for (int i = 0; i < 2; ++i) {
             if (roots[i] > 0.0L && roots[i] < 1.0L) {
                 cuts[count++] = roots[i];
             }
         }
     }
     qsort(cuts, (size_t)count, sizeof *cuts, compare);
-    for (int i = 0; i < count; i++) {
+    for (int i = 0; i < count; ++i) {
         const long double u_a = cuts[i];
         const long double u_b = i + 1 < count ? cuts[i + 1] : 1.0L;
         const long double u = (u_a + u_b) / 2;
@@ -296,7 +296,7 @@ static void add_line(const line *l, long double border, int side, model_result *
     const model_pair *pair = l->pair;
     long double low = 0.0L;
     long double high = 1.0L;
-    for (int g = 0; g < 2; g++) {
+    for (int g = 0; g < 2; ++g) {
         const long double first = pair->rho_start[g] - border;
         const long double last = pair->rho_end[g] + border;
         if (l->climb[g] == 0.0L) {
@@ -318,7 +318,7 @@ static void add_line(const line *l, long double border, int side, model_result *
     static long double breaks[MAX_BREAKS];
     const int count = find_breaks(l, low, high, breaks);
     const long double before = result->contact[side];
-    for (int i = 0; i + 1 < count; i++) {
+    for (int i = 0; i + 1 < count; ++i) {
         if (breaks[i + 1] > breaks[i]) {
             add_piece(l, breaks[i], breaks[i + 1], side, result);
         }
@@ -335,7 +335,7 @@ static long double reduce(long double angle, int teeth, long long *turns) {
     const long double product = angle * teeth; /* exact: 53 bits times at most 11 */
     const long double k = roundl(product / (2 * pi));
     long double rest = product;
-    for (int i = 0; i < PART_COUNT; i++) {
+    for (int i = 0; i < PART_COUNT; ++i) {
         rest -= k * two_pi_parts[i];
     }
     *turns = (long long)k;
@@ -365,9 +365,9 @@ void model_evaluate(const model_pair *pair, const model_flanks *pinion, const mo
 
     *result = (model_result){0};
     result->offset = r_bp * phi_p - r_bw * phi_w + pair->base_pitch * (turns_p - turns_w);
-    for (int side = 0; side < 2; side++) {
+    for (int side = 0; side < 2; ++side) {
         const int s = side == 0 ? 1 : -1;
-        for (long long i = -reach; i <= reach; i++) {
+        for (long long i = -reach; i <= reach; ++i) {
             /* Drive: wheel tooth j = i; coast: j = i - 1; both counted before the reduction. */
             const long long j = i - turns_p + turns_w - side;
             const int tooth_p = modulo(i - turns_p, z_p);

@@ -144,7 +144,7 @@ static size_t hunting_pass(const fixture *f, const gm_position *position) {
 static const double *starts_around(const fixture *f, const gm_position *position) {
     int index = 0;
     while (index + 2 < f->cache->columns && f->cache->phases[index + 1] <= position->phase) {
-        index++;
+        ++index;
     }
     return f->cache->starts + hunting_pass(f, position) * (size_t)f->cache->columns + index;
 }
@@ -162,7 +162,7 @@ static void measure(fixture *f, int states, uint64_t seed, measured *m) {
     const double full_turn = 6.283185307179586;
     const double sign = f->cache->side == GM_DRIVE ? 1.0 : -1.0;
     memset(m, 0, sizeof *m);
-    for (int i = 0; i < states; i++) {
+    for (int i = 0; i < states; ++i) {
         const double angle = gm_test_uniform(&seed, 0.0, full_turn * f->pair.wheel.teeth);
         const double torque = sign * gm_test_uniform(&seed, 1.0, 40.0);
         double offset;
@@ -190,7 +190,7 @@ static void measure(fixture *f, int states, uint64_t seed, measured *m) {
 
 /* The numbers that gearmesh.h states, for both sides. */
 static void error_is_as_stated(void) {
-    for (int side = GM_DRIVE; side <= GM_COAST; side++) {
+    for (int side = GM_DRIVE; side <= GM_COAST; ++side) {
         gm_test_context("side %d", side);
         gm_cache_params params = default_params();
         params.side = side;
@@ -225,7 +225,7 @@ static void error_can_be_measured(void) {
     /* One per cent more in every node is seen as one: sums are 19 um on average at half the depth. */
     const size_t values =
         (size_t)f.cache->passes * (size_t)f.cache->columns * (size_t)f.cache->nodes * 4;
-    for (size_t i = 0; i < values; i++) {
+    for (size_t i = 0; i < values; ++i) {
         f.cache->values[i] *= 1.01F;
     }
     GM_ASSERT_INT(gm_cache_error(f.cache, 2000, 7, &spoilt), GM_OK);
@@ -257,14 +257,14 @@ static void assert_mixed(fixture *f, const gm_position *node, const gm_penetrati
 
 /* Nodes are kept in single precision. */
 static void nodes_are_exact(void) {
-    for (int side = GM_DRIVE; side <= GM_COAST; side++) {
+    for (int side = GM_DRIVE; side <= GM_COAST; ++side) {
         gm_test_context("side %d", side);
         const gm_cache_params params = params_of(side, 16, 20, 20e-6);
         fixture f;
         make_paper(&f, &params);
         uint64_t seed = UINT64_C(82);
         int above_zero = 0;
-        for (int i = 0; i < 500; i++) {
+        for (int i = 0; i < 500; ++i) {
             gm_position position = random_position(&f, &seed);
             const int column = gm_test_integer(&seed, 0, f.cache->columns - 2);
             const int node = gm_test_integer(&seed, 1, f.cache->nodes - 2);
@@ -297,12 +297,12 @@ static void nodes_are_exact(void) {
 /* What Newton's iteration is told is what the right-hand side does. */
 static void derivatives_are_those_of_the_sum(void) {
     const double dx = 1e-10, dphase = 1e-8; /* 5000 and 10000 times smaller than a cell */
-    for (int side = GM_DRIVE; side <= GM_COAST; side++) {
+    for (int side = GM_DRIVE; side <= GM_COAST; ++side) {
         const gm_cache_params params = params_of(side, 16, 40, 20e-6);
         fixture f;
         make_paper(&f, &params);
         uint64_t seed = UINT64_C(83);
-        for (int i = 0; i < 300; i++) {
+        for (int i = 0; i < 300; ++i) {
             gm_test_context("side %d, state %d", side, i);
             gm_position position = random_position(&f, &seed);
             position.phase = gm_test_uniform(&seed, 0.001, 0.999) * f.pair.transverse_base_pitch;
@@ -333,13 +333,13 @@ static void derivatives_are_those_of_the_sum(void) {
  * ------------------------------------------------------------------------------------------- */
 
 static void beyond_the_depth_it_is_exact(void) {
-    for (int side = GM_DRIVE; side <= GM_COAST; side++) {
+    for (int side = GM_DRIVE; side <= GM_COAST; ++side) {
         const gm_cache_params params = params_of(side, 8, 8, 4e-6);
         fixture f;
         make_paper(&f, &params);
         const double p_bt = f.pair.transverse_base_pitch;
         uint64_t seed = UINT64_C(84);
-        for (int i = 0; i < 300; i++) {
+        for (int i = 0; i < 300; ++i) {
             gm_test_context("side %d, state %d", side, i);
             gm_position position = random_position(&f, &seed);
             position.offset = offset_of(&f, 0.0);
@@ -362,7 +362,7 @@ static void assert_zero_below_first_touch(double depth) {
     fixture f;
     make_paper(&f, &params);
     uint64_t seed = UINT64_C(85);
-    for (int i = 0; i < 300; i++) {
+    for (int i = 0; i < 300; ++i) {
         gm_test_context("depth %g, state %d", depth, i);
         gm_position position = random_position(&f, &seed);
         /* Below any touch no column is filled ... */
@@ -405,10 +405,10 @@ static void sum_rises_from_zero_without_a_dip(void) {
     fixture f;
     make_paper(&f, &params);
     uint64_t seed = UINT64_C(86);
-    for (int i = 0; i < 100; i++) {
+    for (int i = 0; i < 100; ++i) {
         gm_position position = random_position(&f, &seed);
         double before = 0.0;
-        for (int k = 0; k <= 1000; k++) {
+        for (int k = 0; k <= 1000; ++k) {
             gm_test_context("state %d, step %d", i, k);
             position.offset = offset_of(&f, -40e-6 + 0.1e-6 * k);
             const double sum = looked_up_at(&f, &position).drive;
@@ -427,7 +427,7 @@ static void other_flank_is_exact(void) {
     fixture f;
     make_paper(&f, &params);
     uint64_t seed = UINT64_C(87);
-    for (int i = 0; i < 200; i++) {
+    for (int i = 0; i < 200; ++i) {
         gm_position position = random_position(&f, &seed);
         position.offset = -0.5 * f.pair.backlash + gm_test_uniform(&seed, -30e-6, 30e-6);
         const gm_penetration exact = exact_at(&f, &position);
@@ -446,20 +446,20 @@ static void bad_states_are_refused_as_without_a_cache(void) {
     gm_position wrong[16];
     int count = 0;
     static const double bad[] = {(double)NAN, HUGE_VAL, -HUGE_VAL};
-    for (int k = 0; k < 3; k++) {
-        for (int field = 0; field < 3; field++) {
+    for (int k = 0; k < 3; ++k) {
+        for (int field = 0; field < 3; ++field) {
             wrong[count] = good;
             double *const fields[] = {&wrong[count].phase, &wrong[count].offset,
                                       &wrong[count].offset_rate};
             *fields[field] = bad[k];
-            count++;
+            ++count;
         }
     }
     wrong[count] = good, wrong[count++].offset = 0.5 * p_bt;
     wrong[count] = good, wrong[count++].phase = 1.5 * p_bt;
     wrong[count] = good, wrong[count++].pinion_tooth = 45;
     wrong[count] = good, wrong[count++].wheel_tooth = -1;
-    for (int i = 0; i < count; i++) {
+    for (int i = 0; i < count; ++i) {
         gm_test_context("position %d", i);
         gm_penetration exact;
         gm_mesh_result r;
@@ -476,14 +476,14 @@ static void bad_states_are_refused_as_without_a_cache(void) {
     }
     /* A phase that is finite but not in [0, p_bt] is legal, and exact. */
     gm_position outside = good;
-    for (int i = 0; i < 2; i++) {
+    for (int i = 0; i < 2; ++i) {
         gm_test_context("phase outside %d", i);
         outside.phase = i == 0 ? -1e-9 : p_bt * (1.0 + 1e-9);
         const gm_penetration exact = exact_at(&f, &outside), r = looked_up_at(&f, &outside);
         GM_ASSERT(memcmp(&r, &exact, sizeof r) == 0);
     }
     gm_test_context("none was filled");
-    for (size_t i = 0; i < (size_t)f.cache->passes * (size_t)f.cache->columns; i++) {
+    for (size_t i = 0; i < (size_t)f.cache->passes * (size_t)f.cache->columns; ++i) {
         if (!isnan(f.cache->starts[i])) {
             GM_ASSERT_NAN(f.cache->starts[i]);
             break;
@@ -522,7 +522,7 @@ static void pairs_and_wrenches_are_exact_on_request(void) {
     fixture f;
     make_paper(&f, &params);
     uint64_t seed = UINT64_C(90);
-    for (int i = 0; i < 200; i++) {
+    for (int i = 0; i < 200; ++i) {
         gm_test_context("state %d", i);
         gm_position position = random_position(&f, &seed);
         position.offset = offset_of(&f, gm_test_uniform(&seed, 0.0, 6e-6));
@@ -547,7 +547,7 @@ static void pairs_and_wrenches_are_exact_on_request(void) {
 
 /* delta times the length of the lines: quadratic in delta, piecewise linear in phase. */
 static void ideal_flanks_need_one_pass(void) {
-    for (int side = GM_DRIVE; side <= GM_COAST; side++) {
+    for (int side = GM_DRIVE; side <= GM_COAST; ++side) {
         gm_test_context("side %d", side);
         gm_cache_params params = default_params();
         params.side = side;
@@ -558,7 +558,7 @@ static void ideal_flanks_need_one_pass(void) {
         GM_ASSERT_INT(f.cache->passes, 1);
         uint64_t seed = UINT64_C(88);
         int count = 0;
-        for (int i = 0; i < 2000; i++) {
+        for (int i = 0; i < 2000; ++i) {
             gm_position position = random_position(&f, &seed);
             const double delta = gm_test_uniform(&seed, -10e-6, 30e-6);
             position.offset = offset_of(&f, delta);
@@ -586,7 +586,7 @@ typedef struct small_flanks {
 static void make_pitch(small_flanks *own, int teeth, int different) {
     const gm_flanks_params params = {.teeth = teeth};
     GM_ASSERT_INT(gm_flanks_init(&own->flanks, &params, own->memory, sizeof own->memory), GM_OK);
-    for (int tooth = 0; tooth < teeth; tooth++) {
+    for (int tooth = 0; tooth < teeth; ++tooth) {
         const double pitch = different ? 1e-6 * (tooth % 7) : 2e-6;
         GM_ASSERT_INT(gm_flanks_set_pitch(own->flanks, GM_DRIVE, tooth, pitch), GM_OK);
     }
@@ -610,7 +610,7 @@ static void passes_are_those_that_happen(void) {
         {45, 41, 1, 1, 1845}, {45, 41, 1, 0, 45}, {45, 41, 0, 1, 41}, {45, 41, 0, 0, 1},
         {40, 30, 1, 1, 120},  {40, 30, 0, 1, 30}, {30, 30, 1, 1, 30}, {20, 60, 1, 1, 60},
     };
-    for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
+    for (size_t i = 0; i < sizeof cases / sizeof cases[0]; ++i) {
         gm_test_context("case %d", (int)i);
         static small_flanks own[2];
         fixture f;
@@ -654,8 +654,8 @@ static void strangers_are_evaluated_exactly(void) {
     f.flanks[1] = own[1].flanks;
     const gm_cache_params params = params_of(GM_DRIVE, 8, 8, 20e-6);
     make_cache(&f, &params);
-    for (int pinion = 0; pinion < 40; pinion++) {
-        for (int wheel = 0; wheel < 30; wheel++) {
+    for (int pinion = 0; pinion < 40; ++pinion) {
+        for (int wheel = 0; wheel < 30; ++wheel) {
             const gm_position position = {pinion, wheel, 1e-3, 0.5 * f.pair.backlash + 5e-6, 0.0};
             const gm_penetration exact = exact_at(&f, &position);
             const gm_penetration r = looked_up_at(&f, &position);
@@ -694,15 +694,15 @@ static void threads_may_fill_and_then_share(void) {
     const int passes = filled.cache->passes, share = passes / THREADS;
     pthread_t threads[THREADS];
     filler work[THREADS];
-    for (int t = 0; t < THREADS; t++) {
+    for (int t = 0; t < THREADS; ++t) {
         work[t] = (filler){filled.cache, t * share, share, -99};
         GM_ASSERT_INT(pthread_create(&threads[t], NULL, fill, &work[t]), 0);
     }
-    for (int t = 0; t < THREADS; t++) {
+    for (int t = 0; t < THREADS; ++t) {
         pthread_join(threads[t], NULL);
         GM_ASSERT_INT(work[t].status, GM_OK);
     }
-    for (size_t i = 0; i < (size_t)passes * (size_t)filled.cache->columns; i++) {
+    for (size_t i = 0; i < (size_t)passes * (size_t)filled.cache->columns; ++i) {
         if (isnan(filled.cache->starts[i])) {
             GM_ASSERT_INT(i, -1);
             break;
@@ -711,7 +711,7 @@ static void threads_may_fill_and_then_share(void) {
     void *before = malloc(filled.size);
     memcpy(before, filled.cache, filled.size);
     uint64_t seed = UINT64_C(89);
-    for (int i = 0; i < 500; i++) {
+    for (int i = 0; i < 500; ++i) {
         gm_position position = random_position(&filled, &seed);
         position.offset = offset_of(&filled, gm_test_uniform(&seed, -20e-6, 20e-6));
         const gm_penetration a = looked_up_at(&filled, &position);
@@ -736,13 +736,13 @@ static void only_what_is_met_is_filled(void) {
     const gm_cache_params params = default_params();
     fixture f;
     make_paper(&f, &params);
-    for (int pass = 0; pass < 10; pass++) {
+    for (int pass = 0; pass < 10; ++pass) {
         const gm_position position = {pass, pass, 1e-3, 0.5 * f.pair.backlash, 0.0};
         (void)looked_up_at(&f, &position);
         (void)looked_up_at(&f, &position);
     }
     int filled = 0;
-    for (size_t i = 0; i < (size_t)f.cache->passes * (size_t)f.cache->columns; i++) {
+    for (size_t i = 0; i < (size_t)f.cache->passes * (size_t)f.cache->columns; ++i) {
         filled += !isnan(f.cache->starts[i]);
     }
     GM_ASSERT_INT(filled, 20);
@@ -761,7 +761,7 @@ static void memory_grows_with_the_resolution_alone(void) {
     gm_mesh *ideal = make_mesh(&pair, NULL, NULL);
     gm_mesh *own_pitch = make_mesh(&pair, own[0].flanks, own[1].flanks);
     size_t before = 0;
-    for (int cells = 4; cells <= 64; cells++) {
+    for (int cells = 4; cells <= 64; ++cells) {
         gm_test_context("%d cells", cells);
         const gm_cache_params in_phase = params_of(GM_DRIVE, cells, 16, 20e-6);
         const size_t size = gm_cache_size(&in_phase, ideal);
@@ -810,7 +810,7 @@ static void wrong_calls_are_refused(void) {
         params_of(GM_DRIVE, 4, 4, HUGE_VAL),
         params_of(GM_DRIVE, 4, 4, 0.26 * p_bt),
     };
-    for (size_t i = 0; i < sizeof wrong / sizeof wrong[0]; i++) {
+    for (size_t i = 0; i < sizeof wrong / sizeof wrong[0]; ++i) {
         gm_test_context("params %d", (int)i);
         assert_refused(&wrong[i], mesh, GM_ERR_PARAMETER);
     }
@@ -858,7 +858,7 @@ static void a_pair_that_hardly_touches_is_measured_in_bounded_time(void) {
     GM_ASSERT_INT(gm_cache_fill(f.cache, 0, f.cache->passes), GM_OK);
     int without = 0;
     const int all = f.cache->passes * f.cache->columns;
-    for (int i = 0; i < all; i++) {
+    for (int i = 0; i < all; ++i) {
         without += !(f.cache->starts[i] < HUGE_VAL);
     }
     GM_ASSERT(without > 0 && without < all);
@@ -873,7 +873,7 @@ static void more_passes_than_any_memory_are_refused(void) {
     const int teeth[2] = {20011, 20021};
     gm_flanks *flanks[2];
     void *memory[2];
-    for (int gear = 0; gear < 2; gear++) {
+    for (int gear = 0; gear < 2; ++gear) {
         const gm_flanks_params sizes = {.teeth = teeth[gear]};
         const size_t size = gm_flanks_size(&sizes);
         memory[gear] = malloc(size);

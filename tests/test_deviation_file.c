@@ -40,7 +40,7 @@ static void refused(const char *text, long line, const char *value, const char *
 }
 
 static const gm_deviation_set *find_set(int tooth, int side) {
-    for (int i = 0; i < deviations.set_count; i++) {
+    for (int i = 0; i < deviations.set_count; ++i) {
         if (deviations.sets[i].tooth == tooth && deviations.sets[i].side == side) {
             return &deviations.sets[i];
         }
@@ -63,7 +63,7 @@ static void nodes_are_stored_along_the_face_first_then_along_the_profile(void) {
     const gm_deviation_set *set = find_set(7, GM_COAST);
     if (GM_ASSERT(set != NULL)) {
         static const double expected[] = {1e-6, 2e-6, -3.5e-6, 4e-6, 5e-6, 6e-6};
-        for (int node = 0; node < 6; node++) {
+        for (int node = 0; node < 6; ++node) {
             GM_ASSERT_REL(set->values[node], expected[node], 0.0);
         }
     }
@@ -78,7 +78,7 @@ static void every_kind_of_set_is_kept_apart(void) {
                                       SET("*,coast") SET("*,drive")),
                   GM_IO_OK);
     GM_ASSERT_INT(deviations.set_count, 6);
-    for (int i = 0; i < 6 && i < deviations.set_count; i++) {
+    for (int i = 0; i < 6 && i < deviations.set_count; ++i) {
         GM_ASSERT_INT(deviations.sets[i].tooth, tooth[i]); /* in the order that the header states */
         GM_ASSERT_INT(deviations.sets[i].side, side[i]);
         GM_ASSERT_REL(deviations.sets[i].values[3], 4e-6, 0.0);
@@ -90,17 +90,17 @@ static void every_kind_of_set_is_kept_apart(void) {
 static const char *shuffled_rows(uint64_t seed, int rows) {
     static char text[20000];
     int order[36];
-    for (int i = 0; i < rows; i++) {
+    for (int i = 0; i < rows; ++i) {
         order[i] = i;
     }
-    for (int i = rows - 1; i > 0 && seed != 0; i--) {
+    for (int i = rows - 1; i > 0 && seed != 0; --i) {
         const int other = gm_test_integer(&seed, 0, i);
         const int swap = order[i];
         order[i] = order[other];
         order[other] = swap;
     }
     strcpy(text, HEADER);
-    for (int i = 0; i < rows; i++) {
+    for (int i = 0; i < rows; ++i) {
         const int set = order[i] / 12;
         const int face = order[i] % 12 / 3;
         const int profile = order[i] % 3;
@@ -111,14 +111,14 @@ static const char *shuffled_rows(uint64_t seed, int rows) {
 }
 
 static void rows_may_come_in_any_order(void) {
-    for (uint64_t seed = 0; seed < 50; seed++) {
+    for (uint64_t seed = 0; seed < 50; ++seed) {
         gm_test_context("seed %d", (int)seed);
         if (!GM_ASSERT_INT(read_deviations(shuffled_rows(seed, 36)), GM_IO_OK) ||
             !GM_ASSERT_INT(deviations.face_nodes, 4) ||
             !GM_ASSERT_INT(deviations.profile_nodes, 3)) {
             break;
         }
-        for (int i = 0; i < 36; i++) {
+        for (int i = 0; i < 36; ++i) {
             GM_ASSERT_REL(deviations.sets[i / 12].values[i % 12], i / 1e6, 1e-15);
         }
         gm_deviations_free(&deviations);
@@ -195,8 +195,8 @@ static void an_uneven_grid_is_refused(void) {
 
 static void one_wrong_position_among_many_rows_is_the_one_that_is_named(void) {
     char text[4000] = HEADER;
-    for (int face = 0; face < 6; face++) {
-        for (int profile = 0; profile < 4; profile++) {
+    for (int face = 0; face < 6; ++face) {
+        for (int profile = 0; profile < 4; ++profile) {
             const double slip = face == 3 && profile == 2 ? 0.01 : 0.0;
             sprintf(text + strlen(text), "0,coast,%.6f,%.6f,1\n", face / 5.0 + slip, profile / 3.0);
         }
@@ -249,7 +249,7 @@ static void positions_in_micrometres_of_grid_lines_are_refused(void) {
     /* More lines than the core takes: 20001, closer than the tolerance can tell apart. */
     static char text[2000000];
     char *end = text + sprintf(text, HEADER);
-    for (int face = 0; face <= 20000; face++) {
+    for (int face = 0; face <= 20000; ++face) {
         end += sprintf(end, "*,*,%.6f,0,1\n*,*,%.6f,1,1\n", face / 20000.0, face / 20000.0);
     }
     refused(text, 2, "too close together", "2 to 10000 uniform ones");
@@ -258,7 +258,7 @@ static void positions_in_micrometres_of_grid_lines_are_refused(void) {
 static void as_many_grid_lines_as_the_core_takes_are_accepted(void) {
     static char text[1000000];
     char *end = text + sprintf(text, HEADER);
-    for (int face = 0; face < 10000; face++) {
+    for (int face = 0; face < 10000; ++face) {
         end += sprintf(end, "*,*,%.5f,0,1\n*,*,%.5f,1,2\n", face / 9999.0, face / 9999.0);
     }
     GM_ASSERT_INT(read_deviations(text), GM_IO_OK);
@@ -270,7 +270,7 @@ static void a_few_scattered_rows_do_not_ask_for_a_large_table(void) {
     /* One row on each of 10000 x 10000 grid lines: the full table would have 800 MB. */
     static char text[1000000];
     char *end = text + sprintf(text, HEADER);
-    for (int line = 0; line < 10000; line++) {
+    for (int line = 0; line < 10000; ++line) {
         end += sprintf(end, "*,*,%.5f,%.5f,1\n", line / 9999.0, line / 9999.0);
     }
     refused(text, 2, "none for t1 = 0, t2 = 0.00010001",
@@ -352,8 +352,8 @@ static gm_deviations own;
 static void make_own(uint64_t seed) {
     static const int tooth[3] = {-1, 0, 44};
     static const int side[3] = {GM_DRIVE, -1, GM_COAST};
-    for (int i = 0; i < 3; i++) {
-        for (int node = 0; node < NODES; node++) {
+    for (int i = 0; i < 3; ++i) {
+        for (int node = 0; node < NODES; ++node) {
             values[i][node] = ldexp(gm_test_uniform(&seed, -1.0, 1.0), node - 30);
         }
         sets[i] = (gm_deviation_set){tooth[i], side[i], values[i]};
@@ -363,7 +363,7 @@ static void make_own(uint64_t seed) {
 
 static void a_written_file_reads_back_to_the_same_bits(void) {
     static const char path[] = IO_TEST_PATH("out.csv");
-    for (uint64_t seed = 0; seed < 20; seed++) {
+    for (uint64_t seed = 0; seed < 20; ++seed) {
         make_own(seed);
         if (!GM_ASSERT_INT(gm_deviations_write(&own, path, &error), GM_IO_OK) ||
             !GM_ASSERT_INT(gm_deviations_read(&deviations, path, TEETH, &error), GM_IO_OK)) {
@@ -372,9 +372,9 @@ static void a_written_file_reads_back_to_the_same_bits(void) {
         GM_ASSERT_INT(deviations.face_nodes, FACE_NODES);
         GM_ASSERT_INT(deviations.profile_nodes, PROFILE_NODES);
         GM_ASSERT_INT(deviations.set_count, 3);
-        for (int i = 0; i < 3; i++) {
+        for (int i = 0; i < 3; ++i) {
             const gm_deviation_set *set = find_set(sets[i].tooth, sets[i].side);
-            for (int node = 0; node < NODES && GM_ASSERT(set != NULL); node++) {
+            for (int node = 0; node < NODES && GM_ASSERT(set != NULL); ++node) {
                 GM_ASSERT(same_bits(set->values[node], values[i][node]));
             }
         }
@@ -416,7 +416,7 @@ static void assert_written(int profile_nodes, const char *expected) {
     own.face_nodes = 2;
     own.profile_nodes = profile_nodes;
     own.set_count = 1;
-    for (int node = 0; node < 2 * profile_nodes; node++) {
+    for (int node = 0; node < 2 * profile_nodes; ++node) {
         values[0][node] = (node + 1) / 1e6;
     }
     GM_ASSERT_INT(gm_deviations_write(&own, path, &error), GM_IO_OK);
@@ -550,9 +550,9 @@ static void write_large_file(const char *path, int teeth, int face_nodes, int pr
     }
     uint64_t seed = 3;
     fprintf(file, HEADER);
-    for (int flank = 0; flank < 2 * teeth; flank++) {
-        for (int face = 0; face < face_nodes; face++) {
-            for (int profile = 0; profile < profile_nodes; profile++) {
+    for (int flank = 0; flank < 2 * teeth; ++flank) {
+        for (int face = 0; face < face_nodes; ++face) {
+            for (int profile = 0; profile < profile_nodes; ++profile) {
                 fprintf(file, "%d,%s,%.6g,%.6g,%.4f\n", flank / 2, flank % 2 ? "coast" : "drive",
                         (double)face / (face_nodes - 1), (double)profile / (profile_nodes - 1),
                         gm_test_uniform(&seed, -20.0, 20.0));

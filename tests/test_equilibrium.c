@@ -37,7 +37,7 @@ static double random_torque(const random_case *c, uint64_t *seed) {
 static void equilibrium_inverts_the_sum(void) {
     uint64_t seed = UINT64_C(51);
     int solved = 0;
-    for (int i = 0; i < 600; i++) {
+    for (int i = 0; i < 600; ++i) {
         random_case c;
         gm_test_context("case %d, seed %llx", i, (unsigned long long)seed);
         GM_ASSERT_INT(random_case_make(&c, &seed, i % 4 != 0), GM_OK);
@@ -70,7 +70,7 @@ static void equilibrium_inverts_the_sum(void) {
                 GM_ASSERT_ABS(there.penetration, torque / stiffness / r_bw, resolution) &&
                 GM_ASSERT_ABS(r.penetration, there.penetration, resolution) &&
                 GM_ASSERT(torque > 0.0 ? there.drive > 0.0 : there.coast > 0.0);
-            solved++;
+            ++solved;
             if (!good) {
                 random_case_free(&c);
                 return;
@@ -91,7 +91,7 @@ static void loaded_transmission_error_of_the_reference_gears(void) {
         double pinion_tip, wheel_tip, mean, peak_to_peak;
     } racks[] = {{46.938390e-3, 43.003591e-3, -50.881e-6, 0.0197e-6},
                  {46.113390e-3, 42.178591e-3, -51.264e-6, 0.0411e-6}};
-    for (int k = 0; k < 2; k++) {
+    for (int k = 0; k < 2; ++k) {
         gm_test_context("rack %d", k);
         gm_pair_params params = reference_params(20e-3);
         params.pinion_tip_radius = racks[k].pinion_tip;
@@ -101,7 +101,7 @@ static void loaded_transmission_error_of_the_reference_gears(void) {
         double lowest = HUGE_VAL;
         double highest = -HUGE_VAL;
         enum { STEPS = 400 };
-        for (int n = 0; n < STEPS; n++) {
+        for (int n = 0; n < STEPS; ++n) {
             double x = NAN;
             GM_ASSERT_INT(equilibrium(&pair, NULL, NULL, pair.pinion.pitch_angle * n / STEPS, 2.8e8,
                                       20.0, &x, NULL),
@@ -133,7 +133,7 @@ static void the_first_of_two_equilibria_counts(void) {
     /* Also from within the second branch, and for a torque that no first step outwards meets by chance. */
     static const double guesses[] = {NAN, 0.5, 0.74, 0.8, 1.0, 3.0, 40.0};
     static const double parts[] = {1.0, 0.9, 1.13, 1.49};
-    for (size_t k = 0; k < 28; k++) {
+    for (size_t k = 0; k < 28; ++k) {
         const double part = parts[k / 7];
         gm_test_context("%g of the torque, guess %g", part, guesses[k % 7]);
         GM_ASSERT_INT(equilibrium_near(&pair, NULL, NULL, angle, 1e8, part * torque,
@@ -154,7 +154,7 @@ static void the_first_of_two_equilibria_counts(void) {
 static void every_equilibrium_found_carries_the_torque(void) {
     uint64_t seed = UINT64_C(52);
     int found = 0;
-    for (int i = 0; i < 1500; i++) {
+    for (int i = 0; i < 1500; ++i) {
         random_case c;
         GM_ASSERT_INT(random_case_make(&c, &seed, i % 2), GM_OK);
         gm_test_context("case %d, helix %g", i, c.params.helix_angle);
@@ -180,7 +180,7 @@ static void every_equilibrium_found_carries_the_torque(void) {
             const int steps_over = advance == 0.0 && before.penetration < target - tolerance &&
                                    behind.penetration > target + tolerance;
             good = steps_over || GM_ASSERT_ABS(there.penetration, target, tolerance);
-            found++;
+            ++found;
         }
         random_case_free(&c);
         if (!good) {
@@ -194,7 +194,7 @@ static void every_equilibrium_found_carries_the_torque(void) {
 static void the_least_torque_is_carried_at_the_clearance(void) {
     const gm_pair pair = reference_pair(REFERENCE_FACE_WIDTH);
     static const double torques[] = {1e-9, -1e-9, 1e-20, -1e-100, 1e-280};
-    for (size_t i = 0; i < sizeof torques / sizeof torques[0]; i++) {
+    for (size_t i = 0; i < sizeof torques / sizeof torques[0]; ++i) {
         gm_test_context("torque %g", torques[i]);
         double x = NAN;
         GM_ASSERT_INT(equilibrium(&pair, NULL, NULL, 0.1, 1e8, torques[i], &x, NULL), GM_OK);
@@ -272,7 +272,7 @@ static void equilibrium_refuses_what_it_must(void) {
     GM_ASSERT_INT(equilibrium(&pair, NULL, NULL, 0.1, 1e8, 1.0, NULL, &r), GM_ERR_NULL);
     GM_ASSERT_NAN(r.penetration);
     static const double bad_stiffness[] = {0.0, -1.0, NAN, HUGE_VAL, 0.99e-30, 1.01e30};
-    for (size_t k = 0; k < sizeof bad_stiffness / sizeof bad_stiffness[0]; k++) {
+    for (size_t k = 0; k < sizeof bad_stiffness / sizeof bad_stiffness[0]; ++k) {
         gm_test_context("stiffness %g", bad_stiffness[k]);
         x = 0.0;
         r.penetration = 0.0;
@@ -282,7 +282,7 @@ static void equilibrium_refuses_what_it_must(void) {
         GM_ASSERT_NAN(r.penetration);
     }
     static const double bad_number[] = {NAN, HUGE_VAL, -HUGE_VAL};
-    for (size_t k = 0; k < sizeof bad_number / sizeof bad_number[0]; k++) {
+    for (size_t k = 0; k < sizeof bad_number / sizeof bad_number[0]; ++k) {
         gm_test_context("number %g", bad_number[k]);
         GM_ASSERT_INT(equilibrium(&pair, NULL, NULL, bad_number[k], 1e8, 1.0, &x, &r),
                       GM_STATE_NOT_FINITE);
@@ -328,7 +328,7 @@ static double quantity_at(const random_case *c, enum quantity quantity, double o
 static double bisect(const random_case *c, enum quantity quantity, double target) {
     double high = 0.499999 * c->pair.transverse_base_pitch;
     double low = -high;
-    for (int k = 0; k < 80; k++) {
+    for (int k = 0; k < 80; ++k) {
         const double middle = 0.5 * (low + high);
         if (quantity_at(c, quantity, middle) > target) {
             high = middle;
@@ -342,7 +342,7 @@ static double bisect(const random_case *c, enum quantity quantity, double target
 static void bisection_of_the_sum_gives_the_same(void) {
     uint64_t seed = UINT64_C(53);
     int compared = 0;
-    for (int i = 0; i < 400; i++) {
+    for (int i = 0; i < 400; ++i) {
         random_case c;
         GM_ASSERT_INT(random_case_make(&c, &seed, i % 4 != 0), GM_OK);
         gm_test_context("case %d, helix %g", i, c.params.helix_angle);
@@ -358,7 +358,7 @@ static void bisection_of_the_sum_gives_the_same(void) {
             const double touching = fmin(1.0, r.drive_contact + r.coast_contact);
             GM_ASSERT_ABS(x, bisect(&c, NET, target),
                           ACCURACY * c.params.center_distance / touching);
-            compared++;
+            ++compared;
         }
         random_case_free(&c);
     }
@@ -370,7 +370,7 @@ static void bisection_of_the_sum_gives_the_same(void) {
 static void no_torque_is_carried_where_both_sides_touch(void) {
     uint64_t seed = UINT64_C(54);
     int jammed = 0, open = 0;
-    for (int i = 0; i < 400; i++) {
+    for (int i = 0; i < 400; ++i) {
         random_case c;
         GM_ASSERT_INT(random_case_make(&c, &seed, i % 4 != 0), GM_OK);
         c.pair.backlash = c.params.normal_module * gm_test_uniform(&seed, -2e-3, 2e-3);
@@ -387,11 +387,11 @@ static void no_torque_is_carried_where_both_sides_touch(void) {
                 GM_ASSERT(r.drive > 0.0 && r.coast > 0.0);
                 GM_ASSERT_ABS(r.drive, r.coast, 1e-14 * c.params.center_distance);
             }
-            jammed++;
+            ++jammed;
         } else if (overlap < -1e-9 && grows) {
             GM_ASSERT_INT(status, GM_UNDETERMINED);
             GM_ASSERT_NAN(x);
-            open++;
+            ++open;
         }
         random_case_free(&c);
     }
@@ -406,7 +406,7 @@ static void no_torque_is_carried_where_both_sides_touch(void) {
 static void a_guess_does_not_change_the_answer(void) {
     uint64_t seed = UINT64_C(55);
     int found = 0;
-    for (int i = 0; i < 600; i++) {
+    for (int i = 0; i < 600; ++i) {
         random_case c;
         GM_ASSERT_INT(random_case_make(&c, &seed, i % 4 != 0), GM_OK);
         const double torque = i % 20 == 0 ? 0.0 : random_torque(&c, &seed);
@@ -432,7 +432,7 @@ static void a_guess_does_not_change_the_answer(void) {
                                   HUGE_VAL,
                                   -HUGE_VAL,
                                   NAN};
-        for (size_t k = 0; k < sizeof guesses / sizeof guesses[0]; k++) {
+        for (size_t k = 0; k < sizeof guesses / sizeof guesses[0]; ++k) {
             gm_test_context("case %d, helix %g, guess %zu", i, c.params.helix_angle, k);
             double again = 0.0;
             gm_penetration there;
@@ -475,7 +475,7 @@ static void a_step_of_the_sum_is_the_answer_from_any_guess(void) {
     const double torque = 1e8 * pair.wheel.base_radius * 0.5 * (before.drive + behind.drive);
     const double guesses[] = {NAN,         step,         step - 1e-6, step + 1e-6,
                               step - 9e-6, step + 30e-6, 0.0,         1e-3};
-    for (size_t k = 0; k < sizeof guesses / sizeof guesses[0]; k++) {
+    for (size_t k = 0; k < sizeof guesses / sizeof guesses[0]; ++k) {
         gm_test_context("guess %g", guesses[k]);
         double x = NAN;
         gm_penetration r;
@@ -508,16 +508,16 @@ static void a_guess_beyond_the_largest_sum_finds_back(void) {
     GM_ASSERT_INT(gm_flanks_init(&flanks, &sizes, memory, sizeof memory), GM_OK);
 
     /* Without and with a gap of 0.12 base pitches before all teeth but one, which is elsewhere. */
-    for (int n = 0; n < 8; n++) {
+    for (int n = 0; n < 8; ++n) {
         const int gap = n / 4;
         const double angle = n % 2 == 0 ? 0.1 : 0.9 * pair.pinion.pitch_angle;
-        for (int tooth = 0; tooth < 45 && gap; tooth++) {
+        for (int tooth = 0; tooth < 45 && gap; ++tooth) {
             GM_ASSERT_INT(
                 gm_flanks_set_pitch(flanks, GM_DRIVE, tooth, tooth == 20 ? 0.0 : -0.12 * pitch),
                 GM_OK);
         }
         double largest = 0.0, best = 0.0;
-        for (int k = 0; k < 500; k++) {
+        for (int k = 0; k < 500; ++k) {
             const double x = 1e-3 * k * pitch;
             const double drive = at(&pair, flanks, NULL, angle, x).drive;
             best = drive > largest ? x : best;
@@ -528,7 +528,7 @@ static void a_guess_beyond_the_largest_sum_finds_back(void) {
         const double behind = 0.49 * pitch;
         GM_ASSERT(at(&pair, flanks, NULL, angle, behind).drive < sum);
         const double guesses[] = {NAN, behind, 0.4999 * pitch, 0.6 * pair.backlash};
-        for (size_t k = 0; k < sizeof guesses / sizeof guesses[0]; k++) {
+        for (size_t k = 0; k < sizeof guesses / sizeof guesses[0]; ++k) {
             gm_test_context("case %d, guess %g", n, guesses[k]);
             double x = NAN;
             gm_penetration r;
@@ -553,10 +553,10 @@ static gm_flanks *measured_flanks(int teeth, uint64_t *seed, void **memory) {
     gm_flanks *flanks;
     *memory = malloc(size);
     GM_ASSERT_INT(gm_flanks_init(&flanks, &sizes, *memory, size), GM_OK);
-    for (int tooth = 0; tooth < teeth; tooth++) {
+    for (int tooth = 0; tooth < teeth; ++tooth) {
         double values[FACE_NODES * PROFILE_NODES];
         const double slope = gm_test_uniform(seed, -3e-6, 3e-6);
-        for (int n = 0; n < FACE_NODES * PROFILE_NODES; n++) {
+        for (int n = 0; n < FACE_NODES * PROFILE_NODES; ++n) {
             const double u = 2.0 * (n / PROFILE_NODES) / (FACE_NODES - 1.0) - 1.0;
             const double v = 2.0 * (n % PROFILE_NODES) / (PROFILE_NODES - 1.0) - 1.0;
             values[n] =
@@ -579,7 +579,7 @@ static void count_along_a_curve(const gm_pair *pair, const gm_flanks *pinion,
     const double step = 6.283185307179586 / POSITIONS;
     double guess = NAN;
     *all = *most = 0;
-    for (int k = 0; k < POSITIONS; k++) {
+    for (int k = 0; k < POSITIONS; ++k) {
         double x = NAN;
         gm_penetration r;
         evaluations = 0;
@@ -600,7 +600,7 @@ static void few_evaluations_are_enough(void) {
     const gm_flanks *pinion = measured_flanks(45, &seed, &memory[0]);
     const gm_flanks *wheel = measured_flanks(41, &seed, &memory[1]);
     static const double torques[] = {2.0, 20.0, 200.0};
-    for (size_t k = 0; k < sizeof torques / sizeof torques[0]; k++) {
+    for (size_t k = 0; k < sizeof torques / sizeof torques[0]; ++k) {
         gm_test_context("torque %g", torques[k]);
         long all, most;
         count_along_a_curve(&pair, pinion, wheel, torques[k], 0, &all, &most);
@@ -619,7 +619,7 @@ static void few_evaluations_are_enough(void) {
 /* Bounded work, whatever the flanks, the torque and the guess. */
 static void no_case_takes_many_evaluations(void) {
     uint64_t seed = UINT64_C(57);
-    for (int i = 0; i < 1000; i++) {
+    for (int i = 0; i < 1000; ++i) {
         random_case c;
         GM_ASSERT_INT(random_case_make(&c, &seed, i % 4 != 0), GM_OK);
         gm_test_context("case %d, helix %g", i, c.params.helix_angle);
@@ -653,7 +653,7 @@ static void unequal_faces_carry_as_turned_helicoids_do(void) {
           51.10885554006444}},
     };
     const double degree = 0.017453292519943295;
-    for (int i = 0; i < 2; i++) {
+    for (int i = 0; i < 2; ++i) {
         gm_pair_params params;
         gm_pair_params_default(&params);
         params.pinion_teeth = 27;
@@ -669,7 +669,7 @@ static void unequal_faces_carry_as_turned_helicoids_do(void) {
         params.pinion_start_radius = 0.5 * 68.2600963e-3;
         params.wheel_start_radius = 0.5 * 96.3795598e-3;
         const gm_pair pair = make_pair(&params);
-        for (int k = 0; k < 5; k++) {
+        for (int k = 0; k < 5; ++k) {
             gm_test_context("case %d, position %d", i, k);
             double offset = 0.0;
             GM_ASSERT_INT(equilibrium(&pair, NULL, NULL, k * 72.0 * degree, 2e8, cases[i].torque,

@@ -33,7 +33,7 @@ static gm_penetration probe(const gm_flanks *pinion, int side, double angle) {
 }
 
 static void constant_table(double *values, int count, double value) {
-    for (int i = 0; i < count; i++) {
+    for (int i = 0; i < count; ++i) {
         values[i] = value;
     }
 }
@@ -45,7 +45,7 @@ static void constant_table(double *values, int count, double value) {
 static void size_grows_with_everything(void) {
     const size_t size = gm_flanks_size(&small_sizes);
     GM_ASSERT(size >= sizeof(double) * (2 * 12 + 1 * 4 + 2 * 45));
-    for (int field = 0; field < 7; field++) {
+    for (int field = 0; field < 7; ++field) {
         gm_test_context("field %d", field);
         gm_flanks_params p = small_sizes;
         int *const fields[] = {
@@ -78,7 +78,7 @@ static void sizes_out_of_range_are_refused(void) {
     } wrong[] = {{0, 2}, {0, -1},    {0, 0},  {0, 100001}, {1, -1}, {1, 47},    {2, 1}, {2, 10001},
                  {3, 1}, {3, 10001}, {4, -1}, {4, 47},     {5, 1},  {5, 10001}, {6, 0}, {6, 10001}};
     static double memory[MEMORY_DOUBLES];
-    for (size_t i = 0; i < sizeof wrong / sizeof wrong[0]; i++) {
+    for (size_t i = 0; i < sizeof wrong / sizeof wrong[0]; ++i) {
         gm_test_context("field %d = %d", wrong[i].field, wrong[i].value);
         gm_flanks_params p = small_sizes;
         int *const fields[] = {
@@ -118,7 +118,7 @@ static void memory_is_used_up_to_its_size_and_no_further(void) {
     gm_flanks *flanks;
     GM_ASSERT_INT(gm_flanks_init(&flanks, &small_sizes, memory, size - 1), GM_ERR_MEMORY);
     GM_ASSERT_INT(gm_flanks_init(&flanks, &small_sizes, memory, 0), GM_ERR_MEMORY);
-    for (size_t i = 0; i < size; i++) {
+    for (size_t i = 0; i < size; ++i) {
         if (memory[i] != 0xA5) {
             GM_ASSERT(!"memory that is too small was written to");
             break;
@@ -132,7 +132,7 @@ static void memory_is_used_up_to_its_size_and_no_further(void) {
     GM_ASSERT_INT(gm_flanks_set_table(flanks, GM_COAST, 44, values, 1.0), GM_OK);
     GM_ASSERT_INT(gm_flanks_set_pitch(flanks, GM_DRIVE, GM_ALL_TEETH, 1e-6), GM_OK);
     GM_ASSERT_INT(gm_flanks_set_pitch(flanks, GM_COAST, 44, 1e-6), GM_OK);
-    for (size_t i = size; i < size + 64; i++) {
+    for (size_t i = size; i < size + 64; ++i) {
         GM_ASSERT_INT(memory[i], 0xA5);
     }
     free(memory);
@@ -144,14 +144,14 @@ static void fresh_flanks_are_ideal(void) {
     GM_ASSERT_INT(flanks->side[GM_DRIVE].capacity, 2);
     GM_ASSERT_INT(flanks->side[GM_DRIVE].count, 0);
     GM_ASSERT_INT(flanks->side[GM_COAST].capacity, 1);
-    for (int tooth = 0; tooth < 45; tooth++) {
+    for (int tooth = 0; tooth < 45; ++tooth) {
         GM_ASSERT_INT(flanks->side[GM_DRIVE].table[tooth], -1);
         GM_ASSERT_INT(flanks->side[GM_COAST].table[tooth], -1);
         GM_ASSERT_REL(flanks->side[GM_DRIVE].pitch[tooth], 0.0, 0.0);
         GM_ASSERT_REL(flanks->side[GM_COAST].pitch[tooth], 0.0, 0.0);
     }
-    for (int k = 0; k < 20; k++) {
-        for (int side = GM_DRIVE; side <= GM_COAST; side++) {
+    for (int k = 0; k < 20; ++k) {
+        for (int side = GM_DRIVE; side <= GM_COAST; ++side) {
             GM_ASSERT_REL(probe(flanks, side, 0.01 * k).penetration,
                           probe(NULL, side, 0.01 * k).penetration, 1e-14);
         }
@@ -183,7 +183,7 @@ static void null_pointers_are_refused(void) {
 static double lift_of_all_teeth(const gm_flanks *flanks, int side) {
     enum { STEPS = 900 };
     double lift = 0.0;
-    for (int k = 0; k < STEPS; k++) {
+    for (int k = 0; k < STEPS; ++k) {
         const double angle = 6.283185307179586 * k / STEPS;
         const gm_penetration real = probe(flanks, side, angle);
         const gm_penetration ideal = probe(NULL, side, angle);
@@ -241,7 +241,7 @@ static void a_later_table_replaces_that_of_its_tooth_alone(void) {
 static void the_factor_multiplies_every_node(void) {
     gm_flanks *flanks = small_flanks(&small_sizes);
     double values[12];
-    for (int i = 0; i < 12; i++) {
+    for (int i = 0; i < 12; ++i) {
         values[i] = 1e-6 * (i % 5);
     }
     GM_ASSERT_INT(gm_flanks_set_table(flanks, GM_DRIVE, GM_ALL_TEETH, values, 1.0), GM_OK);
@@ -321,7 +321,7 @@ static void ramps_replace_each_other_and_take_the_factor(void) {
 static void ramps_that_cannot_be_change_nothing(void) {
     gm_flanks *flanks = small_flanks(&small_sizes);
     gm_flank_ramp ramps[GM_FLANK_RAMPS_MAX + 1];
-    for (int k = 0; k <= GM_FLANK_RAMPS_MAX; k++) {
+    for (int k = 0; k <= GM_FLANK_RAMPS_MAX; ++k) {
         ramps[k] = (gm_flank_ramp){1e-6, -2e-6, 0.5e-6};
     }
     GM_ASSERT_INT(gm_flanks_set_ramps(flanks, GM_COAST, ramps, GM_FLANK_RAMPS_MAX, 1.0), GM_OK);
@@ -333,13 +333,13 @@ static void ramps_that_cannot_be_change_nothing(void) {
     GM_ASSERT_INT(gm_flanks_set_ramps(flanks, GM_COAST, ramps, GM_FLANK_RAMPS_MAX + 1, 1.0),
                   GM_ERR_PARAMETER);
     static const double factors[] = {0.0, -1.0, NAN};
-    for (int k = 0; k < 3; k++) {
+    for (int k = 0; k < 3; ++k) {
         GM_ASSERT_INT(gm_flanks_set_ramps(flanks, GM_COAST, ramps, 1, factors[k]),
                       GM_ERR_PARAMETER);
     }
     static const double bad[] = {NAN, HUGE_VAL, -HUGE_VAL, 1e308, -0.51e30};
-    for (int k = 0; k < 5; k++) {
-        for (int field = 0; field < 3; field++) {
+    for (int k = 0; k < 5; ++k) {
+        for (int field = 0; field < 3; ++field) {
             gm_test_context("field %d = %g", field, bad[k]);
             gm_flank_ramp wrong[2] = {{3e-6, 0.0, 0.0}, {0.0, 0.0, 0.0}};
             double *const fields[] = {&wrong[1].offset, &wrong[1].per_t1, &wrong[1].per_t2};
@@ -362,7 +362,7 @@ static void teeth_and_sides_that_do_not_exist_are_refused(void) {
         int tooth;
     } wrong[] = {{GM_DRIVE, 45}, {GM_DRIVE, -2}, {GM_COAST, 1000},
                  {2, 0},         {-1, 0},        {2, GM_ALL_TEETH}};
-    for (size_t i = 0; i < sizeof wrong / sizeof wrong[0]; i++) {
+    for (size_t i = 0; i < sizeof wrong / sizeof wrong[0]; ++i) {
         gm_test_context("side %d, tooth %d", wrong[i].side, wrong[i].tooth);
         GM_ASSERT_INT(gm_flanks_set_table(flanks, wrong[i].side, wrong[i].tooth, values, 1.0),
                       GM_ERR_TOOTH);
@@ -382,7 +382,7 @@ static void deviations_that_are_no_numbers_change_nothing(void) {
     const gm_flanks before = *flanks;
     const double drive = probe(flanks, GM_DRIVE, 0.1).drive;
     static const double bad[] = {NAN, HUGE_VAL, -HUGE_VAL, 1.01, -1.01, 1e80, -1e300};
-    for (size_t k = 0; k < sizeof bad / sizeof bad[0]; k++) {
+    for (size_t k = 0; k < sizeof bad / sizeof bad[0]; ++k) {
         for (int node = 0; node < 12; node += 11) {
             gm_test_context("node %d = %g", node, bad[k]);
             constant_table(values, 12, 9e-6);
@@ -408,7 +408,7 @@ static void the_largest_deviations_give_numbers(void) {
     const gm_pair pair = reference_pair(REFERENCE_FACE_WIDTH);
     gm_flanks *flanks = small_flanks(&small_sizes);
     double values[12];
-    for (int i = 0; i < 12; i++) {
+    for (int i = 0; i < 12; ++i) {
         values[i] = i % 2 == 0 ? 1.0 : -1.0;
     }
     GM_ASSERT_INT(gm_flanks_set_table(flanks, GM_DRIVE, GM_ALL_TEETH, values, 1.0), GM_OK);
@@ -427,7 +427,7 @@ static void the_largest_deviations_give_numbers(void) {
             GM_OK);
         GM_ASSERT(isfinite(whole.force) && isfinite(whole.force_by_pinion_angle));
         GM_ASSERT_INT(wrench_3d_at(&pair, flanks, NULL, &position, 1e30, 1e30, &w), GM_OK);
-        for (int k = 0; k < 3; k++) {
+        for (int k = 0; k < 3; ++k) {
             GM_ASSERT(isfinite(w.pinion_force[k]) && isfinite(w.pinion_moment[k]));
             GM_ASSERT(isfinite(w.wheel_force[k]) && isfinite(w.wheel_moment[k]));
         }
@@ -471,7 +471,7 @@ static void flanks_of_another_gear_are_refused(void) {
     gm_penetration r;
     gm_wrench w;
     GM_ASSERT_INT(gm_position_from_state(&pair, &state, &position), GM_OK);
-    for (int gear = 0; gear < 2; gear++) {
+    for (int gear = 0; gear < 2; ++gear) {
         gm_test_context("gear %d", gear);
         const gm_flanks *pinion = gear == 0 ? flanks : NULL;
         const gm_flanks *wheel = gear == 1 ? flanks : NULL;

@@ -39,7 +39,7 @@ static void begin(void) {
 static void add_set(int tooth, int side) {
     const int i = deviations.set_count++;
     sets[i] = (gm_deviation_set){tooth, side, values[i]};
-    for (int k = 0; k < FACE_NODES * PROFILE_NODES; k++) {
+    for (int k = 0; k < FACE_NODES * PROFILE_NODES; ++k) {
         values[i][k] = (k * k % 17 - 5 * i) * UM;
     }
 }
@@ -74,7 +74,7 @@ static double of_file(int set, double t1, double t2) {
 /* What is left at a point of a flank by the ramps of its side. */
 static double ramps_at(const gmi_tables *side, double t1, double t2) {
     double sum = 0.0;
-    for (int k = 0; k < side->ramp_count; k++) {
+    for (int k = 0; k < side->ramp_count; ++k) {
         const gm_flank_ramp *ramp = &side->ramps[k];
         sum -= fmax(0.0, ramp->offset + ramp->per_t1 * t1 + ramp->per_t2 * t2);
     }
@@ -84,8 +84,8 @@ static double ramps_at(const gmi_tables *side, double t1, double t2) {
 /* Every node of a tooth, less ramps, is file * scale + design, times the normal factor; set -1 = no file. */
 static void nodes_are(const gmi_tables *side, int tooth, int set, double file_scale) {
     double worst = 0.0;
-    for (int face = 0; face < side->face_nodes; face++) {
-        for (int profile = 0; profile < side->profile_nodes; profile++) {
+    for (int face = 0; face < side->face_nodes; ++face) {
+        for (int profile = 0; profile < side->profile_nodes; ++profile) {
             const double t1 = (double)face / (side->face_nodes - 1);
             const double t2 = (double)profile / (side->profile_nodes - 1);
             const double file = set >= 0 ? file_scale * of_file(set, t1, t2) : 0.0;
@@ -184,7 +184,7 @@ static void linear_reliefs_alone_need_no_table(void) {
     GM_ASSERT_INT(build(0), GM_IO_OK);
     GM_ASSERT_INT(flanks->side[GM_DRIVE].capacity, 0);
     GM_ASSERT_INT(flanks->side[GM_DRIVE].ramp_count, 2);
-    for (int k = 0; k <= 100; k++) {
+    for (int k = 0; k <= 100; ++k) {
         const double t1 = 0.1 * (k % 11), t2 = 0.01 * k;
         GM_ASSERT_ABS(ramps_at(&flanks->side[GM_DRIVE], t1, t2),
                       1.25 * gm_modifications_value(&design, t1, t2), 1e-14 * 50 * UM);
@@ -259,8 +259,8 @@ static void the_nodes_of_a_file_are_kept_exactly(void) {
     GM_ASSERT_INT(build(1), GM_IO_OK);
     const int per_face = (flanks->side[GM_DRIVE].face_nodes - 1) / (FACE_NODES - 1);
     const int per_profile = (flanks->side[GM_DRIVE].profile_nodes - 1) / (PROFILE_NODES - 1);
-    for (int face = 0; face < FACE_NODES; face++) {
-        for (int profile = 0; profile < 3; profile++) { /* t2 <= 0.5 */
+    for (int face = 0; face < FACE_NODES; ++face) {
+        for (int profile = 0; profile < 3; ++profile) { /* t2 <= 0.5 */
             GM_ASSERT(same_bits(
                 node_of(&flanks->side[GM_DRIVE], 9, face * per_face, profile * per_profile),
                 values[0][face * PROFILE_NODES + profile] + 0.0));
@@ -309,7 +309,7 @@ static void designs_that_cannot_be_are_refused(void) {
     begin();
     static gm_modification
         many[GM_MODIFICATIONS_MAX]; /* 2 m together, beyond a double with this factor */
-    for (int k = 0; k < GM_MODIFICATIONS_MAX; k++) {
+    for (int k = 0; k < GM_MODIFICATIONS_MAX; ++k) {
         many[k] =
             (gm_modification){.kind = GM_MOD_CROWNING, .shape = GM_SHAPE_PARABOLIC, .amount = 0.01};
     }
@@ -365,7 +365,7 @@ static gm_flanks *flanks_of(const gm_gear *gear, const gm_modification *relief) 
 static double variation(const gm_flanks *pinion, const gm_flanks *wheel, double force) {
     enum { STEPS = 997 };
     double least = INFINITY, most = -INFINITY;
-    for (int k = 0; k < STEPS; k++) {
+    for (int k = 0; k < STEPS; ++k) {
         const double angle = 6.283185307179586 * k / STEPS / pair.pinion.teeth;
         double offset = 0.0;
         GM_ASSERT_INT(equilibrium(&pair, pinion, wheel, angle, REFERENCE_STIFFNESS,
@@ -424,7 +424,7 @@ static void the_same_design_on_the_other_flank_is_its_mirror_image(void) {
     GM_ASSERT_INT(gm_flanks_build(&flanks, pair.pinion.teeth, NULL, NULL, &options, NULL, &error),
                   GM_IO_OK);
     double largest = 0.0;
-    for (int k = 0; k < 40; k++) {
+    for (int k = 0; k < 40; ++k) {
         const double angle = 6.283185307179586 * (k + 0.37) / 40 / pair.pinion.teeth;
         const double forward = offset_at(flanks, angle, 20.0);
         /* x is found to a rounding of the path, some millimetres */

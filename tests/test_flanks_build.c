@@ -24,7 +24,7 @@ static gm_io_error error;
 static void begin(void) {
     deviations = (gm_deviations){TEETH, FACE_NODES, PROFILE_NODES, 0, sets};
     pitch = (gm_pitch){TEETH, drive_pitch, coast_pitch, drive_set, coast_set};
-    for (int tooth = 0; tooth < TEETH; tooth++) {
+    for (int tooth = 0; tooth < TEETH; ++tooth) {
         drive_pitch[tooth] = 1e-6 * (tooth + 1);
         coast_pitch[tooth] = -2e-6 * (tooth + 1);
         drive_set[tooth] = coast_set[tooth] = 1;
@@ -36,7 +36,7 @@ static void begin(void) {
 static void add_set(int tooth, int side, double level) {
     const int i = deviations.set_count++;
     sets[i] = (gm_deviation_set){tooth, side, values[i]};
-    for (int node = 0; node < NODES; node++) {
+    for (int node = 0; node < NODES; ++node) {
         values[i][node] = level + 1e-6 * node;
     }
 }
@@ -87,8 +87,8 @@ static void every_node_arrives_in_its_place(void) {
     GM_ASSERT_INT(build(&deviations, NULL), GM_IO_OK);
     GM_ASSERT_INT(flanks->side[GM_COAST].face_nodes, FACE_NODES);
     GM_ASSERT_INT(flanks->side[GM_COAST].profile_nodes, PROFILE_NODES);
-    for (int face = 0; face < FACE_NODES; face++) {
-        for (int profile = 0; profile < PROFILE_NODES; profile++) {
+    for (int face = 0; face < FACE_NODES; ++face) {
+        for (int profile = 0; profile < PROFILE_NODES; ++profile) {
             GM_ASSERT_REL(node_value(GM_COAST, 2, face, profile),
                           1e-6 + 1e-6 * (face * PROFILE_NODES + profile), 0.0);
         }
@@ -113,15 +113,15 @@ static void the_most_special_set_wins_in_any_order(void) {
     static const int tooth[4] = {-1, -1, 3, 3};
     static const int side[4] = {-1, GM_DRIVE, -1, GM_DRIVE};
     const double ideal = -1.0;
-    for (int present = 1; present < 16; present++) {
+    for (int present = 1; present < 16; ++present) {
         const double all = present & 1 ? 100e-6 : ideal;
         const double drive = present & 2 ? 200e-6 : all;
         const double own = present & 4 ? 300e-6 : drive;
         const double both = present & 8 ? 400e-6 : own;
         const double own_coast = present & 4 ? 300e-6 : all;
-        for (int backward = 0; backward < 2; backward++) {
+        for (int backward = 0; backward < 2; ++backward) {
             begin();
-            for (int i = 0; i < 4; i++) {
+            for (int i = 0; i < 4; ++i) {
                 const int k = backward ? 3 - i : i;
                 if (present & (1 << k)) {
                     add_set(tooth[k], side[k], 100e-6 * (k + 1));
@@ -132,7 +132,7 @@ static void the_most_special_set_wins_in_any_order(void) {
             const double got[4] = {node_value(GM_DRIVE, 3, 0, 0), node_value(GM_COAST, 3, 0, 0),
                                    node_value(GM_DRIVE, 0, 0, 0), node_value(GM_COAST, 0, 0, 0)};
             const double expected[4] = {both, own_coast, drive, all};
-            for (int i = 0; i < 4; i++) {
+            for (int i = 0; i < 4; ++i) {
                 GM_ASSERT_REL(isnan(got[i]) ? ideal : got[i], expected[i], 1e-15);
             }
             end();
@@ -147,7 +147,7 @@ static void a_shared_set_takes_one_place_on_each_side(void) {
     GM_ASSERT_INT(flanks->side[GM_DRIVE].count, 1);
     GM_ASSERT_INT(flanks->side[GM_DRIVE].capacity, 1);
     GM_ASSERT_INT(flanks->side[GM_COAST].count, 1);
-    for (int tooth = 0; tooth < TEETH; tooth++) {
+    for (int tooth = 0; tooth < TEETH; ++tooth) {
         GM_ASSERT_INT(flanks->side[GM_DRIVE].table[tooth], 0);
         GM_ASSERT_INT(flanks->side[GM_COAST].table[tooth], 0);
     }
@@ -220,8 +220,8 @@ static void weights_are(double from, double to, double blend, const double *weig
     options.profile_to = to;
     options.profile_blend = blend;
     GM_ASSERT_INT(build(&deviations, &pitch), GM_IO_OK);
-    for (int side = GM_DRIVE; side <= GM_COAST; side++) {
-        for (int profile = 0; profile < PROFILE_NODES; profile++) {
+    for (int side = GM_DRIVE; side <= GM_COAST; ++side) {
+        for (int profile = 0; profile < PROFILE_NODES; ++profile) {
             gm_test_context("%g to %g blend %g: t2 = %g", from, to, blend, profile / 10.0);
             const double plain = 1e-6 * (PROFILE_NODES + profile + 1);
             /* t2 and the ends of the window carry a rounding each, over the width of a blend */
@@ -319,7 +319,7 @@ static void values_that_are_not_finite_are_refused(void) {
 
 static void values_that_the_scale_makes_absurd_are_refused(void) {
     static const double scales[] = {1e4, 1e300};
-    for (int k = 0; k < 2; k++) {
+    for (int k = 0; k < 2; ++k) {
         begin();
         add_set(1, 1, 1e-3);
         options.scale = scales[k];

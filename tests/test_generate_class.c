@@ -49,7 +49,7 @@ static void assert_measures_to_class(int wheel) {
     GM_ASSERT_INT(
         gm_quality_evaluate(&quality, NULL, &pair, wheel, &deviations, &pitch, NULL, &error),
         GM_IO_OK);
-    for (int kind = 0; kind < GM_QUALITY_KINDS; kind++) {
+    for (int kind = 0; kind < GM_QUALITY_KINDS; ++kind) {
         const double limit = gm_quality_tolerance(&pair, wheel, kind, options.quality_class);
         /* 1e-9 m: values are rounded to 1e-10 m, and a range takes some of them */
         GM_ASSERT_ABS(quality.worst[kind].value, options.share * limit, 1e-9);
@@ -60,9 +60,9 @@ static void assert_measures_to_class(int wheel) {
 
 static void every_worst_value_is_at_the_share_of_its_tolerance(void) {
     int checked = 0;
-    for (int which = 0; which < GEARS; which++) {
+    for (int which = 0; which < GEARS; ++which) {
         begin(which);
-        for (int run = 0; run < 44; run++) {
+        for (int run = 0; run < 44; ++run) {
             const int wheel = run % 2;
             options.quality_class = 1 + run / 2 % 11;
             options.seed = (uint64_t)(1000 * which + run);
@@ -73,7 +73,7 @@ static void every_worst_value_is_at_the_share_of_its_tolerance(void) {
             }
             assert_measures_to_class(wheel);
             end();
-            checked++;
+            ++checked;
         }
     }
     GM_ASSERT_INT(checked, 44 * GEARS);
@@ -82,8 +82,8 @@ static void every_worst_value_is_at_the_share_of_its_tolerance(void) {
 static void any_share_from_the_next_class_on_is_met(void) {
     static const double shares[3] = {0.8, 0.9, 0.99};
     begin(0);
-    for (int i = 0; i < 3; i++) {
-        for (options.quality_class = 1; options.quality_class <= 11; options.quality_class++) {
+    for (int i = 0; i < 3; ++i) {
+        for (options.quality_class = 1; options.quality_class <= 11; ++options.quality_class) {
             options.share = shares[i];
             gm_test_context("share %g, class %d", shares[i], options.quality_class);
             GM_ASSERT_INT(generate(0), GM_IO_OK);
@@ -96,7 +96,7 @@ static void any_share_from_the_next_class_on_is_met(void) {
 static void any_grid_is_met(void) {
     static const int nodes[3][2] = {{9, 10}, {50, 9}, {10, 121}};
     begin(0);
-    for (int i = 0; i < 3; i++) {
+    for (int i = 0; i < 3; ++i) {
         options.face_nodes = nodes[i][0];
         options.profile_nodes = nodes[i][1];
         GM_ASSERT_INT(generate(1), GM_IO_OK);
@@ -137,12 +137,12 @@ static void the_same_seed_gives_the_same_bits(void) {
     const gm_pitch first_pitch = pitch;
     const size_t size = sizeof(double) * 21 * 31;
     GM_ASSERT_INT(generate(0), GM_IO_OK);
-    for (int i = 0; i < first.set_count; i++) {
+    for (int i = 0; i < first.set_count; ++i) {
         GM_ASSERT_INT(memcmp(first.sets[i].values, deviations.sets[i].values, size), 0);
     }
     GM_ASSERT_INT(memcmp(first_pitch.coast, pitch.coast, 11 * sizeof(double)), 0);
     end();
-    options.seed--;
+    --options.seed;
     GM_ASSERT_INT(generate(0), GM_IO_OK);
     GM_ASSERT(memcmp(first.sets[0].values, deviations.sets[0].values, size) != 0);
     GM_ASSERT(memcmp(first_pitch.coast, pitch.coast, 11 * sizeof(double)) != 0);
@@ -156,10 +156,10 @@ static void every_flank_differs(void) {
     begin(2);
     GM_ASSERT_INT(generate(1), GM_IO_OK);
     GM_ASSERT_INT(deviations.set_count, 180);
-    for (int i = 0; i < deviations.set_count; i++) {
+    for (int i = 0; i < deviations.set_count; ++i) {
         GM_ASSERT_INT(deviations.sets[i].tooth, i / 2);
         GM_ASSERT_INT(deviations.sets[i].side, i % 2);
-        for (int j = 0; j < i; j++) {
+        for (int j = 0; j < i; ++j) {
             GM_ASSERT(memcmp(deviations.sets[i].values, deviations.sets[j].values, 64) != 0);
         }
     }
@@ -173,12 +173,12 @@ static void every_flank_differs(void) {
 /* What is left of values over equal angles when mean and first order (by projection) are taken off. */
 static double beyond_first_order(const double *values, int count) {
     double mean = 0.0, c = 0.0, s = 0.0, most = 0.0;
-    for (int i = 0; i < count; i++) {
+    for (int i = 0; i < count; ++i) {
         mean += values[i] / count;
         c += 2.0 / count * values[i] * cos(2.0 * pi * i / count);
         s += 2.0 / count * values[i] * sin(2.0 * pi * i / count);
     }
-    for (int i = 0; i < count; i++) {
+    for (int i = 0; i < count; ++i) {
         const double angle = 2.0 * pi * i / count;
         most = fmax(most, fabs(values[i] - mean - c * cos(angle) - s * sin(angle)));
     }
@@ -189,11 +189,11 @@ static double beyond_first_order(const double *values, int count) {
 static void run_out_is_a_pure_first_order(void) {
     begin(3); /* large gears of the worst class, so that little is hidden by rounding */
     options.quality_class = 11;
-    for (int wheel = 0; wheel < 2; wheel++) {
+    for (int wheel = 0; wheel < 2; ++wheel) {
         double ball[60];
         GM_ASSERT_INT(generate(wheel), GM_IO_OK);
         const int teeth = pitch.teeth;
-        for (int i = 0; i < teeth; i++) {
+        for (int i = 0; i < teeth; ++i) {
             ball[i] = pitch.drive[i] + pitch.coast[(i + (wheel ? teeth - 1 : 1)) % teeth];
         }
         GM_ASSERT(beyond_first_order(ball, teeth) < 2e-10); /* rounding to 1e-10 m */
@@ -205,7 +205,7 @@ static void run_out_is_a_pure_first_order(void) {
 static void the_middle_of_a_flank_stands_where_the_pitch_says(void) {
     begin(0);
     GM_ASSERT_INT(generate(0), GM_IO_OK);
-    for (int i = 0; i < deviations.set_count; i++) {
+    for (int i = 0; i < deviations.set_count; ++i) {
         GM_ASSERT_ABS(deviations.sets[i].values[10 * 31 + 15], 0.0, 1e-10);
     }
     end();
@@ -236,7 +236,7 @@ static double mixed_difference(const gm_deviation_set *set, int face, int profil
 static double mixed_wave(int wheel, int order, const gm_deviation_set *set, int face, int profile,
                          int part) {
     double result = 0.0;
-    for (int corner = 0; corner < 4; corner++) {
+    for (int corner = 0; corner < 4; ++corner) {
         const double t1 = corner & 1 ? face / 20.0 : 0.0;
         const double t2 = corner & 2 ? profile / 30.0 : 0.0;
         const double angle = wave_angle(wheel, order, set, t1, t2);
@@ -249,7 +249,7 @@ static double mixed_wave(int wheel, int order, const gm_deviation_set *set, int 
 static void assert_wave(int wheel, int side, int order, double amplitude) {
     double cc = 0, cs = 0, ss = 0, cv = 0, sv = 0, worst_rest = 0;
     double a = 0, b = 0;
-    for (int pass = 0; pass < 2; pass++) {
+    for (int pass = 0; pass < 2; ++pass) {
         for (int i = side; i < deviations.set_count; i += 2) {
             const gm_deviation_set *set = &deviations.sets[i];
             for (int node = 0; node < 21 * 31; node += 7) {
@@ -276,9 +276,9 @@ static void waves_go_on_from_tooth_to_tooth(void) {
     begin(0);
     options.waves = &wave;
     options.wave_count = 1;
-    for (int wheel = 0; wheel < 2; wheel++) {
+    for (int wheel = 0; wheel < 2; ++wheel) {
         GM_ASSERT_INT(generate(wheel), GM_IO_OK);
-        for (int side = 0; side < 2; side++) {
+        for (int side = 0; side < 2; ++side) {
             gm_test_context("wheel %d, side %d", wheel, side);
             assert_wave(wheel, side, 67, 0.8e-6);
         }
@@ -290,7 +290,7 @@ static void waves_go_on_from_tooth_to_tooth(void) {
 static void several_waves_leave_the_gear_in_its_class(void) {
     const gm_flank_wave waves[3] = {{1, 1e-6}, {31, 0.5e-6}, {90, 0.3e-6}};
     options.waves = waves;
-    for (int seed = 0; seed < 8; seed++) {
+    for (int seed = 0; seed < 8; ++seed) {
         begin(0);
         options.seed = (uint64_t)seed;
         options.waves = waves;

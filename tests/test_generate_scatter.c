@@ -57,7 +57,7 @@ static void take(samples *of, double value) {
 
 static double mean_of(const samples *of) {
     double sum = 0.0;
-    for (int i = 0; i < of->count; i++) {
+    for (int i = 0; i < of->count; ++i) {
         sum += of->value[i];
     }
     return sum / of->count;
@@ -67,7 +67,7 @@ static double mean_of(const samples *of) {
 static double covariance(const samples *a, const samples *b, int lag) {
     const double means[2] = {mean_of(a), mean_of(b)};
     double sum = 0.0;
-    for (int i = 0; i + lag < a->count; i++) {
+    for (int i = 0; i + lag < a->count; ++i) {
         sum += (a->value[i] - means[0]) * (b->value[i + lag] - means[1]);
     }
     return sum / (a->count - lag);
@@ -89,7 +89,7 @@ static void assert_distribution(const samples *of, double mean, double deviation
 static void assert_normal(const samples *of, double mean, double deviation) {
     int beyond[3] = {0, 0, 0};
     assert_distribution(of, mean, deviation, 3.0);
-    for (int i = 0; i < of->count; i++) {
+    for (int i = 0; i < of->count; ++i) {
         const double distance = fabs(of->value[i] - mean) / deviation;
         beyond[0] += distance > 1.0;
         beyond[1] += distance > 2.0;
@@ -103,7 +103,7 @@ static void assert_normal(const samples *of, double mean, double deviation) {
 
 static void assert_uniform(const samples *of, double low, double high) {
     assert_distribution(of, 0.5 * (low + high), (high - low) / sqrt(12.0), 1.8);
-    for (int i = 0; i < of->count; i++) {
+    for (int i = 0; i < of->count; ++i) {
         GM_ASSERT(of->value[i] > low - 1e-6 * high && of->value[i] < high * (1.0 + 1e-6));
     }
 }
@@ -137,15 +137,15 @@ static samples drawn[2][2][AMOUNTS]; /* of gear, side */
 
 static void draw_many(int runs) {
     memset(drawn, 0, sizeof drawn);
-    for (int run = 0; run < runs; run++) {
-        for (int wheel = 0; wheel < 2; wheel++) {
+    for (int run = 0; run < runs; ++run) {
+        for (int wheel = 0; wheel < 2; ++wheel) {
             options.seed = (uint64_t)run;
             GM_ASSERT_INT(generate(wheel), GM_IO_OK);
-            for (int i = 0; i < 2 * 41; i++) { /* as many of both gears */
+            for (int i = 0; i < 2 * 41; ++i) { /* as many of both gears */
                 const gm_deviation_set *set = &deviations.sets[i];
                 double amounts[AMOUNTS];
                 read_amounts(set, amounts);
-                for (int k = 0; k < AMOUNTS; k++) {
+                for (int k = 0; k < AMOUNTS; ++k) {
                     take(&drawn[wheel][set->side][k], amounts[k]);
                 }
             }
@@ -167,9 +167,9 @@ static void amounts_have_the_stated_mean_and_deviation(void) {
     scatter.foot = wanted[FOOT];
     scatter.tip_relief = wanted[RELIEF];
     draw_many(60);
-    for (int wheel = 0; wheel < 2; wheel++) {
-        for (int side = 0; side < 2; side++) {
-            for (int k = 0; k < AMOUNTS; k++) {
+    for (int wheel = 0; wheel < 2; ++wheel) {
+        for (int side = 0; side < 2; ++side) {
+            for (int k = 0; k < AMOUNTS; ++k) {
                 gm_test_context("wheel %d, side %d, amount %d", wheel, side, k);
                 GM_ASSERT_INT(drawn[wheel][side][k].count, 60 * 41);
                 assert_normal(&drawn[wheel][side][k], mean[k] * micro, deviation[k] * micro);
@@ -181,8 +181,8 @@ static void amounts_have_the_stated_mean_and_deviation(void) {
 
 /* Of one flank, of both flanks of a tooth, of both gears with the same seed; uses what has been drawn before. */
 static void amounts_are_independent_of_each_other(void) {
-    for (int i = 0; i < AMOUNTS; i++) {
-        for (int k = 0; k < AMOUNTS; k++) {
+    for (int i = 0; i < AMOUNTS; ++i) {
+        for (int k = 0; k < AMOUNTS; ++k) {
             gm_test_context("amounts %d and %d", i, k);
             if (i != k) {
                 assert_uncorrelated(&drawn[0][0][i], &drawn[0][0][k], 0);
@@ -208,8 +208,8 @@ static void shapes_are_those_stated(void) {
     options.face_nodes = 11;
     options.profile_nodes = 41;
     GM_ASSERT_INT(generate(1), GM_IO_OK);
-    for (int i = 0; i < deviations.set_count; i++) {
-        for (int k = 0; k < 11 * 41; k++) {
+    for (int i = 0; i < deviations.set_count; ++i) {
+        for (int k = 0; k < 11 * 41; ++k) {
             const double t1 = (double)(k / 41) / 10.0, t2 = (double)(k % 41) / 40.0;
             const double expected = 3.0 * (t2 - 0.5) - 20.0 * pow(t2 - 0.5, 2.0) -
                                     4.0 * (t1 - 0.5) - 24.0 * pow(t1 - 0.5, 2.0) -
@@ -229,7 +229,7 @@ static void shapes_are_those_stated(void) {
 /* Sine with n values at equal distances: its angle per node, from x[k-1] + x[k+1] = 2 cos(angle) x[k]. */
 static double angle_per_node(const double *x, int count) {
     double cross = 0.0, square = 0.0;
-    for (int k = 1; k + 1 < count; k++) {
+    for (int k = 1; k + 1 < count; ++k) {
         cross += 0.5 * x[k] * (x[k - 1] + x[k + 1]);
         square += x[k] * x[k];
     }
@@ -247,18 +247,18 @@ static double amplitude(const double *x, double angle, double *phase) {
 /* Waves of 2 to 6 mm, so that what is read back is not blurred by the rounding to 0.1 nm. */
 static void waves_have_the_stated_amplitudes_and_numbers(void) {
     static samples amplitudes, counts, phases;
-    for (int helix = 0; helix < 2; helix++) {
+    for (int helix = 0; helix < 2; ++helix) {
         begin();
         gm_trace_scatter *trace = helix ? &scatter.helix : &scatter.profile;
         trace->wave = (gm_scatter_uniform){2e-3, 6e-3};
         trace->wave_count = (gm_scatter_uniform){1.0, 2.0};
         options.face_nodes = options.profile_nodes = 31;
         amplitudes.count = counts.count = phases.count = 0;
-        for (options.seed = 0; options.seed < 20; options.seed++) {
+        for (options.seed = 0; options.seed < 20; ++options.seed) {
             GM_ASSERT_INT(generate(0), GM_IO_OK);
-            for (int i = 0; i < deviations.set_count; i++) {
+            for (int i = 0; i < deviations.set_count; ++i) {
                 double x[31], phase;
-                for (int k = 0; k < 31; k++) {
+                for (int k = 0; k < 31; ++k) {
                     const gm_deviation_set *set = &deviations.sets[i];
                     x[k] = helix ? node(set, k, 3) : node(set, 3, k);
                     GM_ASSERT((helix ? node(set, k, 9) : node(set, 9, k)) == x[k]);
@@ -286,14 +286,14 @@ static void roughness_is_independent_from_node_to_node(void) {
     scatter.roughness = 3e-6;
     nodes.count = 0;
     GM_ASSERT_INT(generate(0), GM_IO_OK);
-    for (int i = 0; i < 15; i++) {
-        for (int k = 0; k < 21 * 31; k++) {
+    for (int i = 0; i < 15; ++i) {
+        for (int k = 0; k < 21 * 31; ++k) {
             take(&nodes, deviations.sets[i].values[k]);
         }
     }
     end();
     assert_normal(&nodes, 0.0, 3e-6);
-    for (int lag = 1; lag < 100; lag++) {
+    for (int lag = 1; lag < 100; ++lag) {
         assert_uncorrelated(&nodes, &nodes, lag);
     }
 }
@@ -305,12 +305,12 @@ static void roughness_is_independent_from_node_to_node(void) {
 /* Amplitude of the first order by projection, and what is left beside it. */
 static double first_order(const double *values, int count, double *rest) {
     double c = 0.0, s = 0.0;
-    for (int i = 0; i < count; i++) {
+    for (int i = 0; i < count; ++i) {
         c += 2.0 / count * values[i] * cos(2.0 * pi * i / count);
         s += 2.0 / count * values[i] * sin(2.0 * pi * i / count);
     }
     *rest = 0.0;
-    for (int i = 0; i < count; i++) {
+    for (int i = 0; i < count; ++i) {
         const double angle = 2.0 * pi * i / count;
         *rest = fmax(*rest, fabs(values[i] - c * cos(angle) - s * sin(angle)));
     }
@@ -329,8 +329,8 @@ static void eccentricity_is_a_pure_first_order_and_half_the_run_out(void) {
     begin();
     scatter.eccentricity = 8e-6;
     phases[0].count = phases[1].count = 0;
-    for (options.seed = 0; options.seed < 200; options.seed++) {
-        for (int wheel = 0; wheel < 2; wheel++) {
+    for (options.seed = 0; options.seed < 200; ++options.seed) {
+        for (int wheel = 0; wheel < 2; ++wheel) {
             double rest[2];
             GM_ASSERT_INT(generate(wheel), GM_IO_OK);
             GM_ASSERT_ABS(first_order(pitch.drive, pitch.teeth, &rest[0]), 8e-6, 1e-10);
@@ -351,7 +351,7 @@ static void eccentricity_is_a_pure_first_order_and_half_the_run_out(void) {
 /* Phase of values e cos(2 pi i / z + phase). */
 static double phase_of(const double *values, int count) {
     double c = 0.0, s = 0.0;
-    for (int i = 0; i < count; i++) {
+    for (int i = 0; i < count; ++i) {
         c += values[i] * cos(2.0 * pi * i / count);
         s -= values[i] * sin(2.0 * pi * i / count);
     }
@@ -366,7 +366,7 @@ static double phase_of(const double *values, int count) {
 static void both_flanks_of_a_tooth_see_the_same_displacement(void) {
     begin();
     scatter.eccentricity = 10e-6;
-    for (int wheel = 0; wheel < 2; wheel++) {
+    for (int wheel = 0; wheel < 2; ++wheel) {
         const gm_gear *gear = wheel ? &pair.wheel : &pair.pinion;
         const double half =
             0.5 * gear->normal_thickness / cos(pair.helix_angle) / gear->reference_radius;
@@ -387,12 +387,12 @@ static void places_of_spaces_scatter_about_their_mean(void) {
     begin();
     scatter.pitch = 2e-6;
     places.count = 0;
-    for (options.seed = 0; options.seed < 100; options.seed++) {
-        for (int wheel = 0; wheel < 2; wheel++) {
+    for (options.seed = 0; options.seed < 100; ++options.seed) {
+        for (int wheel = 0; wheel < 2; ++wheel) {
             double sum = 0.0;
             GM_ASSERT_INT(generate(wheel), GM_IO_OK);
             const int teeth = pitch.teeth;
-            for (int i = 0; i < teeth; i++) {
+            for (int i = 0; i < teeth; ++i) {
                 const int other = (i + (wheel ? teeth - 1 : 1)) % teeth;
                 GM_ASSERT_ABS(pitch.drive[i] + pitch.coast[other], 0.0, 1.01e-10);
                 GM_ASSERT(pitch.drive_set[i] && pitch.coast_set[i]);
@@ -412,7 +412,7 @@ static void places_of_spaces_scatter_about_their_mean(void) {
  * ------------------------------------------------------------------------------------------- */
 
 static int same_values(const double *a, const double *b, int count) {
-    for (int i = 0; i < count; i++) {
+    for (int i = 0; i < count; ++i) {
         if (!same_bits(a[i], b[i])) {
             return 0;
         }
@@ -425,7 +425,7 @@ static void the_flanks_of_the_paper_are_one_call(void) {
                                             {PAPER "wheel_flanks.csv", PAPER "wheel_pitch.csv"}};
     begin();
     gm_flank_scatter_paper(&scatter);
-    for (int wheel = 0; wheel < 2; wheel++) {
+    for (int wheel = 0; wheel < 2; ++wheel) {
         gm_deviations read_deviations;
         gm_pitch read_pitch;
         GM_ASSERT_INT(generate(wheel), GM_IO_OK);
@@ -435,7 +435,7 @@ static void the_flanks_of_the_paper_are_one_call(void) {
         GM_ASSERT_INT(gm_pitch_read(&read_pitch, files[wheel][1], teeth, &error), GM_IO_OK);
         GM_ASSERT_INT(read_deviations.set_count, 2 * teeth);
         int different = 0;
-        for (int i = 0; i < read_deviations.set_count; i++) {
+        for (int i = 0; i < read_deviations.set_count; ++i) {
             different +=
                 !same_values(read_deviations.sets[i].values, deviations.sets[i].values, 21 * 31);
         }
@@ -459,9 +459,9 @@ static void a_ghost_order_leaves_all_else_as_it_is(void) {
     options.wave_count = 1;
     GM_ASSERT_INT(generate(1), GM_IO_OK);
     GM_ASSERT(same_values(plain_pitch.drive, pitch.drive, pitch.teeth));
-    for (int i = 0; i < deviations.set_count; i++) {
+    for (int i = 0; i < deviations.set_count; ++i) {
         double most = 0.0;
-        for (int k = 0; k < 21 * 31; k++) {
+        for (int k = 0; k < 21 * 31; ++k) {
             most = fmax(most, fabs(deviations.sets[i].values[k] - plain.sets[i].values[k]));
         }
         GM_ASSERT_ABS(most, 0.8e-6, 0.02e-6); /* a crest is never far from one of 651 nodes */

@@ -64,7 +64,7 @@ FILE *__wrap_fopen(const char *path, const char *mode) {
 }
 
 int __wrap_fclose(FILE *file) {
-    open_files--;
+    --open_files;
     return __real_fclose(file);
 }
 
@@ -81,7 +81,7 @@ int __wrap_snprintf(char *text, size_t size, const char *format, ...);
 
 /* As there: a number ends at a point and goes on behind a comma. */
 double __wrap_strtod(const char *text, char **end) {
-    strtod_calls++;
+    ++strtod_calls;
     if (!comma_locale) {
         return __real_strtod(text, end);
     }
@@ -229,7 +229,7 @@ static void free_all(void) {
 static void survives_any_failed_allocation(int (*call)(void), int least) {
     const long alive_before = alive;
     int failures = 0;
-    for (; failures < 1000; failures++) {
+    for (; failures < 1000; ++failures) {
         allocations_to_failure = failures;
         const int status = call();
         allocations_to_failure = -1;
@@ -260,7 +260,7 @@ static void explaining_a_missing_node_survives_any_failed_allocation(void) {
     path = file_of(DEVIATION_HEADER "*,*,0,0,1\n*,*,0,1,2\n*,*,1,0,3\n");
     int failures = 0;
     int status = GM_IO_ERR_MEMORY;
-    for (; failures < 100 && status == GM_IO_ERR_MEMORY; failures++) {
+    for (; failures < 100 && status == GM_IO_ERR_MEMORY; ++failures) {
         allocations_to_failure = failures;
         status = read_deviations();
         allocations_to_failure = -1;
@@ -319,7 +319,7 @@ static void measured_flanks_survive_any_failed_allocation(void) {
     GM_ASSERT_INT(deviations.set_count, 45);
 
     char text[2000] = "tooth,flank,single_pitch_um\n";
-    for (int tooth = 1; tooth <= 45; tooth++) {
+    for (int tooth = 1; tooth <= 45; ++tooth) {
         sprintf(text + strlen(text), "%d,left,%d\n", tooth, tooth == 1 ? 1 : tooth == 9 ? -1 : 0);
     }
     path = file_of(text);
@@ -356,7 +356,7 @@ static void refusing_a_file_leaves_nothing_behind(void) {
         TRACE_HEADER "1,left,helix,8,9,0\n1,left,profile,8,9,x\n",
         "tooth,flank,single_pitch_um\n1,left,1\n1,left,x\n",
     };
-    for (size_t i = 0; i < GM_TEST_COUNT(texts); i++) {
+    for (size_t i = 0; i < GM_TEST_COUNT(texts); ++i) {
         path = file_of(texts[i]);
         gm_test_context("text %d", (int)i);
         GM_ASSERT_INT(read_deviations(), GM_IO_ERR_FORMAT);
@@ -429,7 +429,7 @@ static void a_locale_with_a_decimal_comma_changes_nothing(void) {
 
     if (GM_ASSERT_INT(copy.set_count, 2) && GM_ASSERT_INT(deviations.set_count, 2)) {
         static const double expected[] = {1.25e-9, -0.123456789012345678e-6, 33.3e-6, 0.1};
-        for (int node = 0; node < 4; node++) {
+        for (int node = 0; node < 4; ++node) {
             GM_ASSERT(same_bits(copy.sets[1].values[node], expected[node]));
             GM_ASSERT(same_bits(deviations.sets[1].values[node], expected[node]));
         }

@@ -46,7 +46,7 @@ static void force_is_stiffness_and_damping_of_a_side(void) {
 /* Both sides, and each by itself: net = drive - coast. */
 static void force_of_a_mesh_is_that_of_its_sides(void) {
     uint64_t seed = UINT64_C(61);
-    for (int i = 0; i < 300; i++) {
+    for (int i = 0; i < 300; ++i) {
         random_case c;
         gm_test_context("case %d, seed %llx", i, (unsigned long long)seed);
         GM_ASSERT_INT(random_case_make(&c, &seed, i % 4 != 0), GM_OK);
@@ -86,7 +86,7 @@ static double moved_force(const random_case *c, gm_mesh *mesh, gm_state state, i
 static void gradient_of_the_force_is_that_of_differences(void) {
     uint64_t seed = UINT64_C(62);
     int compared = 0, kinks = 0, damped = 0;
-    for (int i = 0; i < 600; i++) {
+    for (int i = 0; i < 600; ++i) {
         random_case c;
         gm_test_context("case %d, seed %llx", i, (unsigned long long)seed);
         GM_ASSERT_INT(random_case_make(&c, &seed, i % 4 != 0), GM_OK);
@@ -113,7 +113,7 @@ static void gradient_of_the_force_is_that_of_differences(void) {
         }
         const double exact[] = {r.force_by_pinion_angle, r.force_by_wheel_angle,
                                 r.force_by_pinion_speed, r.force_by_wheel_speed};
-        for (int which = 0; which < 4; which++) {
+        for (int which = 0; which < 4; ++which) {
             const double scale =
                 which < 2 ? 1e-7 * c.params.normal_module / r_bp * 100.0 : 1e-4 * reach / r_bp;
             const double ahead = moved_force(&c, mesh, placed, which, scale);
@@ -122,10 +122,10 @@ static void gradient_of_the_force_is_that_of_differences(void) {
             const double backward = (r.force - behind) / scale;
             const double size = fabs(exact[which]) + stiffness * (which < 2 ? r_bp : 0.0);
             if (fabs(forward - backward) > 1e-4 * size) {
-                kinks++;
+                ++kinks;
                 continue;
             }
-            compared++;
+            ++compared;
             damped += damping > 0.0 && which < 2;
             GM_ASSERT_ABS(0.5 * (forward + backward), exact[which], 1e-4 * size);
         }
@@ -211,7 +211,7 @@ static void simple_model_is_a_spring_with_backlash(void) {
     const double half = pair.backlash / 2;
     const double speed = 0.125;
     static const double offsets[] = {-80e-6, -50.1e-6, -49e-6, 0.0, 49e-6, 50.1e-6, 80e-6, 1e-2};
-    for (size_t i = 0; i < sizeof offsets / sizeof offsets[0]; i++) {
+    for (size_t i = 0; i < sizeof offsets / sizeof offsets[0]; ++i) {
         const double x = offsets[i];
         gm_test_context("x = %g", x);
         gm_penetration r;
@@ -251,7 +251,7 @@ static void mean_stiffness_and_eigenfrequency_are_those_of_the_contact_ratio(voi
     const gm_pair pair = reference_pair(REFERENCE_FACE_WIDTH);
     const double spring = REFERENCE_STIFFNESS * pair.transverse_contact_ratio;
     const double r_bp = pair.pinion.base_radius, r_bw = pair.wheel.base_radius;
-    for (int model = GM_MODEL_3D; model <= GM_MODEL_SIMPLE; model++) {
+    for (int model = GM_MODEL_3D; model <= GM_MODEL_SIMPLE; ++model) {
         gm_test_context("model %d", model);
         plain_mesh room;
         gm_mesh *mesh;

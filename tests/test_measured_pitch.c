@@ -64,7 +64,7 @@ static flank_point involute(const displaced *of, int tooth, int turn, double rol
 static double crossing_direction(const displaced *of, int tooth, int turn, double radius) {
     double low = 0.0;
     double high = 1.5;
-    for (int i = 0; i < 100; i++) {
+    for (int i = 0; i < 100; ++i) {
         const double middle = 0.5 * (low + high);
         const flank_point at = involute(of, tooth, turn, middle);
         *(hypot(at.x, at.y) < radius ? &low : &high) = middle;
@@ -105,7 +105,7 @@ static void measure(const displaced *of, double radius) {
     const displaced ideal = {of->gear, of->wheel, 0.0, 0.0};
     measured.count = 0;
     measured.points = malloc(2 * (size_t)of->gear->teeth * sizeof *measured.points);
-    for (int tooth = 0; tooth < of->gear->teeth; tooth++) {
+    for (int tooth = 0; tooth < of->gear->teeth; ++tooth) {
         for (int turn = -1; turn <= 1; turn += 2) {
             measured.points[measured.count++] = observe(of, &ideal, tooth, turn, radius);
         }
@@ -126,7 +126,7 @@ static void try_displaced_gear(int wheel, double radius) {
     measure(&of, radius);
     GM_ASSERT_INT(gm_measured_pitch_build(&pitch, &report, &measured, &setup, &pair, wheel, &error),
                   GM_IO_OK);
-    for (int tooth = 0; pitch.teeth > 0 && tooth < of.gear->teeth; tooth++) {
+    for (int tooth = 0; pitch.teeth > 0 && tooth < of.gear->teeth; ++tooth) {
         /* The drive flank is the counter-clockwise one on both gears: the pinion's leads, the wheel's is hit. */
         GM_ASSERT_ABS(pitch.drive[tooth], added(&of, tooth, 1, radius), 1e-10);
         GM_ASSERT_ABS(pitch.coast[tooth], added(&of, tooth, -1, radius), 1e-10);
@@ -148,7 +148,7 @@ static void try_displaced_gear(int wheel, double radius) {
 
 static void a_displaced_gear_is_seen_however_it_stood_and_was_counted(void) {
     begin();
-    for (int which = 0; which < 16; which++) {
+    for (int which = 0; which < 16; ++which) {
         const int wheel = which & 1;
         setup.datum_face = which & 2 ? GM_FACE_I : GM_FACE_II;
         setup.counting = which & 4 ? GM_CLOCKWISE : GM_COUNTERCLOCKWISE;
@@ -191,7 +191,7 @@ static char text[200000];
 
 static const char *pitch_file(const char *value_column, int teeth, double (*um)(int tooth)) {
     size_t used = (size_t)sprintf(text, "tooth,flank,%s\n", value_column);
-    for (int tooth = 1; tooth <= teeth; tooth++) {
+    for (int tooth = 1; tooth <= teeth; ++tooth) {
         used += (size_t)sprintf(text + used, "%d,left,%.3f\n", tooth, um(tooth));
         used += (size_t)sprintf(text + used, "%d,right,%.3f\n", tooth, um(tooth));
     }
@@ -226,7 +226,7 @@ static void single_and_cumulative_values_say_the_same(void) {
                   GM_IO_OK);
     GM_ASSERT_REL(report.level[GM_COAST], 98e-6 + 9e-6 * 36 / 45, 1e-12);
     const double arc = pair.pinion.base_radius / pair.pinion.reference_radius;
-    for (int tooth = 0; tooth < 45; tooth++) {
+    for (int tooth = 0; tooth < 45; ++tooth) {
         const double ahead = arc * (tooth >= 9 ? 9e-6 * 9 / 45 : -9e-6 * 36 / 45);
         GM_ASSERT_ABS(single.drive[tooth], ahead, 1e-15);
         GM_ASSERT_ABS(single.coast[tooth], -ahead, 1e-15);
@@ -254,7 +254,7 @@ static void what_rounding_leaves_of_the_sum_is_spread(void) {
 static void one_flank_alone_is_fine(void) {
     begin();
     size_t used = (size_t)sprintf(text, "tooth,flank,cumulative_pitch_um\n");
-    for (int tooth = 45; tooth >= 1; tooth--) { /* in any order */
+    for (int tooth = 45; tooth >= 1; --tooth) { /* in any order */
         used += (size_t)sprintf(text + used, "%d,right,%d\n", tooth, tooth % 5);
     }
     GM_ASSERT_INT(read_and_build(file_of(text), 0), GM_IO_OK);
@@ -359,7 +359,7 @@ static void wrong_set_ups_are_refused(void) {
         {{GM_FACE_I, GM_CLOCKWISE, 1, 0, 0, 44e-3}, "44 mm"},
         {{GM_FACE_I, GM_CLOCKWISE, 1, 0, 0, (double)INFINITY}, "infinite"},
     };
-    for (size_t i = 0; i < GM_TEST_COUNT(cases); i++) {
+    for (size_t i = 0; i < GM_TEST_COUNT(cases); ++i) {
         setup = cases[i].setup;
         GM_ASSERT_INT(read_and_build(path, 0), GM_IO_ERR_OPTION);
         gm_test_context("%s", error.text);

@@ -55,7 +55,7 @@ static void list_drawing(const gm_pair *p, double out[NUMBERS]) {
 
 static void at_its_own_distance_the_drawing_comes_back_to_the_last_bit(void) {
     uint64_t seed = 77;
-    for (int i = 0; i < PAIRS; i++) {
+    for (int i = 0; i < PAIRS; ++i) {
         gm_test_context("pair %d", i);
         gm_pair_params params;
         model_pair model;
@@ -87,7 +87,7 @@ static gm_pair_params drawn_at(const gm_pair *pair, const gm_pair_params *params
 static void at_another_distance_it_is_the_pair_drawn_there(void) {
     uint64_t seed = 78;
     int meshed = 0;
-    for (int i = 0; i < PAIRS; i++) {
+    for (int i = 0; i < PAIRS; ++i) {
         gm_test_context("pair %d", i);
         gm_pair_params params;
         model_pair model;
@@ -103,7 +103,7 @@ static void at_another_distance_it_is_the_pair_drawn_there(void) {
         if (status != GM_OK || !meshes) {
             continue; /* at the border of what meshes the roundings decide */
         }
-        meshed++;
+        ++meshed;
 
         /* Lengths are differences of lengths up to d; next to touching base circles T and the angle lose half. */
         const double base_sum = pair.pinion.base_radius + pair.wheel.base_radius;
@@ -112,7 +112,7 @@ static void at_another_distance_it_is_the_pair_drawn_there(void) {
         double got[NUMBERS], drawn[NUMBERS];
         list(&meshing, got);
         list_drawing(&expected, drawn);
-        for (int k = 0; k < NUMBERS; k++) {
+        for (int k = 0; k < NUMBERS; ++k) {
             gm_test_context("pair %d, number %d", i, k);
             const int is_ratio = k == 2 || k == 3 || k == 7;
             const double unit = k == 7 ? pair.transverse_base_pitch : distance;

@@ -105,7 +105,7 @@ static const struct {
 };
 
 static void every_kind_has_its_value_where_it_is_known(void) {
-    for (size_t k = 0; k < sizeof points / sizeof points[0]; k++) {
+    for (size_t k = 0; k < sizeof points / sizeof points[0]; ++k) {
         gm_test_context("point %d, kind %d", (int)k, points[k].kind);
         only(points[k].kind, points[k].shape, AMOUNT);
         /* 0.9 and 0.2 carry a rounding, five times magnified by the range */
@@ -121,7 +121,7 @@ static void a_circular_relief_is_a_circle(void) {
     const long double length = 4e-3L;
     const long double depth = 0.4L * length;
     const long double radius = (length * length + depth * depth) / (2.0L * depth);
-    for (int k = 0; k <= 20; k++) {
+    for (int k = 0; k <= 20; ++k) {
         const double t1 = 1.0 - (4e-3 / pair.face_width) * (1.0 - k / 20.0);
         const long double x = length * k / 20.0L;
         const long double expected = radius - sqrtl(radius * radius - x * x);
@@ -140,7 +140,7 @@ static void a_shallow_circle_is_a_parabola_to_the_second_order(void) {
 }
 
 static void the_amount_of_crownings_may_be_negative(void) {
-    for (int shape = GM_SHAPE_PARABOLIC; shape <= GM_SHAPE_CIRCULAR; shape++) {
+    for (int shape = GM_SHAPE_PARABOLIC; shape <= GM_SHAPE_CIRCULAR; ++shape) {
         only(GM_MOD_CROWNING, shape, AMOUNT);
         const double convex = value(0.2, 0.0);
         only(GM_MOD_CROWNING, shape, -AMOUNT);
@@ -149,7 +149,7 @@ static void the_amount_of_crownings_may_be_negative(void) {
 }
 
 static void an_amount_of_zero_changes_nothing(void) {
-    for (int kind = 0; kind < GM_MODIFICATION_KINDS; kind++) {
+    for (int kind = 0; kind < GM_MODIFICATION_KINDS; ++kind) {
         only(kind, GM_SHAPE_CIRCULAR, 0.0);
         GM_ASSERT_ABS(value(0.0, 0.0), 0.0, 0.0);
         GM_ASSERT_ABS(value(1.0, 1.0), 0.0, 0.0);
@@ -158,17 +158,17 @@ static void an_amount_of_zero_changes_nothing(void) {
 
 /* Sharp zero outside, something below zero inside: sampled on a grid that has the limits between its lines. */
 static void reliefs_change_nothing_outside_their_range(void) {
-    for (int kind = 0; kind < GM_MODIFICATION_KINDS; kind++) {
+    for (int kind = 0; kind < GM_MODIFICATION_KINDS; ++kind) {
         if (!is_relief(kind)) {
             continue;
         }
-        for (int shape = GM_SHAPE_LINEAR; shape <= GM_SHAPE_CIRCULAR; shape++) {
+        for (int shape = GM_SHAPE_LINEAR; shape <= GM_SHAPE_CIRCULAR; ++shape) {
             only(kind, shape, AMOUNT);
             gm_test_context("kind %d, shape %d", kind, shape);
             int inside = 0;
             int wrong = 0;
-            for (int i = 0; i <= 97; i++) {
-                for (int j = 0; j <= 97; j++) {
+            for (int i = 0; i <= 97; ++i) {
+                for (int j = 0; j <= 97; ++j) {
                     const double t1 = i / 97.3, t2 = j / 97.3;
                     const double face = kind == GM_MOD_END_RELIEF_I ||
                                                 kind == GM_MOD_TIP_CORNER_I ||
@@ -201,8 +201,8 @@ static void reliefs_change_nothing_outside_their_range(void) {
 /* Mean over the flank by the midpoint rule with 400 x 400 cells. */
 static double mean(void) {
     double sum = 0.0;
-    for (int i = 0; i < 400; i++) {
-        for (int j = 0; j < 400; j++) {
+    for (int i = 0; i < 400; ++i) {
+        for (int j = 0; j < 400; ++j) {
             sum += value((i + 0.5) / 400.0, (j + 0.5) / 400.0);
         }
     }
@@ -226,7 +226,7 @@ static void the_mean_over_the_flank_is_that_of_the_formula(void) {
         {GM_MOD_TIP_CORNER_II, GM_SHAPE_LINEAR, -0.25 * 0.2 / 6.0},
         {GM_MOD_ROOT_CORNER_I, GM_SHAPE_PARABOLIC, -0.25 * 0.2 / 12.0},
     };
-    for (size_t k = 0; k < sizeof means / sizeof means[0]; k++) {
+    for (size_t k = 0; k < sizeof means / sizeof means[0]; ++k) {
         gm_test_context("kind %d", means[k].kind);
         only(means[k].kind, means[k].shape, AMOUNT);
         /* midpoint rule: cell^2 / 24 times the second derivative, 2 / 0.2^2, over a fifth of the flank; twice that */
@@ -248,7 +248,7 @@ static double slope_at_begin(int kind, int shape, double step) {
 static void parabola_and_circle_begin_tangentially_and_the_line_with_a_kink(void) {
     static const int kinds[] = {GM_MOD_END_RELIEF_I, GM_MOD_END_RELIEF_II, GM_MOD_TIP_RELIEF,
                                 GM_MOD_ROOT_RELIEF};
-    for (int k = 0; k < 4; k++) {
+    for (int k = 0; k < 4; ++k) {
         gm_test_context("kind %d", kinds[k]);
         GM_ASSERT_REL(slope_at_begin(kinds[k], GM_SHAPE_LINEAR, 1e-4), -AMOUNT, 1e-10);
         GM_ASSERT_REL(slope_at_begin(kinds[k], GM_SHAPE_PARABOLIC, 1e-4), -1e-4 * AMOUNT, 1e-10);
@@ -274,17 +274,17 @@ static void modifications_add_up(void) {
     static const int kinds[] = {GM_MOD_CROWNING,      GM_MOD_TIP_RELIEF,    GM_MOD_TIP_RELIEF,
                                 GM_MOD_HELIX_SLOPE,   GM_MOD_TIP_CORNER_II, GM_MOD_TWIST,
                                 GM_MOD_ROOT_CORNER_II};
-    for (int k = 0; k < 7; k++) {
+    for (int k = 0; k < 7; ++k) {
         only(kinds[k], GM_SHAPE_PARABOLIC, (k + 1) * UM);
-        for (int i = 0; i < 5; i++) {
+        for (int i = 0; i < 5; ++i) {
             sum[i] += value(at[i][0], at[i][1]);
         }
     }
     begin();
-    for (int k = 0; k < 7; k++) {
+    for (int k = 0; k < 7; ++k) {
         add(kinds[k], GM_SHAPE_PARABOLIC, (k + 1) * UM);
     }
-    for (int i = 0; i < 5; i++) {
+    for (int i = 0; i < 5; ++i) {
         GM_ASSERT_ABS(value(at[i][0], at[i][1]), sum[i], 1e-15 * 28 * UM);
     }
 }
@@ -306,9 +306,9 @@ static void the_other_hand_is_the_mirror_image(void) {
         [GM_MOD_ROOT_CORNER_I] = GM_MOD_ROOT_CORNER_II,
         [GM_MOD_ROOT_CORNER_II] = GM_MOD_ROOT_CORNER_I,
     };
-    for (int kind = 0; kind < GM_MODIFICATION_KINDS; kind++) {
+    for (int kind = 0; kind < GM_MODIFICATION_KINDS; ++kind) {
         const double sign = kind == GM_MOD_HELIX_SLOPE || kind == GM_MOD_TWIST ? -1.0 : 1.0;
-        for (int k = 0; k < 50; k++) {
+        for (int k = 0; k < 50; ++k) {
             const double t1 = k / 49.0, t2 = (k * 31 % 50) / 49.0;
             gm_test_context("kind %d at %g, %g", kind, t1, t2);
             only(kind, GM_SHAPE_PARABOLIC, AMOUNT);
@@ -322,7 +322,7 @@ static void the_other_hand_is_the_mirror_image(void) {
 static void a_range_may_be_given_in_three_ways(void) {
     static const int kinds[] = {GM_MOD_TIP_RELIEF, GM_MOD_ROOT_RELIEF, GM_MOD_TIP_CORNER_I,
                                 GM_MOD_ROOT_CORNER_II};
-    for (int k = 0; k < 4; k++) {
+    for (int k = 0; k < 4; ++k) {
         const int is_tip = kinds[k] == GM_MOD_TIP_RELIEF || kinds[k] == GM_MOD_TIP_CORNER_I;
         const double t1 = kinds[k] == GM_MOD_ROOT_CORNER_II ? 0.97 : 0.03;
         const double t2 = is_tip ? 0.93 : 0.07;
@@ -378,7 +378,7 @@ static double largest_error(const gm_modifications_grid *grid, int samples) {
     table = calloc((size_t)grid->face_nodes * (size_t)grid->profile_nodes, sizeof *table);
     GM_ASSERT_INT(gm_modifications_add(&design, grid->face_nodes, grid->profile_nodes, table),
                   GM_OK);
-    for (int k = 0; k < samples; k++) {
+    for (int k = 0; k < samples; ++k) {
         double t1 = gm_test_uniform(&seed, 0.0, 1.0), t2 = gm_test_uniform(&seed, 0.0, 1.0);
         if (k % 2 == 0) { /* where curvature shows most */
             t1 = (floor(t1 * (grid->face_nodes - 1)) + 0.5) / (grid->face_nodes - 1);
@@ -410,7 +410,7 @@ static void a_grid_that_can_be_exact_is(void) {
         {GM_MOD_TIP_RELIEF, GM_SHAPE_LINEAR, 2, 6}, /* a fifth of the profile */
         {GM_MOD_ROOT_RELIEF, GM_SHAPE_LINEAR, 2, 6},
     };
-    for (size_t k = 0; k < sizeof grids / sizeof grids[0]; k++) {
+    for (size_t k = 0; k < sizeof grids / sizeof grids[0]; ++k) {
         gm_test_context("kind %d", grids[k].kind);
         only(grids[k].kind, grids[k].shape, AMOUNT);
         const gm_modifications_grid grid = grid_for(2, 2, 1e-8);
@@ -433,8 +433,8 @@ static void limits_of_ranges_are_hit_where_few_lines_suffice(void) {
 
 /* The bound holds, and is no more than five times what can be found: it means something. */
 static void every_kind_alone_keeps_its_bound_and_nearly_reaches_it(void) {
-    for (int kind = 0; kind < GM_MODIFICATION_KINDS; kind++) {
-        for (int shape = first_shape(kind); shape <= GM_SHAPE_CIRCULAR; shape++) {
+    for (int kind = 0; kind < GM_MODIFICATION_KINDS; ++kind) {
+        for (int shape = first_shape(kind); shape <= GM_SHAPE_CIRCULAR; ++shape) {
             gm_modification *m = only(kind, shape, AMOUNT);
             m->face_range = 0.2371 * pair.face_width;
             m->profile_range = 0.1873;
@@ -453,10 +453,10 @@ static void every_kind_alone_keeps_its_bound_and_nearly_reaches_it(void) {
 
 static void random_designs_keep_bound_tolerance_and_given_grid(void) {
     uint64_t seed = 2026;
-    for (int round = 0; round < 60; round++) {
+    for (int round = 0; round < 60; ++round) {
         begin();
         const int count = gm_test_integer(&seed, 1, MOST);
-        for (int k = 0; k < count; k++) {
+        for (int k = 0; k < count; ++k) {
             int kind = gm_test_integer(&seed, 0, GM_MOD_ROOT_CORNER_II);
             const int shape = gm_test_integer(&seed, first_shape(kind), GM_SHAPE_CIRCULAR);
             if (kind >= GM_MOD_TIP_CORNER_I && shape == GM_SHAPE_LINEAR) {
@@ -535,7 +535,7 @@ static void split(void) {
 /* By the definition of a ramp. */
 static double parts_at(double t1, double t2) {
     double sum = gm_modifications_value(&rest, t1, t2);
-    for (int k = 0; k < ramp_count; k++) {
+    for (int k = 0; k < ramp_count; ++k) {
         sum -= fmax(0.0, ramps[k].offset + ramps[k].per_t1 * t1 + ramps[k].per_t2 * t2);
     }
     return sum;
@@ -544,11 +544,11 @@ static double parts_at(double t1, double t2) {
 static void ramps_and_the_rest_are_the_design(void) {
     uint64_t seed = 77;
     int linear = 0;
-    for (int round = 0; round < 300; round++) {
+    for (int round = 0; round < 300; ++round) {
         begin();
         const int count = gm_test_integer(&seed, 0, MOST);
         int expected = 0;
-        for (int k = 0; k < count; k++) {
+        for (int k = 0; k < count; ++k) {
             const int kind = gm_test_integer(&seed, 0, GM_MODIFICATION_KINDS - 1);
             const int shape = gm_test_integer(&seed, first_shape(kind), GM_SHAPE_CIRCULAR);
             gm_modification *m = add(kind, shape, gm_test_uniform(&seed, 1, 30) * UM);
@@ -561,7 +561,7 @@ static void ramps_and_the_rest_are_the_design(void) {
         GM_ASSERT_INT(ramp_count, expected);
         GM_ASSERT_INT(rest.count, count - expected);
         linear += expected;
-        for (int k = 0; k < 100; k++) {
+        for (int k = 0; k < 100; ++k) {
             const double t1 = k % 10 == 0 ? 1.0 : gm_test_uniform(&seed, 0.0, 1.0);
             const double t2 = k % 7 == 0 ? 0.0 : gm_test_uniform(&seed, 0.0, 1.0);
             /* roundings of 30 um, ten times magnified by the range, in each of eight */
@@ -574,7 +574,7 @@ static void ramps_and_the_rest_are_the_design(void) {
 static void more_ramps_than_flanks_hold_are_left_for_a_table(void) {
     static gm_modification many[GM_FLANK_RAMPS_MAX + 3];
     begin();
-    for (int k = 0; k < GM_FLANK_RAMPS_MAX + 3; k++) {
+    for (int k = 0; k < GM_FLANK_RAMPS_MAX + 3; ++k) {
         many[k] = (gm_modification){
             GM_MOD_TIP_RELIEF, GM_SHAPE_LINEAR, GM_RANGE_SHARE, (k == 1) ? 0.0 : k * UM, 0.0,
             0.05 * (k + 1)};
@@ -629,7 +629,7 @@ static void what_is_out_of_range_is_refused(void) {
     second(GM_MODIFICATION_KINDS, 0);
     refused("kind", 1);
     static const double amounts[] = {(double)NAN, (double)INFINITY, 0.0101, -0.0101};
-    for (int k = 0; k < 4; k++) {
+    for (int k = 0; k < 4; ++k) {
         second(GM_MOD_HELIX_SLOPE, 0)->amount = amounts[k];
         refused("amount", 1);
     }
@@ -649,7 +649,7 @@ static void what_is_out_of_range_is_refused(void) {
 
 static void ranges_beyond_the_flank_are_refused(void) {
     static const double lengths[] = {0.0, -1e-3, 17.6e-3, (double)NAN};
-    for (int k = 0; k < 4; k++) {
+    for (int k = 0; k < 4; ++k) {
         second(GM_MOD_END_RELIEF_II, GM_SHAPE_LINEAR)->face_range = lengths[k];
         refused("face_range", 1);
         gm_modification *m = second(GM_MOD_ROOT_RELIEF, GM_SHAPE_LINEAR);
@@ -658,14 +658,14 @@ static void ranges_beyond_the_flank_are_refused(void) {
         refused("profile_range", 1);
     }
     static const double shares[] = {0.0, -0.1, 1.0001, (double)NAN};
-    for (int k = 0; k < 4; k++) {
+    for (int k = 0; k < 4; ++k) {
         second(GM_MOD_TIP_RELIEF, GM_SHAPE_LINEAR)->profile_range = shares[k];
         refused("profile_range", 1);
     }
     begin();
     const double radii[] = {pair.pinion.start_radius - 1e-6, pair.pinion.tip_radius,
                             pair.pinion.tip_radius + 1e-6, (double)NAN};
-    for (int k = 0; k < 4; k++) {
+    for (int k = 0; k < 4; ++k) {
         gm_modification *m = second(GM_MOD_TIP_CORNER_II, GM_SHAPE_LINEAR);
         m->profile_range_by = GM_RANGE_RADIUS;
         m->profile_range = radii[k];
@@ -722,7 +722,7 @@ static void calls_that_cannot_be_done_are_refused(void) {
     GM_ASSERT_INT(gm_modifications_split(&design, ramps, &count, NULL, &count), GM_ERR_NULL);
     GM_ASSERT_INT(gm_modifications_split(&design, ramps, &count, rest_list, NULL), GM_ERR_NULL);
     static const int bad_nodes[] = {1, 0, -5, 10001};
-    for (int k = 0; k < 4; k++) {
+    for (int k = 0; k < 4; ++k) {
         GM_ASSERT_INT(gm_modifications_grid_find(&design, bad_nodes[k], 2, 1e-8, &grid),
                       GM_ERR_PARAMETER);
         GM_ASSERT_INT(gm_modifications_grid_find(&design, 2, bad_nodes[k], 1e-8, &grid),
@@ -730,7 +730,7 @@ static void calls_that_cannot_be_done_are_refused(void) {
         GM_ASSERT_INT(gm_modifications_add(&design, bad_nodes[k], 2, nodes), GM_ERR_PARAMETER);
     }
     static const double bad_tolerances[] = {0.0, -1e-8, 0.9e-12, (double)NAN, (double)INFINITY};
-    for (int k = 0; k < 5; k++) {
+    for (int k = 0; k < 5; ++k) {
         GM_ASSERT_INT(gm_modifications_grid_find(&design, 2, 2, bad_tolerances[k], &grid),
                       GM_ERR_PARAMETER);
     }

@@ -34,7 +34,7 @@ static void load(const char *keys_text) {
     const config_request request = {.path = path, .purpose = CONFIG_FOR_RUN};
     GM_ASSERT_INT(config_load(&conf, &request), 0);
     GM_ASSERT_INT(gm_pair_init(&pair, &conf.gears), GM_OK);
-    for (int gear = 0; gear < 2; gear++) {
+    for (int gear = 0; gear < 2; ++gear) {
         GM_ASSERT_INT(gear_design_make(&designs[gear], &conf, &pair, gear), 0);
     }
 }
@@ -46,7 +46,7 @@ static void unload(void) {
 /* The modification of a flank, NULL = none of this kind. */
 static const gm_modification *find(int gear, int side, int kind) {
     const gm_modifications *of = &designs[gear].of[side];
-    for (int k = 0; k < of->count; k++) {
+    for (int k = 0; k < of->count; ++k) {
         if (of->list[k].kind == kind) {
             return &of->list[k];
         }
@@ -103,14 +103,14 @@ static void write_keys(char *text, size_t size, const char *place, int k) {
 
 static void every_key_arrives_at_its_gear_flank_and_kind(void) {
     char text[512];
-    for (int gear = 0; gear < 2; gear++) {
-        for (int place = 0; place < 3; place++) {
-            for (int k = 0; k < GM_MODIFICATION_KINDS; k++) {
+    for (int gear = 0; gear < 2; ++gear) {
+        for (int place = 0; place < 3; ++place) {
+            for (int k = 0; k < GM_MODIFICATION_KINDS; ++k) {
                 write_keys(text, sizeof text, places[gear][place], k);
                 load(text);
                 gm_test_context("%s_%s", places[gear][place], kinds[k].name);
-                for (int g = 0; g < 2; g++) {
-                    for (int side = GM_DRIVE; side <= GM_COAST; side++) {
+                for (int g = 0; g < 2; ++g) {
+                    for (int side = GM_DRIVE; side <= GM_COAST; ++side) {
                         const int wanted = g == gear && (place == 0 || place == 1 + side);
                         GM_ASSERT_INT(designs[g].of[side].count, wanted);
                     }
@@ -175,7 +175,7 @@ static void a_key_with_a_flank_replaces_the_one_without(void) {
 
 static void nothing_given_is_no_design(void) {
     load("");
-    for (int gear = 0; gear < 2; gear++) {
+    for (int gear = 0; gear < 2; ++gear) {
         GM_ASSERT_INT(designs[gear].of[GM_DRIVE].count + designs[gear].of[GM_COAST].count, 0);
     }
     GM_ASSERT_REL(conf.modification_tolerance, 1e-8, 1e-15);

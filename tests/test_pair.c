@@ -65,7 +65,7 @@ static void the_lists_above_are_complete(void) {
 static void assert_unusable(const gm_pair *pair) {
     double values[PAIR_DOUBLES];
     list_pair(pair, values);
-    for (int i = 0; i < PAIR_DOUBLES; i++) {
+    for (int i = 0; i < PAIR_DOUBLES; ++i) {
         GM_ASSERT_NAN(values[i]);
     }
     GM_ASSERT_INT(pair->pinion.teeth, 0);
@@ -158,7 +158,7 @@ static void left_hand_changes_signs_alone(void) {
     double b[PAIR_DOUBLES];
     list_pair(&right, a);
     list_pair(&left, b);
-    for (int i = 0; i < PAIR_DOUBLES; i++) {
+    for (int i = 0; i < PAIR_DOUBLES; ++i) {
         gm_test_context("field %d", i);
         GM_ASSERT_REL(b[i], a[i], 0.0);
     }
@@ -200,7 +200,7 @@ static void defaults_are_missing_or_derived(void) {
                               p.wheel_rack_fillet_radius,
                               p.pinion_tip_alteration,
                               p.wheel_tip_alteration};
-    for (size_t i = 0; i < sizeof missing / sizeof missing[0]; i++) {
+    for (size_t i = 0; i < sizeof missing / sizeof missing[0]; ++i) {
         gm_test_context("field %d", (int)i);
         GM_ASSERT_NAN(missing[i]);
     }
@@ -330,7 +330,7 @@ static void published_pairs_have_their_tips_and_contact_ratios(void) {
          1.463, 380.747, 1395.376},
         {"12/24", 12, 24, 3.0, 0.0, 56.5, 0.6, 0.36, 0.0, -0.38, 1e-9, 1.202, NAN, NAN},
     };
-    for (size_t i = 0; i < sizeof pairs / sizeof pairs[0]; i++) {
+    for (size_t i = 0; i < sizeof pairs / sizeof pairs[0]; ++i) {
         gm_test_context("%s", pairs[i].name);
         const gm_pair_params params =
             catalogue_params(pairs[i].pinion_teeth, pairs[i].wheel_teeth, pairs[i].module_mm,
@@ -403,7 +403,7 @@ static void tips_default_to_addendum_shift_and_tip_alteration(void) {
 /* Where k is at work, the clearance is that of the basic rack, c = h_fP - h_aP of the mate: by construction. */
 static void tip_alteration_keeps_the_clearance_of_the_rack(void) {
     uint64_t seed = 9;
-    for (int i = 0; i < 200; i++) {
+    for (int i = 0; i < 200; ++i) {
         gm_test_context("pair %d", i);
         gm_pair_params params =
             catalogue_params(gm_test_integer(&seed, 18, 60), gm_test_integer(&seed, 18, 90), 2.0,
@@ -462,7 +462,7 @@ static void equal_faces_may_be_said_in_each_way(void) {
     const gm_pair expected = make_pair(&common);
     GM_ASSERT_REL(expected.face_start, 0.0, 0.0);
     GM_ASSERT_REL(expected.wheel.face_start, 0.0, 0.0);
-    for (int way = 1; way < 8; way++) {
+    for (int way = 1; way < 8; ++way) {
         gm_test_context("way %d", way);
         gm_pair_params params = common;
         params.pinion_face_width = way & 1 ? REFERENCE_FACE_WIDTH : (double)NAN;
@@ -492,7 +492,7 @@ static void unequal_faces_share_what_lies_in_both(void) {
         {20.0, 20.0, -3.0, 0.0, 17.0, -3.0}, /* beyond face I */
         {20.0, 10.0, 12.0, 17.0, 3.0, 17.0}, {20.0, 10.0, -12.0, 0.0, 3.0, -7.0},
     };
-    for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
+    for (size_t i = 0; i < sizeof cases / sizeof cases[0]; ++i) {
         gm_test_context("case %d", (int)i);
         gm_pair_params params = reference_params((double)NAN);
         params.pinion_face_width = cases[i].pinion * 1e-3;
@@ -531,7 +531,7 @@ static void a_pinion_that_begins_earlier_only_turns_its_zero(void) {
     const gm_pair narrow = make_pair(&params);
     const double turn = 2e-3 * tan(narrow.base_helix_angle) / narrow.pinion.base_radius;
     const double wheel_turn = 2e-3 * tan(narrow.base_helix_angle) / narrow.wheel.base_radius;
-    for (int i = 0; i < 40; i++) {
+    for (int i = 0; i < 40; ++i) {
         gm_test_context("position %d", i);
         const gm_state state = {.pinion_angle = 0.11 * i,
                                 .wheel_angle = 0.11 * i * 45.0 / 41.0 + (i % 2 ? 1.5e-3 : -1.5e-3)};
@@ -559,7 +559,7 @@ static void faces_that_contradict_each_other_are_refused(void) {
         {NAN, 20.0, 30.0, -25.0, "axial_offset"},
         {20.0, NAN, NAN, 21.0, "axial_offset"},
     };
-    for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
+    for (size_t i = 0; i < sizeof cases / sizeof cases[0]; ++i) {
         gm_test_context("case %d", (int)i);
         gm_pair_params params = reference_params(cases[i].common * 1e-3);
         params.pinion_face_width = cases[i].pinion * 1e-3;
@@ -622,7 +622,7 @@ static void pitch_angle_carries_two_doubles(void) {
     /* z (pitch_angle + remainder) = 2 pi to 100 bits: 2 pi = 0x6.487ED5110B4611A6 2633145C... */
     const gm_pair p = reference_pair(REFERENCE_FACE_WIDTH);
     const gm_gear *const gears[2] = {&p.pinion, &p.wheel};
-    for (int g = 0; g < 2; g++) {
+    for (int g = 0; g < 2; ++g) {
         gm_test_context("gear %d", g);
         const long double leading = 0x6.487ED5110B46p0L; /* 51 bits */
         const long double rest = 0x11A62633145C06E1p-112L;
@@ -761,7 +761,7 @@ static void set_wrong(gm_pair_params *params, const wrong_value *wrong) {
 }
 
 static void every_wrong_value_is_named(void) {
-    for (size_t i = 0; i < sizeof wrong_values / sizeof wrong_values[0]; i++) {
+    for (size_t i = 0; i < sizeof wrong_values / sizeof wrong_values[0]; ++i) {
         const wrong_value *wrong = &wrong_values[i];
         gm_test_context("%s = %g", wrong->field, wrong->value);
         gm_pair_params params = reference_params(REFERENCE_FACE_WIDTH);
@@ -817,7 +817,7 @@ static void the_bounds_themselves_are_within_the_ranges(void) {
         NUMBER(pinion_start_radius, 1e-6, GM_OK),
         NUMBER(wheel_start_radius, 1e9, GM_OK),
     };
-    for (size_t i = 0; i < sizeof bounds / sizeof bounds[0]; i++) {
+    for (size_t i = 0; i < sizeof bounds / sizeof bounds[0]; ++i) {
         gm_test_context("%s = %g", bounds[i].field, bounds[i].value);
         gm_pair_params params = reference_params(REFERENCE_FACE_WIDTH);
         set_wrong(&params, &bounds[i]);
@@ -890,7 +890,7 @@ static void a_common_width_may_be_rounded(void) {
         {1.0 + 2.0e-9, GM_ERR_GEOMETRY},
         {1.0 - 2.0e-9, GM_ERR_GEOMETRY},
     };
-    for (int i = 0; i < 4; i++) {
+    for (int i = 0; i < 4; ++i) {
         gm_test_context("case %d", i);
         gm_pair_params params = reference_params(20e-3 * cases[i].times);
         params.pinion_face_width = 20e-3;
@@ -942,7 +942,7 @@ static void a_rack_deeper_than_the_gear_is_refused(void) {
         {15, 40, 7.49, NULL},
         {40, 15, 7.49, NULL},
     };
-    for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
+    for (size_t i = 0; i < sizeof cases / sizeof cases[0]; ++i) {
         gm_test_context("case %d", (int)i);
         gm_pair_params params =
             catalogue_params(cases[i].pinion_teeth, cases[i].wheel_teeth, 2.0, 0.0, 55.0, 0.0, 0.0);
@@ -966,7 +966,7 @@ static void a_tip_below_the_base_circle_is_blamed_on_what_was_given(void) {
         {NAN, NAN, 0.39, "pinion_tip_radius"},
         {NAN, NAN, 0.41, NULL},
     };
-    for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
+    for (size_t i = 0; i < sizeof cases / sizeof cases[0]; ++i) {
         gm_test_context("case %d", (int)i);
         gm_pair_params params = catalogue_params(10, 30, 2.0, 0.0, 40.0, -0.7, 0.7);
         params.pinion_tip_alteration = cases[i].pinion_k;
@@ -1069,7 +1069,7 @@ static void a_thin_tooth_is_blamed_on_what_was_given(void) {
         /* Base radii 186.16 mm: all but no working angle, x = -200 inv(alpha_t) / tan(16 deg) < -4. */
         {200, NAN, 372.5e-3, "center_distance"},
     };
-    for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
+    for (size_t i = 0; i < sizeof cases / sizeof cases[0]; ++i) {
         gm_test_context("case %d", (int)i);
         gm_pair_params params = reference_params(REFERENCE_FACE_WIDTH);
         params.backlash = NAN;
@@ -1122,15 +1122,15 @@ static void null_pointers_are_refused(void) {
 /* A pair that is said to be good holds only numbers, however absurd the drawing. */
 static void success_means_finite(void) {
     static const double extremes[] = {1e-320, 1e-300, 1e-150, 1e150, 1e300, 1.7e308};
-    for (size_t i = 0; i < sizeof wrong_values / sizeof wrong_values[0]; i++) {
-        for (size_t k = 0; k < 2 * sizeof extremes / sizeof extremes[0]; k++) {
+    for (size_t i = 0; i < sizeof wrong_values / sizeof wrong_values[0]; ++i) {
+        for (size_t k = 0; k < 2 * sizeof extremes / sizeof extremes[0]; ++k) {
             wrong_value wrong = wrong_values[i];
             if (wrong.is_integer || (i > 0 && wrong.offset == wrong_values[i - 1].offset)) {
                 continue;
             }
             wrong.value = extremes[k / 2] * (k % 2 == 0 ? 1.0 : -1.0);
             gm_test_context("%s = %g", wrong.field, wrong.value);
-            for (int with_backlash = 0; with_backlash < 2; with_backlash++) {
+            for (int with_backlash = 0; with_backlash < 2; ++with_backlash) {
                 gm_pair_params params = reference_params(REFERENCE_FACE_WIDTH);
                 if (!with_backlash) {
                     params.backlash = NAN;
@@ -1141,7 +1141,7 @@ static void success_means_finite(void) {
                 const int status = gm_pair_init(&pair, &params);
                 list_pair(&pair, values);
                 int finite = 1;
-                for (int v = 0; v < PAIR_DOUBLES; v++) {
+                for (int v = 0; v < PAIR_DOUBLES; ++v) {
                     finite = finite && isfinite(values[v]);
                 }
                 GM_ASSERT((status == GM_OK) == finite);
@@ -1203,7 +1203,7 @@ static void thin_and_pointed_tips_are_warned_of(void) {
     /* s_t at the tip = 2 r_a (psi_b - inv(alpha_a)): the reference gear's land is 0.5 m_n; a tip 0.8 mm
      * larger leaves less than 0.2 m_n, one 2 mm larger nothing. */
     static const double longer[] = {0.8e-3, 2.0e-3};
-    for (int k = 0; k < 2; k++) {
+    for (int k = 0; k < 2; ++k) {
         gm_test_context("%g", longer[k]);
         gm_pair_params params = reference_params(REFERENCE_FACE_WIDTH);
         params.pinion_tip_radius += longer[k];
@@ -1225,7 +1225,7 @@ static void thin_and_pointed_tips_are_warned_of(void) {
 /* Normal tip land = 2 r_a (psi_b - inv(alpha_a)) cos(beta_a), tan(beta_a) = tan(beta) r_a / r: 0.2 m_n is enough. */
 static void the_least_tip_land_is_a_fifth_of_a_module(void) {
     const gm_pair p = reference_pair(REFERENCE_FACE_WIDTH);
-    for (int wheel = 0; wheel < 2; wheel++) {
+    for (int wheel = 0; wheel < 2; ++wheel) {
         gm_test_context("wheel %d", wheel);
         const gm_gear *gear = wheel ? &p.wheel : &p.pinion;
         double low = gear->tip_radius, high = gear->tip_radius + 2e-3;
@@ -1236,7 +1236,7 @@ static void the_least_tip_land_is_a_fifth_of_a_module(void) {
                                 cos(atan(tan(p.helix_angle) * r / gear->reference_radius));
             *(land > 0.2 * p.normal_module ? &low : &high) = r;
         }
-        for (int above = 0; above < 2; above++) {
+        for (int above = 0; above < 2; ++above) {
             gm_pair_params params = reference_params(REFERENCE_FACE_WIDTH);
             *(wheel ? &params.wheel_tip_radius : &params.pinion_tip_radius) =
                 low + (above ? 1e-8 : -1e-8);
@@ -1282,8 +1282,8 @@ static void the_rack_that_is_given_cuts_the_root(void) {
         {NAN, NAN, 0, 0.0},                         /* 1.05: the mate's tip, and a little more */
         {1.50, NAN, 0, 0.1},  {1.60, NAN, 1, 0.1},  /* 1.15 and 1.25 below the reference circle */
     };
-    for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
-        for (int wheel = 0; wheel < 2; wheel++) {
+    for (size_t i = 0; i < sizeof cases / sizeof cases[0]; ++i) {
+        for (int wheel = 0; wheel < 2; ++wheel) {
             gm_test_context("case %d, wheel %d", (int)i, wheel);
             gm_pair_params params = catalogue_params(wheel ? 60 : 20, wheel ? 20 : 60, 2.0, 0.0,
                                                      80.0, wheel ? -cases[i].shift : cases[i].shift,

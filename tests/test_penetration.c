@@ -13,7 +13,7 @@ static void assert_all_nan(const gm_penetration *r) {
     const double fields[] = {r->penetration,    r->rate,         r->drive,         r->coast,
                              r->drive_rate,     r->coast_rate,   r->drive_contact, r->coast_contact,
                              r->d_pinion_angle, r->d_wheel_angle};
-    for (size_t i = 0; i < sizeof fields / sizeof fields[0]; i++) {
+    for (size_t i = 0; i < sizeof fields / sizeof fields[0]; ++i) {
         GM_ASSERT_NAN(fields[i]);
     }
     GM_ASSERT_INT(r->drive_pairs, 0);
@@ -28,7 +28,7 @@ static gm_position good_position(void) {
 
 static void state_and_position_give_the_same_bits(void) {
     uint64_t seed = UINT64_C(71);
-    for (int i = 0; i < 200; i++) {
+    for (int i = 0; i < 200; ++i) {
         random_case c;
         gm_test_context("case %d", i);
         GM_ASSERT_INT(random_case_make(&c, &seed, 1), GM_OK);
@@ -70,7 +70,7 @@ static void null_pointers_are_refused(void) {
     const gm_position position = good_position();
     const gm_state state = {.pinion_angle = 0.1, .wheel_angle = 0.11};
     gm_penetration r;
-    for (int e = 0; e < 2; e++) {
+    for (int e = 0; e < 2; ++e) {
         gm_test_context("evaluation %d", e);
         memset(&r, 1, sizeof r);
         GM_ASSERT_INT(evaluations[e](NULL, NULL, NULL, &position, &r), GM_ERR_NULL);
@@ -110,8 +110,8 @@ static void positions_out_of_range_are_refused(void) {
     int expected[16];
     int count = 0;
     static const double bad[] = {NAN, HUGE_VAL, -HUGE_VAL};
-    for (int k = 0; k < 3; k++) {
-        for (int field = 0; field < 3; field++) {
+    for (int k = 0; k < 3; ++k) {
+        for (int field = 0; field < 3; ++field) {
             wrong[count] = good_position();
             double *const fields[] = {&wrong[count].phase, &wrong[count].offset,
                                       &wrong[count].offset_rate};
@@ -125,16 +125,16 @@ static void positions_out_of_range_are_refused(void) {
     wrong[count] = good_position();
     wrong[count].phase = 10.0 * p_bt;
     expected[count++] = GM_STATE_OUT_OF_RANGE;
-    for (int k = 0; k < 4; k++) {
+    for (int k = 0; k < 4; ++k) {
         wrong[count] = good_position();
         *(k < 2 ? &wrong[count].pinion_tooth : &wrong[count].wheel_tooth) =
             k % 2 == 0 ? -1 : (k < 2 ? 45 : 41);
         expected[count++] = GM_ERR_TOOTH;
     }
-    for (int i = 0; i < count; i++) {
+    for (int i = 0; i < count; ++i) {
         gm_test_context("position %d", i);
         gm_penetration r;
-        for (int e = 0; e < 2; e++) {
+        for (int e = 0; e < 2; ++e) {
             memset(&r, 1, sizeof r);
             GM_ASSERT_INT(evaluations[e](&pair, NULL, NULL, &wrong[i], &r), expected[i]);
             assert_all_nan(&r);
@@ -154,7 +154,7 @@ static void positions_out_of_range_are_refused(void) {
 static void simple_model_refuses_what_is_no_number(void) {
     const gm_pair pair = reference_pair(REFERENCE_FACE_WIDTH);
     static const double bad[] = {NAN, HUGE_VAL, -HUGE_VAL};
-    for (int k = 0; k < 3; k++) {
+    for (int k = 0; k < 3; ++k) {
         gm_test_context("%g", bad[k]);
         gm_penetration r;
         memset(&r, 1, sizeof r);
@@ -172,14 +172,14 @@ static void speeds_are_taken_up_to_1e9(void) {
     params.backlash = -20e-6;
     const gm_pair pair = make_pair(&params);
     static const double absurd[] = {1.01e9, -1.01e9, 1e80, -1.7e308};
-    for (int k = 0; k < 4; k++) {
+    for (int k = 0; k < 4; ++k) {
         gm_test_context("%g", absurd[k]);
         gm_state states[2] = {{0.1, 0.1 * 45.0 / 41.0, absurd[k], 0.0},
                               {0.1, 0.1 * 45.0 / 41.0, 0.0, absurd[k]}};
         gm_position position = {0, 0, 0.0, 0.0, absurd[k]};
         gm_penetration r;
         gm_wrench w;
-        for (int gear = 0; gear < 2; gear++) {
+        for (int gear = 0; gear < 2; ++gear) {
             GM_ASSERT_INT(gm_penetration_3d(&pair, NULL, NULL, &states[gear], &r),
                           GM_STATE_OUT_OF_RANGE);
             assert_all_nan(&r);
@@ -233,7 +233,7 @@ static void a_pair_that_failed_cannot_be_evaluated(void) {
  * the same question gets the same bits again. */
 static void evaluation_writes_its_output_alone(void) {
     uint64_t seed = UINT64_C(72);
-    for (int i = 0; i < 50; i++) {
+    for (int i = 0; i < 50; ++i) {
         random_case c;
         gm_test_context("case %d", i);
         GM_ASSERT_INT(random_case_make(&c, &seed, 1), GM_OK);
@@ -243,7 +243,7 @@ static void evaluation_writes_its_output_alone(void) {
         memcpy(&copy, &c.pair, sizeof copy);
         double *tables[2] = {NULL, NULL};
         size_t bytes[2] = {0, 0};
-        for (int g = 0; g < 2; g++) {
+        for (int g = 0; g < 2; ++g) {
             if (c.use[g] != NULL) {
                 const gmi_tables *s = &c.flanks[g].flanks->side[GM_DRIVE];
                 bytes[g] =
@@ -260,7 +260,7 @@ static void evaluation_writes_its_output_alone(void) {
         GM_ASSERT_INT(gm_penetration_3d(&copy, c.use[0], c.use[1], &state, &again), GM_OK);
         GM_ASSERT(memcmp(&first, &again, sizeof first) == 0);
         GM_ASSERT(memcmp(&before, &c.pair, sizeof before) == 0);
-        for (int g = 0; g < 2; g++) {
+        for (int g = 0; g < 2; ++g) {
             if (c.use[g] != NULL) {
                 GM_ASSERT(memcmp(tables[g], c.flanks[g].flanks->side[GM_DRIVE].values, bytes[g]) ==
                           0);

@@ -247,7 +247,7 @@ static void the_most_special_row_wins_in_any_order(void) {
     static const char *const rows[] = {"*,*,1\n", "*,drive,2\n", "3,*,4\n", "3,drive,8\n"};
     /* Expected for tooth 3 drive, tooth 3 coast, tooth 0 drive, tooth 0 coast; by the rule: tooth and
        flank, then tooth, then flank, then all. Bit i of `present`: row i is there. */
-    for (int present = 1; present < 16; present++) {
+    for (int present = 1; present < 16; ++present) {
         const double all = present & 1 ? 1e-6 : 0.0;
         const double drive = present & 2 ? 2e-6 : all;
         const double own = present & 4 ? 4e-6 : -1.0;
@@ -255,9 +255,9 @@ static void the_most_special_row_wins_in_any_order(void) {
                                     : own >= 0.0 ? own
                                                  : drive,
                                     own >= 0.0 ? own : all, drive, all};
-        for (int backward = 0; backward < 2; backward++) {
+        for (int backward = 0; backward < 2; ++backward) {
             char text[200] = HEADER;
-            for (int i = 0; i < 4; i++) {
+            for (int i = 0; i < 4; ++i) {
                 const int row = backward ? 3 - i : i;
                 strcat(text, present & (1 << row) ? rows[row] : "");
             }
@@ -349,7 +349,7 @@ static void any_decimal_is_the_nearest_double_in_metres(void) {
     static double expected[MANY];
     uint64_t seed = 11;
     char *end = text + strlen(text);
-    for (int tooth = 0; tooth < MANY; tooth++) {
+    for (int tooth = 0; tooth < MANY; ++tooth) {
         char number[60];
         char metres[80];
         const int decimals = gm_test_integer(&seed, 0, 18);
@@ -359,7 +359,7 @@ static void any_decimal_is_the_nearest_double_in_metres(void) {
         end += sprintf(end, "%d,drive,%s\n", tooth, number);
     }
     if (GM_ASSERT_INT(gm_pitch_read(&pitch, file_of(text), MANY, &error), GM_IO_OK)) {
-        for (int tooth = 0; tooth < MANY; tooth++) {
+        for (int tooth = 0; tooth < MANY; ++tooth) {
             gm_test_context("tooth %d: %.17g m", tooth, expected[tooth]);
             GM_ASSERT(same_bits(pitch.drive[tooth], expected[tooth]));
         }
@@ -449,7 +449,7 @@ static gm_pitch own;
 
 static void make_own(void) {
     own = (gm_pitch){TEETH, drive, coast, drive_set, coast_set};
-    for (int tooth = 0; tooth < TEETH; tooth++) {
+    for (int tooth = 0; tooth < TEETH; ++tooth) {
         drive[tooth] = 1.5e-6 * tooth;
         coast[tooth] = -0.25e-6;
         drive_set[tooth] = 1;
@@ -471,7 +471,7 @@ static void a_written_file_reads_back_to_the_same_bits(void) {
                                 123456789.0};
     static int all_set[MANY];
     uint64_t seed = 5;
-    for (int tooth = 0; tooth < MANY; tooth++) {
+    for (int tooth = 0; tooth < MANY; ++tooth) {
         all_set[tooth] = 1;
         if (tooth >= 9) {
             many[tooth] = ldexp(gm_test_uniform(&seed, -1.0, 1.0), tooth % 40 - 30);
@@ -480,7 +480,7 @@ static void a_written_file_reads_back_to_the_same_bits(void) {
     const gm_pitch written = {MANY, many, many, all_set, all_set};
     GM_ASSERT_INT(gm_pitch_write(&written, path, &error), GM_IO_OK);
     if (GM_ASSERT_INT(gm_pitch_read(&pitch, path, MANY, &error), GM_IO_OK)) {
-        for (int tooth = 0; tooth < MANY; tooth++) {
+        for (int tooth = 0; tooth < MANY; ++tooth) {
             gm_test_context("%.17g", many[tooth]);
             GM_ASSERT(same_bits(pitch.drive[tooth], many[tooth]));
             GM_ASSERT(same_bits(pitch.coast[tooth], many[tooth]));

@@ -56,7 +56,7 @@ static int read_gears(gm_pair_params *params) {
                               &params->pinion_face_width, &params->wheel_face_width,
                               &params->axial_offset,      &params->pinion_start_radius,
                               &params->wheel_start_radius};
-    for (size_t k = 0; k < sizeof fields / sizeof fields[0]; k++) {
+    for (size_t k = 0; k < sizeof fields / sizeof fields[0]; ++k) {
         *fields[k] = read_number();
     }
     return 1;
@@ -93,7 +93,7 @@ static void transmission_error_is_that_of_displaced_helicoids(void) {
         gm_mesh *mesh;
         GM_ASSERT_INT(gm_mesh_init(&mesh, &law, &pair, NULL, NULL, room.memory, sizeof room.memory),
                       GM_OK);
-        for (int k = 0; k < count; k++) {
+        for (int k = 0; k < count; ++k) {
             double offset = (double)NAN;
             GM_ASSERT(read_key("point"));
             const double angle = read_number(), te = read_number();
@@ -104,9 +104,9 @@ static void transmission_error_is_that_of_displaced_helicoids(void) {
                 gm_static_equilibrium(mesh, angle, torque, (double)NAN, NULL, &offset, NULL),
                 GM_OK);
             GM_ASSERT_ABS(-offset, te, tolerance + 1e-8 * fabs(te));
-            points++;
+            ++points;
         }
-        cases++;
+        ++cases;
     }
     fclose(case_file);
     gm_test_context("all cases");
@@ -127,7 +127,7 @@ static void changes_of_the_transmission_error_are_those_printed(void) {
                  {{40e-6, 0.0, 0.0}, -58.6090 - 13.604},
                  {{0.0, 40e-6, 0.0}, -58.6090 - 37.673},
                  {{0.0, 0.0, 100e-6}, -58.6090 + 61.416}};
-    for (size_t k = 0; k < sizeof moves / sizeof moves[0]; k++) {
+    for (size_t k = 0; k < sizeof moves / sizeof moves[0]; ++k) {
         gm_test_context("move %d", (int)k);
         plain_mesh room;
         gm_mesh *mesh;
@@ -169,7 +169,7 @@ static int evaluate_posed(const gm_pair *pair, const gm_flanks *pinion, const gm
 static void another_centre_distance_is_another_drawing(void) {
     uint64_t seed = UINT64_C(101);
     int compared = 0;
-    for (int i = 0; i < 300; i++) {
+    for (int i = 0; i < 300; ++i) {
         random_case c;
         gm_test_context("case %d, seed %llx", i, (unsigned long long)seed);
         GM_ASSERT_INT(random_case_make(&c, &seed, i % 4 != 0), GM_OK);
@@ -208,7 +208,7 @@ static void another_centre_distance_is_another_drawing(void) {
                 GM_ASSERT_ABS(posed.force, other.force, little);
                 GM_ASSERT_ABS(posed.wrench.wheel_force[0], other.wrench.wheel_force[0], little);
                 GM_ASSERT_ABS(posed.wrench.wheel_force[1], other.wrench.wheel_force[1], little);
-                compared++;
+                ++compared;
             }
         }
         random_case_free(&c);
@@ -220,7 +220,7 @@ static void another_centre_distance_is_another_drawing(void) {
 /* Axes at the same distance in another direction: the same mesh, turned as a whole. */
 static void axes_in_another_direction_turn_everything(void) {
     uint64_t seed = UINT64_C(102);
-    for (int i = 0; i < 200; i++) {
+    for (int i = 0; i < 200; ++i) {
         random_case c;
         gm_test_context("case %d, seed %llx", i, (unsigned long long)seed);
         GM_ASSERT_INT(random_case_make(&c, &seed, i % 4 != 0), GM_OK);
@@ -251,7 +251,7 @@ static void axes_in_another_direction_turn_everything(void) {
             GM_ASSERT_ABS(b.wrench.wheel_force[0], cos(psi) * f[0] - sin(psi) * f[1], little);
             GM_ASSERT_ABS(b.wrench.wheel_force[1], sin(psi) * f[0] + cos(psi) * f[1], little);
             GM_ASSERT_ABS(b.wrench.wheel_moment[2], a.wrench.wheel_moment[2], little * d);
-            for (int k = 0; k < 3; k++) {
+            for (int k = 0; k < 3; ++k) {
                 GM_ASSERT_ABS(b.wrench.pinion_force[k] + b.wrench.wheel_force[k], 0.0, little);
             }
         }
@@ -273,7 +273,7 @@ static gm_flanks *flanks_with(int teeth, int face_nodes, const double *values,
     const size_t size = gm_flanks_size(&sizes);
     gm_flanks *flanks;
     GM_ASSERT_INT(gm_flanks_init(&flanks, &sizes, malloc(size), size), GM_OK);
-    for (int side = GM_DRIVE; side <= GM_COAST; side++) {
+    for (int side = GM_DRIVE; side <= GM_COAST; ++side) {
         GM_ASSERT_INT(gm_flanks_set_table(flanks, side, GM_ALL_TEETH, values, 1.0), GM_OK);
         GM_ASSERT_INT(gm_flanks_set_ramps(flanks, side, ramp, 1, 1.0), GM_OK);
     }
@@ -289,18 +289,18 @@ static void only_the_common_face_takes_part(void) {
     uint64_t seed = UINT64_C(103);
     gm_pair_params own = reference_params(REFERENCE_FACE_WIDTH);
     const double b = REFERENCE_FACE_WIDTH;
-    for (int i = 0; i < 60; i++) {
+    for (int i = 0; i < 60; ++i) {
         const int third = i % 3;
         const int by_pose = i % 2;
         own.helix_angle = (i % 4 < 2 ? 1.0 : -1.0) * 33.0 * 0.017453292519943295;
         gm_test_context("case %d", i);
         double whole[(CELLS + 1) * PROFILE_NODES], part[2 * PROFILE_NODES],
             of_pinion[2 * PROFILE_NODES];
-        for (int k = 0; k < (CELLS + 1) * PROFILE_NODES; k++) {
+        for (int k = 0; k < (CELLS + 1) * PROFILE_NODES; ++k) {
             whole[k] = gm_test_uniform(&seed, -3e-6, 3e-6);
         }
         memcpy(part, whole + third * PROFILE_NODES, sizeof part);
-        for (int k = 0; k < 2 * PROFILE_NODES; k++) {
+        for (int k = 0; k < 2 * PROFILE_NODES; ++k) {
             of_pinion[k] = gm_test_uniform(&seed, -3e-6, 3e-6);
         }
         const gm_flank_ramp of_whole = {1e-6, -5e-6, 3e-6};
@@ -320,7 +320,7 @@ static void only_the_common_face_takes_part(void) {
         gm_flanks *pinion = flanks_with(45, 2, of_pinion, &of_other);
         gm_flanks *wheel = flanks_with(41, 2, part, &of_part);
         gm_flanks *wide_wheel = flanks_with(41, CELLS + 1, whole, &of_whole);
-        for (int k = 0; k < 20; k++) {
+        for (int k = 0; k < 20; ++k) {
             gm_position at, shifted;
             gm_mesh_result a, c;
             const double sign = k % 5 == 0 ? -1.0 : 1.0;
@@ -346,7 +346,7 @@ static void only_the_common_face_takes_part(void) {
             GM_ASSERT_NEAR(c.force, a.force, 1e-9, 1e-6);
             GM_ASSERT_NEAR(c.force_by_pinion_angle, a.force_by_pinion_angle, 1e-8, 1e-1);
             GM_ASSERT_INT(c.contact.drive_pairs, a.contact.drive_pairs);
-            for (int m = 0; m < 3; m++) {
+            for (int m = 0; m < 3; ++m) {
                 GM_ASSERT_NEAR(c.wrench.wheel_moment[m], a.wrench.wheel_moment[m], 1e-9, 1e-8);
             }
         }
@@ -368,7 +368,7 @@ static void tables_begin_where_their_own_faces_do(void) {
     GM_ASSERT_REL(wide_pair.face_width, REFERENCE_FACE_WIDTH, 1e-14);
 
     double tables[2][(CELLS + 1) * PROFILE_NODES];
-    for (int k = 0; k < (CELLS + 1) * PROFILE_NODES; k++) {
+    for (int k = 0; k < (CELLS + 1) * PROFILE_NODES; ++k) {
         tables[GM_PINION][k] = gm_test_uniform(&seed, -3e-6, 3e-6);
         tables[GM_WHEEL][k] = gm_test_uniform(&seed, -3e-6, 3e-6);
     }
@@ -381,7 +381,7 @@ static void tables_begin_where_their_own_faces_do(void) {
     /* All teeth are the same, so that whole pitches do not matter. */
     const gm_pose drawn = {0.0, 0.0, 0.0};
     const double p_bt = narrow_pair.transverse_base_pitch;
-    for (int k = 0; k < 200; k++) {
+    for (int k = 0; k < 200; ++k) {
         gm_test_context("state %d", k);
         const double sign = k % 4 == 0 ? -1.0 : 1.0;
         const double x = sign * (0.5 * narrow_pair.backlash + gm_test_uniform(&seed, -2e-6, 12e-6));
@@ -416,7 +416,7 @@ static void a_cache_of_a_posed_mesh_is_as_good(void) {
     params.wheel_face_width = 19e-3;
     const gm_pair pair = make_pair(&params);
     double errors[2] = {0.0, 0.0};
-    for (int posed = 0; posed < 2; posed++) {
+    for (int posed = 0; posed < 2; ++posed) {
         plain_mesh room;
         gm_mesh *mesh;
         gm_mesh_params law;
@@ -449,7 +449,7 @@ static void a_cache_of_a_posed_mesh_is_as_good(void) {
 
 static void no_pose_is_the_drawing_to_the_last_bit(void) {
     uint64_t seed = UINT64_C(104);
-    for (int i = 0; i < 200; i++) {
+    for (int i = 0; i < 200; ++i) {
         random_case c;
         GM_ASSERT_INT(random_case_make(&c, &seed, 0), GM_OK);
         gmi_engagement drawn, posed;
@@ -478,7 +478,7 @@ static void poses_out_of_mesh_are_refused(void) {
         {{0.0, 0.0, -17.6e-3}, GM_POSE_OUT_OF_MESH}, {{(double)NAN, 0.0, 0.0}, GM_STATE_NOT_FINITE},
         {{0.0, HUGE_VAL, 0.0}, GM_STATE_NOT_FINITE}, {{0.0, 0.0, -HUGE_VAL}, GM_STATE_NOT_FINITE},
     };
-    for (size_t k = 0; k < sizeof wrong / sizeof wrong[0]; k++) {
+    for (size_t k = 0; k < sizeof wrong / sizeof wrong[0]; ++k) {
         gm_test_context("pose %d", (int)k);
         plain_mesh room;
         gm_mesh *mesh = (gm_mesh *)&room;

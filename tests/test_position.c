@@ -24,7 +24,7 @@ static long double pitches_of(long double angle, int teeth) {
 
 static void offset_is_exact_whatever_the_angle(void) {
     uint64_t seed = UINT64_C(61);
-    for (int i = 0; i < 4000; i++) {
+    for (int i = 0; i < 4000; ++i) {
         random_case c;
         GM_ASSERT_INT(random_case_make(&c, &seed, 0), GM_OK);
         const double angle =
@@ -55,7 +55,7 @@ static void tooth_and_phase_are_those_of_the_angle(void) {
     uint64_t seed = UINT64_C(62);
     const gm_pair pair = reference_pair(REFERENCE_FACE_WIDTH);
     const double p_bt = pair.transverse_base_pitch;
-    for (int i = 0; i < 4000; i++) {
+    for (int i = 0; i < 4000; ++i) {
         const double angle =
             gm_test_uniform(&seed, -1.0, 1.0) * pow(10.0, gm_test_integer(&seed, -3, 5));
         gm_test_context("angle %.17g", angle);
@@ -82,7 +82,7 @@ static void tooth_and_phase_are_those_of_the_angle(void) {
 
 /* There the quotient of angle and pitch may round to the wrong side, up or down with the number of teeth. */
 static void multiples_of_the_pitch_stay_in_range(void) {
-    for (int teeth = 40; teeth <= 52; teeth++) {
+    for (int teeth = 40; teeth <= 52; ++teeth) {
         gm_pair_params params = reference_params(REFERENCE_FACE_WIDTH);
         params.pinion_teeth = teeth;
         params.center_distance += (teeth - 45) * 0.984e-3;
@@ -90,7 +90,7 @@ static void multiples_of_the_pitch_stay_in_range(void) {
         const gm_pair pair = make_pair(&params);
         for (int n = -100000; n <= 100000; n += 77) {
             const double exact = pair.pinion.pitch_angle * n;
-            for (int step = -1; step <= 1; step++) {
+            for (int step = -1; step <= 1; ++step) {
                 const double angle = step == 0 ? exact : nextafter(exact, step * HUGE_VAL);
                 gm_test_context("%d teeth, %d pitches %+d", teeth, n, step);
                 gm_position position;
@@ -182,8 +182,8 @@ static void angles_are_taken_up_to_1e9_rad(void) {
 static void numbers_that_are_none_are_refused(void) {
     const gm_pair pair = reference_pair(REFERENCE_FACE_WIDTH);
     static const double bad[] = {NAN, HUGE_VAL, -HUGE_VAL};
-    for (size_t k = 0; k < sizeof bad / sizeof bad[0]; k++) {
-        for (int field = 0; field < 4; field++) {
+    for (size_t k = 0; k < sizeof bad / sizeof bad[0]; ++k) {
+        for (int field = 0; field < 4; ++field) {
             gm_test_context("field %d, %g", field, bad[k]);
             gm_state state = {.pinion_angle = 0.1, .wheel_angle = 0.11};
             double *const fields[] = {&state.pinion_angle, &state.wheel_angle, &state.pinion_speed,

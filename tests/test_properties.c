@@ -45,21 +45,21 @@ static void path_of_contact_shrinks_by_the_penetration(void) {
     const double p_bt = pair.transverse_base_pitch;
     const double r_bp = pair.pinion.base_radius;
     static const double deltas[] = {1e-9, 1e-6, 20e-6, 300e-6};
-    for (size_t d = 0; d < sizeof deltas / sizeof deltas[0]; d++) {
+    for (size_t d = 0; d < sizeof deltas / sizeof deltas[0]; ++d) {
         gm_test_context("delta %g", deltas[d]);
         const double x = pair.backlash / 2 + deltas[d];
         /* Find the two changes of the number of pairs within one base pitch. */
         enum { STEPS = 400 };
         double change[8];
         int changes = 0;
-        for (int k = 0; k < STEPS; k++) {
+        for (int k = 0; k < STEPS; ++k) {
             double low = p_bt * k / STEPS;
             double high = p_bt * (k + 1) / STEPS;
             const int pairs = at(&pair, NULL, NULL, low / r_bp, x).drive_pairs;
             if (at(&pair, NULL, NULL, high / r_bp, x).drive_pairs == pairs) {
                 continue;
             }
-            for (int bisection = 0; bisection < 60; bisection++) {
+            for (int bisection = 0; bisection < 60; ++bisection) {
                 const double middle = (low + high) / 2;
                 if (at(&pair, NULL, NULL, middle / r_bp, x).drive_pairs == pairs) {
                     low = middle;
@@ -87,7 +87,7 @@ static double roll_mean(const gm_pair *pair, double x, int steps, double *lowest
     double sum = 0.0;
     *lowest = HUGE_VAL;
     *highest = -HUGE_VAL;
-    for (int k = 0; k < steps; k++) {
+    for (int k = 0; k < steps; ++k) {
         const double angle = pair->pinion.pitch_angle * k / steps;
         const double contact = at(pair, NULL, NULL, angle, x).drive_contact;
         sum += contact;
@@ -102,7 +102,7 @@ static void roll_mean_of_the_contact_length_is_path_over_base_pitch(void) {
     enum { STEPS = 2000 };
     const gm_pair pair = reference_pair(REFERENCE_FACE_WIDTH);
     const double p_bt = pair.transverse_base_pitch;
-    for (size_t d = 0; d < sizeof deltas / sizeof deltas[0]; d++) {
+    for (size_t d = 0; d < sizeof deltas / sizeof deltas[0]; ++d) {
         gm_test_context("delta %g", deltas[d]);
         double lowest = 0.0;
         double highest = 0.0;
@@ -133,7 +133,7 @@ static void contact_length_is_constant_if_overlap_ratio_is_an_integer(void) {
     const gm_pair_params params = reference_params(1.0);
     const double unit = pi * params.normal_module / sin(params.helix_angle);
     GM_ASSERT_ABS(2.0 * unit, 19.0351e-3, 0.5e-7); /* design value, printed digits */
-    for (int n = 1; n <= 3; n++) {
+    for (int n = 1; n <= 3; ++n) {
         gm_test_context("overlap ratio %d", n);
         const gm_pair pair = reference_pair(n * unit);
         GM_ASSERT_REL(pair.overlap_ratio, (double)n, 1e-14);
@@ -163,7 +163,7 @@ static void fourier_coefficients_of_the_contact_length(void) {
     const gm_pair pair = reference_pair(REFERENCE_FACE_WIDTH);
     const double delta = 1e-9; /* the table was made for the unloaded path */
     static double contact[STEPS];
-    for (int n = 0; n < STEPS; n++) {
+    for (int n = 0; n < STEPS; ++n) {
         contact[n] =
             at(&pair, NULL, NULL, pair.pinion.pitch_angle * n / STEPS, pair.backlash / 2 + delta)
                 .drive_contact;
@@ -171,11 +171,11 @@ static void fourier_coefficients_of_the_contact_length(void) {
     /* The same in newtons of a mean force of 524.07 N, from the table of the reference gear. */
     static const double newtons[] = {5.00, 4.04, 2.77, 1.53, 0.58, 0.06, 0.09, 0.01};
     const double path = (path_of(&pair) - delta) / pair.transverse_base_pitch;
-    for (int k = 1; k <= 8; k++) {
+    for (int k = 1; k <= 8; ++k) {
         gm_test_context("order %d", k);
         double real = 0.0;
         double imaginary = 0.0;
-        for (int n = 0; n < STEPS; n++) {
+        for (int n = 0; n < STEPS; ++n) {
             const double angle = 2.0 * pi * (k * n % STEPS) / STEPS;
             real += contact[n] * cos(angle) / STEPS;
             imaginary += contact[n] * sin(angle) / STEPS;
@@ -214,7 +214,7 @@ static int image_ramps(const random_flanks *original, gm_flanks *image, int from
                        int turn_face) {
     gm_flank_ramp ramps[GM_FLANK_RAMPS_MAX];
     const int count = original->model.ramp_count[from];
-    for (int k = 0; k < count; k++) {
+    for (int k = 0; k < count; ++k) {
         const model_ramp *ramp = &original->model.ramp[from][k];
         ramps[k].offset =
             (double)(ramp->factor * (ramp->offset + (turn_face ? ramp->per_t1 : 0.0)));
@@ -229,9 +229,9 @@ static int image_flanks(const random_flanks *original, gm_flanks **made, void **
                         tooth_map *map, int exchange_sides, int turn_face) {
     const int teeth = gm_flanks_teeth(original->flanks);
     int nodes[2][2] = {{2, 2}, {2, 2}};
-    for (int side = 0; side < 2; side++) {
+    for (int side = 0; side < 2; ++side) {
         const model_table *tables = original->model.table[exchange_sides ? 1 - side : side];
-        for (int t = 0; t < teeth; t++) {
+        for (int t = 0; t < teeth; ++t) {
             if (tables[t].face_nodes > 0) {
                 nodes[side][0] = tables[t].face_nodes;
                 nodes[side][1] = tables[t].profile_nodes;
@@ -244,16 +244,16 @@ static int image_flanks(const random_flanks *original, gm_flanks **made, void **
     *memory = malloc(size);
     int good = GM_ASSERT_INT(gm_flanks_init(made, &sizes, *memory, size), GM_OK);
     gm_flanks *image = *made;
-    for (int side = 0; side < 2; side++) {
+    for (int side = 0; side < 2; ++side) {
         const int from = exchange_sides ? 1 - side : side;
         good &= image_ramps(original, image, from, side, turn_face);
         const int n1 = nodes[side][0];
         const int n2 = nodes[side][1];
         double *values = malloc((size_t)(n1 * n2) * sizeof *values);
-        for (int t = 0; t < teeth; t++) {
+        for (int t = 0; t < teeth; ++t) {
             const int source = map(t, teeth);
             const model_table *table = &original->model.table[from][source];
-            for (int i = 0; i < n1 * n2 && table->face_nodes > 0; i++) {
+            for (int i = 0; i < n1 * n2 && table->face_nodes > 0; ++i) {
                 const int row = turn_face ? n1 - 1 - i / n2 : i / n2;
                 values[i] = (double)(table->factor * table->values[row * n2 + i % n2]);
             }
@@ -318,7 +318,7 @@ static int compare_with_image(const random_case *c, enum symmetry symmetry) {
     gm_flanks *flanks[2];
     void *memory[2] = {NULL, NULL};
     const gm_flanks *use[2] = {NULL, NULL};
-    for (int gear = 0; gear < 2; gear++) {
+    for (int gear = 0; gear < 2; ++gear) {
         const int source = symmetry == TURNED_ROUND ? 1 - gear : gear;
         if (c->use[source] != NULL) {
             image_flanks(&c->flanks[source], &flanks[gear], &memory[gear], maps[gear],
@@ -353,7 +353,7 @@ static int compare_with_image(const random_case *c, enum symmetry symmetry) {
 static void compare_with_images(uint64_t seed, enum symmetry symmetry) {
     int compared = 0;
     int touching = 0;
-    for (int i = 0; i < 600; i++) {
+    for (int i = 0; i < 600; ++i) {
         random_case c;
         gm_test_context("case %d, seed %llx", i, (unsigned long long)seed);
         if (!GM_ASSERT_INT(random_case_make(&c, &seed, 1), GM_OK)) {
@@ -368,7 +368,7 @@ static void compare_with_images(uint64_t seed, enum symmetry symmetry) {
             model_evaluate(&c.model, c.model_use[0], c.model_use[1], c.pinion_angle, c.wheel_angle,
                            0.0L, 0.0L, &result);
             touching += result.pairs[0] + result.pairs[1] > 0;
-            compared++;
+            ++compared;
         }
         random_case_free(&c);
         if (!good) {
@@ -395,7 +395,7 @@ static void coast_is_the_mirror_image_of_drive(void) {
 static void all_lengths_scale_together(void) {
     uint64_t seed = UINT64_C(14);
     static const double scales[] = {1e-3, 7.0, 1e3};
-    for (int i = 0; i < 300; i++) {
+    for (int i = 0; i < 300; ++i) {
         gm_pair_params params;
         model_pair model;
         random_params(&seed, &params, &model);
@@ -412,7 +412,7 @@ static void all_lengths_scale_together(void) {
                                    &params.wheel_tip_radius,
                                    &params.pinion_start_radius,
                                    &params.wheel_start_radius};
-        for (size_t k = 0; k < sizeof lengths / sizeof lengths[0]; k++) {
+        for (size_t k = 0; k < sizeof lengths / sizeof lengths[0]; ++k) {
             *lengths[k] *= scale;
         }
         const gm_pair scaled = make_pair(&params);
@@ -458,12 +458,12 @@ static gm_flanks *make_flanks(int teeth, uint64_t seed, int different) {
     gm_flanks *flanks;
     GM_ASSERT_INT(gm_flanks_init(&flanks, &sizes, memory, size), GM_OK);
     double values[30];
-    for (int i = 0; i < 30; i++) {
+    for (int i = 0; i < 30; ++i) {
         values[i] = gm_test_uniform(&seed, -1e-6, 1e-6);
     }
-    for (int side = 0; side < 2; side++) {
+    for (int side = 0; side < 2; ++side) {
         GM_ASSERT_INT(gm_flanks_set_table(flanks, side, GM_ALL_TEETH, values, 1.0), GM_OK);
-        for (int t = 0; t < teeth && different; t++) {
+        for (int t = 0; t < teeth && different; ++t) {
             GM_ASSERT_INT(gm_flanks_set_pitch(flanks, side, t, gm_test_uniform(&seed, -1e-6, 1e-6)),
                           GM_OK);
         }
@@ -491,7 +491,7 @@ static void equal_teeth_repeat_every_pitch(void) {
     gm_flanks *wheel = make_flanks(40, 2, 0);
     const double first = after_meshes(&pair, pinion, wheel, 0);
     GM_ASSERT(first > 1e-6);
-    for (int n = -400; n <= 400; n++) {
+    for (int n = -400; n <= 400; ++n) {
         gm_test_context("%d pitches", n);
         /* Both angles reach 60 rad: half a unit in the last place each, times 2 touching pairs. */
         const double rounding = 2.2 * 2.0 * 60.0 * 0x1p-53 * pair.pinion.base_radius;
@@ -506,12 +506,12 @@ static void different_teeth_repeat_in_the_hunting_period_and_no_shorter_one(void
     gm_flanks *pinion = make_flanks(45, 1, 1);
     gm_flanks *wheel = make_flanks(40, 2, 1);
     const double first = after_meshes(&pair, pinion, wheel, 0);
-    for (int n = 1; n < 360; n++) {
+    for (int n = 1; n < 360; ++n) {
         gm_test_context("%d pitches", n);
         /* Pitch deviations of about 1 um that differ: nothing agrees to a picometre by chance. */
         GM_ASSERT(fabs(after_meshes(&pair, pinion, wheel, n) - first) > 1e-12);
     }
-    for (int n = -2; n <= 2; n++) {
+    for (int n = -2; n <= 2; ++n) {
         gm_test_context("%d hunting periods", n);
         const double rounding = 2.2 * 2.0 * 110.0 * 0x1p-53 * pair.pinion.base_radius;
         GM_ASSERT_ABS(after_meshes(&pair, pinion, wheel, 360 * n), first, rounding);
@@ -538,7 +538,7 @@ static void uniform_deviation_shifts_the_penetration(void) {
         GM_OK);
     /* errata of the paper: 1 / cos(beta_b) = 1.17371 (printed digits) */
     GM_ASSERT_ABS(pair.normal_to_transverse, 1.17371, 0.5e-5);
-    for (int k = 0; k < 50; k++) {
+    for (int k = 0; k < 50; ++k) {
         gm_test_context("position %d", k);
         const double angle = 0.1 * k;
         /* From far outside contact to deep inside. */
@@ -573,7 +573,7 @@ static void pitch_deviation_is_transverse_and_of_one_tooth(void) {
     const double x = pair.backlash / 2 + 1e-6;
     double lifted = 0.0;
     enum { STEPS = 41 * 40 };
-    for (int k = 0; k < STEPS; k++) {
+    for (int k = 0; k < STEPS; ++k) {
         const double angle = 2.0 * pi * k / STEPS * 41.0 / 45.0;
         lifted += at(&pair, NULL, flanks, angle, x).drive - at(&pair, NULL, NULL, angle, x).drive;
     }
@@ -597,7 +597,7 @@ static long double net_of(const random_case *c, long double by_pinion, long doub
 /** Richardson's extrapolation of central differences with steps h and h / 2. */
 static long double difference(const random_case *c, int wheel, long double h) {
     long double central[2];
-    for (int k = 0; k < 2; k++) {
+    for (int k = 0; k < 2; ++k) {
         const long double step = k == 0 ? h : h / 2;
         central[k] = (net_of(c, wheel ? 0.0L : step, wheel ? step : 0.0L) -
                       net_of(c, wheel ? 0.0L : -step, wheel ? -step : 0.0L)) /
@@ -610,7 +610,7 @@ static void derivatives_are_those_of_the_second_model(void) {
     uint64_t seed = UINT64_C(21);
     int compared = 0;
     int kinks = 0;
-    for (int i = 0; i < 1500; i++) {
+    for (int i = 0; i < 1500; ++i) {
         random_case c;
         gm_test_context("case %d, seed %llx", i, (unsigned long long)seed);
         if (!GM_ASSERT_INT(random_case_make(&c, &seed, i % 4 != 0), GM_OK)) {
@@ -623,7 +623,7 @@ static void derivatives_are_those_of_the_second_model(void) {
             const gm_state state = {.pinion_angle = c.pinion_angle, .wheel_angle = c.wheel_angle};
             gm_penetration got;
             GM_ASSERT_INT(gm_penetration_3d(&c.pair, c.use[0], c.use[1], &state, &got), GM_OK);
-            for (int wheel = 0; wheel < 2; wheel++) {
+            for (int wheel = 0; wheel < 2; ++wheel) {
                 const double r_b = (double)c.model.base_radius[wheel];
                 /* Steps of 2e-6 of a base pitch on the plane of action: grid cells are 1e-2 of it,
                  * so that the fourth-order error is below 1e-14; the noise is 1e-12. */
@@ -631,10 +631,10 @@ static void derivatives_are_those_of_the_second_model(void) {
                 const long double first = difference(&c, wheel, h);
                 const long double second = difference(&c, wheel, h / 3);
                 if (fabsl(first - second) > 3e-10L * c.model.base_radius[wheel]) {
-                    kinks++; /* within the steps: no derivative to compare with */
+                    ++kinks; /* within the steps: no derivative to compare with */
                     continue;
                 }
-                compared++;
+                ++compared;
                 const double contact = got.drive_contact + got.coast_contact;
                 good &= GM_ASSERT_ABS(wheel ? got.d_wheel_angle : got.d_pinion_angle,
                                       (double)second, 1e-9 * r_b * (1.0 + contact));
@@ -656,7 +656,7 @@ static void ideal_derivatives_by_x_are_the_contact_length(void) {
      * d/dphi_w = -r_bw (d/dx), and rolling (both angles together, x unchanged) changes the length alone. */
     const gm_pair_params params = reference_params(2.0 * pi * 1.65e-3 / sin(33.0 * pi / 180.0));
     const gm_pair pair = make_pair(&params);
-    for (int k = 0; k < 40; k++) {
+    for (int k = 0; k < 40; ++k) {
         gm_test_context("position %d", k);
         const gm_penetration r = at(&pair, NULL, NULL, 0.01 * k, pair.backlash / 2 + 4e-6);
         /* eps_beta = 2: rolling changes nothing. */
@@ -685,7 +685,7 @@ static void spur_is_the_limit_of_small_helix_angles(void) {
     for (int hand = -1; hand <= 1; hand += 2) {
         params.helix_angle = hand * 1e-6;
         const gm_pair almost = make_pair(&params);
-        for (int k = 0; k < 100; k++) {
+        for (int k = 0; k < 100; ++k) {
             gm_test_context("hand %d, position %d", hand, k);
             const double angle = spur.pinion.pitch_angle * k / 100.0;
             for (int s = -1; s <= 1; s += 2) {
@@ -696,7 +696,7 @@ static void spur_is_the_limit_of_small_helix_angles(void) {
                 if (contact != floor(contact)) {
                     continue; /* a pair is just entering: the spur gear jumps there */
                 }
-                compared++;
+                ++compared;
                 /* Geometry differs by beta^2 = 1e-12 relative to d in its lengths. */
                 const double length = 1e-11 * spur.center_distance;
                 GM_ASSERT_ABS(got.drive, exact.drive, 3.0 * length);
@@ -721,11 +721,11 @@ static void no_helix_angle_is_too_small(void) {
     const gm_pair spur = make_pair(&params);
     gm_flanks *flanks = make_flanks(45, 3, 1);
     static const double angles[] = {1e-13, 1e-16, 1e-20, 1e-100, 1e-300, 1e-308, 1e-312, 5e-324};
-    for (size_t i = 0; i < sizeof angles / sizeof angles[0]; i++) {
+    for (size_t i = 0; i < sizeof angles / sizeof angles[0]; ++i) {
         for (int hand = -1; hand <= 1; hand += 2) {
             params.helix_angle = hand * angles[i];
             const gm_pair almost = make_pair(&params);
-            for (int k = 0; k < 100; k++) {
+            for (int k = 0; k < 100; ++k) {
                 gm_test_context("helix %g, position %d", params.helix_angle, k);
                 const double angle = spur.pinion.pitch_angle * (k + 0.37) / 100.0;
                 for (int s = -1; s <= 1; s += 2) {
@@ -780,7 +780,7 @@ static void spur_jumps_where_a_pair_enters_and_helical_does_not(void) {
     const double last = helical.pinion.tip_roll_length - helical.phase_origin[GM_DRIVE];
     double previous = NAN;
     double first = 0.0;
-    for (int k = -10; k <= 20; k++) {
+    for (int k = -10; k <= 20; ++k) {
         gm_test_context("step %d", k);
         const double part = k / 10.0;
         const double roll = last - helical.face_advance + part * helical.face_advance;
@@ -807,7 +807,7 @@ static void spur_jumps_where_a_pair_enters_and_helical_does_not(void) {
 static void rate_is_approach_speed_times_touching_length(void) {
     uint64_t seed = UINT64_C(31);
     int touching = 0;
-    for (int i = 0; i < 400; i++) {
+    for (int i = 0; i < 400; ++i) {
         random_case c;
         gm_test_context("case %d", i);
         GM_ASSERT_INT(random_case_make(&c, &seed, i % 2), GM_OK);
@@ -837,7 +837,7 @@ static void mean_stiffness_is_contact_ratio_times_that_of_a_pair(void) {
     const gm_pair pair = reference_pair(REFERENCE_FACE_WIDTH);
     const double x = pair.backlash / 2 + 1e-9;
     double sum = 0.0;
-    for (int k = 0; k < 1000; k++) {
+    for (int k = 0; k < 1000; ++k) {
         sum += at(&pair, NULL, NULL, pair.pinion.pitch_angle * k / 1000.0, x).drive;
     }
     gm_penetration simple;

@@ -43,11 +43,11 @@ static void begin(const gm_pair *of, int wheel) {
     set = (gm_deviation_set){-1, -1, table};
     deviations = (gm_deviations){teeth, FACE_NODES, PROFILE_NODES, 1, &set};
     pitch = (gm_pitch){teeth, drive, coast, drive_set, coast_set};
-    for (int i = 0; i < MOST_TEETH; i++) {
+    for (int i = 0; i < MOST_TEETH; ++i) {
         drive[i] = coast[i] = 0.0;
         drive_set[i] = coast_set[i] = 1;
     }
-    for (int node = 0; node < FACE_NODES * PROFILE_NODES; node++) {
+    for (int node = 0; node < FACE_NODES * PROFILE_NODES; ++node) {
         table[node] = 0.0;
     }
     gm_quality_options_default(&options);
@@ -55,13 +55,13 @@ static void begin(const gm_pair *of, int wheel) {
 
 /* Adds f(t1) along the face or f(t2) along the profile. */
 static void add_profile(double (*f)(double)) {
-    for (int node = 0; node < FACE_NODES * PROFILE_NODES; node++) {
+    for (int node = 0; node < FACE_NODES * PROFILE_NODES; ++node) {
         table[node] += f((double)(node % PROFILE_NODES) / (PROFILE_NODES - 1));
     }
 }
 
 static void add_helix(double (*f)(double)) {
-    for (int node = 0; node < FACE_NODES * PROFILE_NODES; node++) {
+    for (int node = 0; node < FACE_NODES * PROFILE_NODES; ++node) {
         table[node] += f((double)(node / PROFILE_NODES) / (FACE_NODES - 1));
     }
 }
@@ -89,8 +89,8 @@ static void tolerances_are_those_of_the_formulae(void) {
         {9.0, 29.0, 26.0, 7.5, 9.5, 12.0, 9.0, 10.0, 14.0},
         {51.0, 163.0, 147.0, 43.0, 53.0, 68.0, 52.0, 58.0, 78.0}};
     const gm_pair gears = module_3();
-    for (int i = 0; i < 4; i++) {
-        for (int kind = 0; kind < GM_QUALITY_KINDS; kind++) {
+    for (int i = 0; i < 4; ++i) {
+        for (int kind = 0; kind < GM_QUALITY_KINDS; ++kind) {
             gm_test_context("class %d, %s", classes[i], gm_quality_symbol(kind));
             GM_ASSERT_REL(gm_quality_tolerance(&gears, 0, kind, classes[i]),
                           expected[i][kind] * 1e-6, 1e-15);
@@ -144,7 +144,7 @@ static void a_value_at_the_limit_is_within_the_class(void) {
     static const double part[3] = {0.999999, 1.000001, 8.0};
     static const int expected[3] = {7, 8, 12};
     begin(&gears, 0);
-    for (int i = 0; i < 3; i++) {
+    for (int i = 0; i < 3; ++i) {
         drive[3] = part[i] * limit / arc;
         GM_ASSERT_INT(evaluate(0), GM_IO_OK);
         GM_ASSERT_INT(quality.worst[GM_QUALITY_TOTAL_PITCH].quality_class, expected[i]);
@@ -263,7 +263,7 @@ static void behind_the_range_only_excess_of_material_counts(void) {
 static double slope_of_points(double from, double to) {
     enum { POINTS = 200000 };
     double st = 0.0, sf = 0.0, stt = 0.0, stf = 0.0;
-    for (int i = 0; i < POINTS; i++) {
+    for (int i = 0; i < POINTS; ++i) {
         const double t = from + (to - from) * (i + 0.5) / POINTS;
         const double place = t * (PROFILE_NODES - 1);
         const int node = (int)place;
@@ -279,7 +279,7 @@ static double slope_of_points(double from, double to) {
 static void the_mean_line_is_that_of_least_squares(void) {
     static const double ranges[3][2] = {{0.0, 0.95}, {0.12, 0.77}, {0.4, 0.41}};
     const gm_pair gears = module_3();
-    for (int i = 0; i < 3; i++) {
+    for (int i = 0; i < 3; ++i) {
         begin(&gears, 0);
         add_profile(rough);
         options.profile_from = ranges[i][0];
@@ -312,7 +312,7 @@ static void the_flank_with_the_worst_value_is_named(void) {
     begin(&gears, 0);
     add_profile(crown);
     memcpy(other, table, sizeof table);
-    for (int node = 0; node < FACE_NODES * PROFILE_NODES; node++) {
+    for (int node = 0; node < FACE_NODES * PROFILE_NODES; ++node) {
         other[node] *= 1.5;
     }
     gm_deviation_set sets[2] = {set, {17, GM_COAST, other}};
@@ -332,7 +332,7 @@ static void the_flank_with_the_worst_value_is_named(void) {
 static void pitch_is_an_arc_at_the_reference_circle(void) {
     const gm_pair gears = reference_pair(REFERENCE_FACE_WIDTH);
     const double arc = 1.0 / cos(gears.transverse_pressure_angle);
-    for (int wheel = 0; wheel < 2; wheel++) {
+    for (int wheel = 0; wheel < 2; ++wheel) {
         /* A tooth ahead by f: +f on the pinion's drive flank, -f on the wheel's (conventions). */
         const double ahead = wheel ? -1.0 : 1.0;
         gm_test_context("wheel %d", wheel);
@@ -370,8 +370,8 @@ static void displace(const gm_pair *gears, int wheel, double shift, double direc
     const double alpha = gears->transverse_pressure_angle;
     const double half =
         gear->normal_thickness / (2.0 * gear->reference_radius * cos(gears->helix_angle));
-    for (int i = 0; i < gear->teeth; i++) {
-        for (int side = 0; side < 2; side++) {
+    for (int i = 0; i < gear->teeth; ++i) {
+        for (int side = 0; side < 2; ++side) {
             /* Angles in the gear's own sense of rotation; the pinion's drive flank looks ahead, the wheel's back. */
             const double ahead = (side == GM_DRIVE) == !wheel ? 1.0 : -1.0;
             const double place = 2.0 * pi * i / gear->teeth + ahead * half - direction;
@@ -386,15 +386,15 @@ static void displace(const gm_pair *gears, int wheel, double shift, double direc
  * bit less where no space stands in the direction of the shift. */
 static void run_out_is_twice_the_eccentricity(void) {
     const gm_pair gears = reference_pair(REFERENCE_FACE_WIDTH);
-    for (int wheel = 0; wheel < 2; wheel++) {
-        for (int direction = 0; direction < 5; direction++) {
+    for (int wheel = 0; wheel < 2; ++wheel) {
+        for (int direction = 0; direction < 5; ++direction) {
             const double angle = 0.3 + direction;
             double low = (double)INFINITY;
             double high = -(double)INFINITY;
             begin(&gears, wheel);
             gm_test_context("wheel %d, direction %d", wheel, direction);
             displace(&gears, wheel, 5e-6, angle);
-            for (int i = 0; i < pitch.teeth; i++) {
+            for (int i = 0; i < pitch.teeth; ++i) {
                 /* the space behind or in front of tooth i: all spaces are visited */
                 const double place = 5e-6 * cos(2.0 * pi * (i + 0.5) / pitch.teeth - angle);
                 low = fmin(low, place);
@@ -409,7 +409,7 @@ static void run_out_is_twice_the_eccentricity(void) {
 
 static void a_space_that_stands_elsewhere_has_no_run_out(void) {
     const gm_pair gears = reference_pair(REFERENCE_FACE_WIDTH);
-    for (int wheel = 0; wheel < 2; wheel++) {
+    for (int wheel = 0; wheel < 2; ++wheel) {
         begin(&gears, wheel);
         drive[5] = 4e-6;
         coast[wheel ? 4 : 6] = -4e-6; /* the other flank of the same space */
@@ -426,7 +426,7 @@ static void a_space_that_stands_elsewhere_has_no_run_out(void) {
 static void what_no_file_says_is_not_evaluated(void) {
     const gm_pair gears = module_3();
     begin(&gears, 0);
-    for (int i = 0; i < MOST_TEETH; i++) {
+    for (int i = 0; i < MOST_TEETH; ++i) {
         coast_set[i] = 0;
     }
     set.side = GM_COAST;

@@ -68,7 +68,7 @@ static void same_results(const gm_pair *pair, const gm_flanks *const one[2],
     GM_ASSERT_INT(a.drive_pairs, b.drive_pairs);
     GM_ASSERT_ABS(a.d_pinion_angle, b.d_pinion_angle, share * pair->pinion.base_radius);
     GM_ASSERT_ABS(a.d_wheel_angle, b.d_wheel_angle, share * pair->wheel.base_radius);
-    for (int k = 0; k < 3; k++) {
+    for (int k = 0; k < 3; ++k) {
         const double newtons = 1e8 * tolerance;
         GM_ASSERT_ABS(force_a.wheel_force[k], force_b.wheel_force[k], newtons);
         GM_ASSERT_ABS(force_a.wheel_moment[k], force_b.wheel_moment[k],
@@ -91,14 +91,14 @@ static void end_relief_of_spur_gears_is_a_triangle(void) {
     gm_flanks *flanks = flanks_of(&pair, 0, 0);
     const double share = 0.3, delta = 7.0 * UM;
     static const double amounts[] = {0.0, 3.0 * UM, 7.0 * UM, 20.0 * UM};
-    for (int k = 0; k < 4; k++) {
+    for (int k = 0; k < 4; ++k) {
         const double amount = amounts[k];
         const gm_flank_ramp ramp = {amount, -amount / share, 0.0};
         set_ramps(flanks, &ramp, 1);
         const double touching = amount > delta ? share * delta / amount : share;
         const double sum = (1.0 - share) * delta +
                            touching * (amount > delta ? 0.5 * delta : delta - 0.5 * amount);
-        for (int n = 0; n < 10; n++) {
+        for (int n = 0; n < 10; ++n) {
             gm_test_context("%g um, step %d", amount / UM, n);
             const double angle = 0.02 * n, x = 0.5 * pair.backlash + delta;
             const double pairs = at(&pair, NULL, NULL, angle, x).drive_contact;
@@ -120,14 +120,14 @@ static void corner_takes_a_pyramid_off_the_mean(void) {
     const double share_beta = 0.3, share_alpha = 0.25, amount = 8.0 * UM;
     const double roll = pair.pinion.tip_roll_length - pair.pinion.start_roll_length;
     static const double sides[2] = {0.0, 1.0}; /* face I, face II */
-    for (int k = 0; k < 2; k++) {
+    for (int k = 0; k < 2; ++k) {
         const double sign = 2.0 * sides[k] - 1.0;
         const gm_flank_ramp corner = {amount - amount * (sides[k] / share_beta + 1.0 / share_alpha),
                                       sign * amount / share_beta, amount / share_alpha};
         gm_flanks *flanks = flanks_of(&pair, 0, 0);
         set_ramps(flanks, &corner, 1);
         double taken = 0.0;
-        for (int n = 0; n < STEPS; n++) {
+        for (int n = 0; n < STEPS; ++n) {
             const double angle = pair.pinion.pitch_angle * n / STEPS;
             const double x = 0.5 * pair.backlash + 10.0 * UM;
             taken +=
@@ -158,7 +158,7 @@ static void ramps_of_both_gears_add_up_in_full_contact(void) {
     const gm_flank_ramp of_wheel[] = {opposite, end};
     set_ramps(pinion, &tip, 1);
     set_ramps(wheel, of_wheel, 2);
-    for (int k = 0; k < 50; k++) {
+    for (int k = 0; k < 50; ++k) {
         gm_test_context("step %d", k);
         const double angle = 0.01 * k;
         const double none = at(&pair, NULL, NULL, angle, x).drive;
@@ -192,11 +192,11 @@ static void make_both(const gm_pair *pair, int wheel, int count, uint64_t *seed,
     gm_flank_ramp ramps[GM_FLANK_RAMPS_MAX];
     double values[NODES];
     int ramp_count, rest_count;
-    for (int k = 0; k < count; k++) {
+    for (int k = 0; k < count; ++k) {
         list[k] = on_grid[k];
         list[k].face_range *= pair->face_width;
     }
-    for (int k = 0; k < NODES; k++) {
+    for (int k = 0; k < NODES; ++k) {
         values[k] = gm_test_uniform(seed, -1.0, 1.0) * UM;
     }
     GM_ASSERT_INT(gm_modifications_split(&design, ramps, &ramp_count, rest, &rest_count), GM_OK);
@@ -211,11 +211,11 @@ static void make_both(const gm_pair *pair, int wheel, int count, uint64_t *seed,
 }
 
 static void compare_with_tables(const gm_pair *pair, uint64_t seed) {
-    for (int count = 1; count <= 4; count++) {
+    for (int count = 1; count <= 4; ++count) {
         gm_flanks *ramped[2], *tabled[2];
         make_both(pair, 0, count, &seed, &ramped[0], &tabled[0]);
         make_both(pair, 1, count, &seed, &ramped[1], &tabled[1]);
-        for (int k = 0; k < 60; k++) {
+        for (int k = 0; k < 60; ++k) {
             gm_test_context("%d reliefs, state %d, helix %g", count, k, pair->helix_angle);
             const gm_flanks *const one[2] = {ramped[0], k % 3 == 0 ? NULL : ramped[1]};
             const gm_flanks *const other[2] = {tabled[0], k % 3 == 0 ? NULL : tabled[1]};
@@ -260,7 +260,7 @@ static void a_fine_table_of_a_corner_is_off_by_no_more_than_its_bound(void) {
     GM_ASSERT_INT(gm_flanks_set_table(tabled, GM_DRIVE, GM_ALL_TEETH, values, 1.0), GM_OK);
     set_ramps(ramped, ramps, ramp_count);
     double largest = 0.0;
-    for (int k = 0; k < 400; k++) {
+    for (int k = 0; k < 400; ++k) {
         const double angle = 0.002 * k, x = 0.5 * pair.backlash + (k % 20) * UM;
         const gm_penetration exact = at(&pair, ramped, NULL, angle, x);
         const double error = at(&pair, tabled, NULL, angle, x).drive - exact.drive;
@@ -290,7 +290,7 @@ static void compare_ramps(const gm_flank_ramp *one, int one_count, const gm_flan
     gm_flanks *a = flanks_of(&pair, 0, 0), *b = flanks_of(&pair, 0, 0);
     set_ramps(a, one, one_count);
     set_ramps(b, other, other_count);
-    for (int k = 0; k < 100; k++) {
+    for (int k = 0; k < 100; ++k) {
         gm_test_context("state %d", k);
         const gm_flanks *const first[2] = {a, NULL}, *const second[2] = {b, NULL};
         const double angle = gm_test_uniform(&seed, -3.0, 3.0);
@@ -300,7 +300,7 @@ static void compare_ramps(const gm_flank_ramp *one, int one_count, const gm_flan
 
 static void two_halves_are_a_whole(void) {
     gm_flank_ramp halves[2 * SOME];
-    for (int k = 0; k < 2 * SOME; k++) {
+    for (int k = 0; k < 2 * SOME; ++k) {
         const gm_flank_ramp *whole = &some[k % SOME];
         halves[k] = (gm_flank_ramp){0.5 * whole->offset, 0.5 * whole->per_t1, 0.5 * whole->per_t2};
     }
@@ -309,7 +309,7 @@ static void two_halves_are_a_whole(void) {
 
 static void order_does_not_matter(void) {
     gm_flank_ramp reversed[SOME];
-    for (int k = 0; k < SOME; k++) {
+    for (int k = 0; k < SOME; ++k) {
         reversed[k] = some[SOME - 1 - k];
     }
     compare_ramps(some, SOME, reversed, SOME, 1e-18);
@@ -333,7 +333,7 @@ static void edges_along_the_lines_of_contact_are_none(void) {
     const double rise = 40.0 * UM;
     int lower = 0;
     gm_flanks *flanks = flanks_of(&pair, 0, 0);
-    for (int k = 0; k < 200; k++) {
+    for (int k = 0; k < 200; ++k) {
         gm_position position;
         const double x = 0.5 * pair.backlash + 20.0 * UM;
         GM_ASSERT_INT(gm_position_from_pinion_angle(&pair, 0.003 * k, x, 0.0, &position), GM_OK);
@@ -351,7 +351,7 @@ static void edges_along_the_lines_of_contact_are_none(void) {
         double expected = 0.0;
         const double path[2] = {pair.line_of_action + 20.0 * UM - pair.wheel.tip_roll_length,
                                 pair.pinion.tip_roll_length};
-        for (int i = -4; i <= 4; i++) {
+        for (int i = -4; i <= 4; ++i) {
             const double rho =
                 pair.phase_origin[GM_DRIVE] + position.phase + i * pair.transverse_base_pitch;
             const double from = fmax(0.0, (path[0] - rho) / pair.face_advance);

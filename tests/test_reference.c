@@ -122,7 +122,7 @@ static int next_integer(FILE *file, int low, int high) {
 
 static double *next_numbers(FILE *file, int count) {
     double *values = allocate((size_t)count, sizeof *values);
-    for (int i = 0; i < count; i++) {
+    for (int i = 0; i < count; ++i) {
         values[i] = next_number(file);
     }
     return values;
@@ -132,7 +132,7 @@ static flank_record *next_flank(FILE *file, case_record *c) {
     static const char *const names[FLANK_COUNT] = {"p_drive", "p_coast", "w_drive", "w_coast"};
     char word[64] = "";
     next_word(file, word);
-    for (int i = 0; i < FLANK_COUNT; i++) {
+    for (int i = 0; i < FLANK_COUNT; ++i) {
         if (strcmp(word, names[i]) == 0) {
             return &c->flanks[i];
         }
@@ -155,7 +155,7 @@ static void read_gear(FILE *file, gm_pair_params *params) {
                               &params->wheel_tip_radius,
                               &params->pinion_start_radius,
                               &params->wheel_start_radius};
-    for (size_t i = 0; i < sizeof fields / sizeof fields[0]; i++) {
+    for (size_t i = 0; i < sizeof fields / sizeof fields[0]; ++i) {
         *fields[i] = next_number(file);
     }
 }
@@ -173,7 +173,7 @@ static void read_table(FILE *file, case_record *c) {
     *last = allocate(1, sizeof **last);
     (*last)->tooth = strcmp(word, "all") == 0 ? GM_ALL_TEETH : (int)strtol(word, NULL, 10);
     (*last)->values = next_numbers(file, flank->face_nodes * flank->profile_nodes);
-    flank->table_count++;
+    ++flank->table_count;
 }
 
 static void read_side(FILE *file, side_record *side) {
@@ -181,13 +181,13 @@ static void read_side(FILE *file, side_record *side) {
     side->fraction = next_number(file);
     side->overlap = next_number(file);
     side->pair_count = next_integer(file, 0, MAX_PAIRS);
-    for (int i = 0; i < side->pair_count; i++) {
+    for (int i = 0; i < side->pair_count; ++i) {
         char word[64] = "";
         if (!next_word(file, word) || strcmp(word, "pair") != 0) {
             stop_reading("a pair is missing", word);
         }
         double value[9]; /* i j tooth_p tooth_w t1_lo t1_hi delta_ideal integral fraction */
-        for (int k = 0; k < 9; k++) {
+        for (int k = 0; k < 9; ++k) {
             value[k] = next_number(file);
         }
         side->pairs[i] = (pair_record){.length = value[5] - value[4], .fraction = value[8]};
@@ -199,7 +199,7 @@ static void read_points(FILE *file, case_record *c) {
     c->torque = next_number(file);
     c->tolerance = next_number(file);
     c->point_count = next_integer(file, 1, MAX_POINTS);
-    for (int i = 0; i < c->point_count; i++) {
+    for (int i = 0; i < c->point_count; ++i) {
         char word[64] = "";
         if (!next_word(file, word) || strcmp(word, "point") != 0) {
             stop_reading("a point is missing", word);
@@ -223,7 +223,7 @@ static case_record *read_case(FILE *file) {
         } else if (strcmp(word, "gear") == 0) {
             read_gear(file, &c->params);
         } else if (strcmp(word, "derived") == 0) {
-            for (int i = 0; i < DERIVED_COUNT; i++) {
+            for (int i = 0; i < DERIVED_COUNT; ++i) {
                 c->derived[i] = next_number(file);
             }
         } else if (strcmp(word, "deviation") == 0) {
@@ -285,7 +285,7 @@ static void free_cases(void) {
     while (all_cases != NULL) {
         case_record *c = all_cases;
         all_cases = c->next;
-        for (int i = 0; i < FLANK_COUNT; i++) {
+        for (int i = 0; i < FLANK_COUNT; ++i) {
             while (c->flanks[i].tables != NULL) {
                 table_record *table = c->flanks[i].tables;
                 c->flanks[i].tables = table->next;
@@ -314,7 +314,7 @@ static int set_side(gm_flanks *flanks, int side, const flank_record *record, dou
         status = gm_flanks_set_table(flanks, side, t->tooth, t->values, factor);
     }
     for (int tooth = 0; record->pitch != NULL && tooth < gm_flanks_teeth(flanks) && status == GM_OK;
-         tooth++) {
+         ++tooth) {
         status = gm_flanks_set_pitch(flanks, side, tooth, record->pitch[tooth]);
     }
     return status;
@@ -328,7 +328,7 @@ static int prepare(prepared *p, const case_record *c) {
     }
     const double factor = c->is_normal ? p->pair.normal_to_transverse : 1.0;
     const int teeth[2] = {c->params.pinion_teeth, c->params.wheel_teeth};
-    for (int gear = 0; gear < 2 && c->has_deviation; gear++) {
+    for (int gear = 0; gear < 2 && c->has_deviation; ++gear) {
         const flank_record *drive = &c->flanks[gear == 0 ? P_DRIVE : W_DRIVE];
         const flank_record *coast = &c->flanks[gear == 0 ? P_COAST : W_COAST];
         const gm_flanks_params sizes = {.teeth = teeth[gear],
@@ -361,12 +361,12 @@ static model_flanks model_flanks_of(const case_record *c, int gear, const model_
     model_flanks flanks = {0};
     const long double factor = c->is_normal ? 1.0L / cosl(pair->beta_b) : 1.0L;
     const int teeth = pair->teeth[gear];
-    for (int side = 0; side < 2; side++) {
+    for (int side = 0; side < 2; ++side) {
         const flank_record *record = &c->flanks[2 * gear + side];
         flanks.table[side] = allocate((size_t)teeth, sizeof(model_table));
         flanks.pitch[side] = allocate((size_t)teeth, sizeof(double));
         for (const table_record *t = record->tables; t != NULL; t = t->next) {
-            for (int tooth = 0; tooth < teeth; tooth++) {
+            for (int tooth = 0; tooth < teeth; ++tooth) {
                 if (t->tooth == GM_ALL_TEETH || t->tooth == tooth) {
                     flanks.table[side][tooth] =
                         (model_table){record->face_nodes, record->profile_nodes, t->values, factor};
@@ -381,7 +381,7 @@ static model_flanks model_flanks_of(const case_record *c, int gear, const model_
 }
 
 static void free_model_flanks(model_flanks *flanks) {
-    for (int side = 0; side < 2; side++) {
+    for (int side = 0; side < 2; ++side) {
         free(flanks->table[side]);
         free(flanks->pitch[side]);
     }
@@ -450,7 +450,7 @@ static void derived_geometry(void) {
                 {"overlap_ratio", q->overlap_ratio, 0.0},
                 {"total_contact_ratio", q->total_contact_ratio, 0.0},
             };
-            for (int i = 0; i < DERIVED_COUNT; i++) {
+            for (int i = 0; i < DERIVED_COUNT; ++i) {
                 /* 1e-12: some thousand roundings, far below any drawing, far above chance. */
                 gm_test_near(derived[i].got, c->derived[i], 1e-12, derived[i].absolute,
                              derived[i].name, __FILE__, __LINE__);
@@ -483,7 +483,7 @@ static void count_pairs(const case_record *c, int side, int *certain, int *doubt
     *certain = 0;
     /* On a corner event a pair of no length may be listed or not. */
     *doubtful = strcmp(c->group, "corner") == 0;
-    for (int i = 0; i < c->side[side].pair_count; i++) {
+    for (int i = 0; i < c->side[side].pair_count; ++i) {
         const pair_record *pair = &c->side[side].pairs[i];
         *certain += pair->fraction > 1e-9 && pair->length > 1e-9;
         *doubtful += pair->fraction > 0.0 && !(pair->fraction > 1e-9 && pair->length > 1e-9);
@@ -497,7 +497,7 @@ static void pairs_in_contact_of_every_state(void) {
             const gm_state state = {.pinion_angle = c->pinion_angle, .wheel_angle = c->wheel_angle};
             gm_penetration result;
             GM_ASSERT_INT(gm_penetration_3d(&p.pair, p.use[0], p.use[1], &state, &result), GM_OK);
-            for (int side = 0; side < 2; side++) {
+            for (int side = 0; side < 2; ++side) {
                 const int got = side == GM_DRIVE ? result.drive_pairs : result.coast_pairs;
                 int certain = 0;
                 int doubtful = 0;
@@ -515,7 +515,7 @@ static void equilibrium_under_load(void) {
     for (const case_record *c = all_cases; c != NULL; c = c->next) {
         prepared p;
         if (prepare(&p, c)) {
-            for (int i = 0; i < c->point_count; i++) {
+            for (int i = 0; i < c->point_count; ++i) {
                 const point_record *point = &c->points[i];
                 gm_test_context("%s, point %d", c->id, i);
                 double offset = NAN;
@@ -549,13 +549,13 @@ static void the_second_model_agrees(void) {
         model_pair pair;
         model_pair_init(&pair, &c->params);
         model_flanks flanks[2];
-        for (int gear = 0; gear < 2; gear++) {
+        for (int gear = 0; gear < 2; ++gear) {
             flanks[gear] = model_flanks_of(c, gear, &pair);
         }
         model_result result;
         model_evaluate(&pair, &flanks[0], &flanks[1], c->pinion_angle, c->wheel_angle, 0.0L, 0.0L,
                        &result);
-        for (int side = 0; side < 2; side++) {
+        for (int side = 0; side < 2; ++side) {
             const side_record *expected = &c->side[side];
             GM_ASSERT_NEAR((double)result.sum[side], expected->sum, 1e-14, 1e-2 * c->tolerance);
             GM_ASSERT_ABS((double)result.contact[side], expected->fraction,

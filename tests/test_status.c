@@ -13,12 +13,12 @@ static const int all_statuses[] = {
 enum { STATUS_COUNT = sizeof all_statuses / sizeof all_statuses[0] };
 
 static void every_status_has_its_own_text(void) {
-    for (int i = 0; i < STATUS_COUNT; i++) {
+    for (int i = 0; i < STATUS_COUNT; ++i) {
         const char *text = gm_status_text(all_statuses[i]);
         gm_test_context("status %d", all_statuses[i]);
         GM_ASSERT(text != NULL && strlen(text) > 3);
         GM_ASSERT(strcmp(text, "unknown status") != 0);
-        for (int k = 0; k < i; k++) {
+        for (int k = 0; k < i; ++k) {
             GM_ASSERT(strcmp(text, gm_status_text(all_statuses[k])) != 0);
         }
     }
@@ -26,7 +26,7 @@ static void every_status_has_its_own_text(void) {
 
 static void any_other_status_is_unknown(void) {
     static const int others[] = {6, -7, 100, -100, 2147483647, -2147483647 - 1};
-    for (size_t i = 0; i < sizeof others / sizeof others[0]; i++) {
+    for (size_t i = 0; i < sizeof others / sizeof others[0]; ++i) {
         gm_test_context("status %d", others[i]);
         GM_ASSERT_STRING(gm_status_text(others[i]), "unknown status");
     }
@@ -35,7 +35,7 @@ static void any_other_status_is_unknown(void) {
 /* The contract of a SUNDIALS right-hand side: > 0 recoverable, < 0 not. */
 static void signs_tell_who_is_at_fault(void) {
     GM_ASSERT_INT(GM_OK, 0);
-    for (int i = 0; i < STATUS_COUNT; i++) {
+    for (int i = 0; i < STATUS_COUNT; ++i) {
         gm_test_context("entry %d", i);
         GM_ASSERT(i < 1 || i > 5 || all_statuses[i] > 0);
         GM_ASSERT(i < 6 || all_statuses[i] < 0);

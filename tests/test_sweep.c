@@ -47,7 +47,7 @@ static int compare(const random_case *c, const gm_penetration *got) {
     const double contact[2] = {got->drive_contact, got->coast_contact};
     const int pairs[2] = {got->drive_pairs, got->coast_pairs};
     int good = 1;
-    for (int side = 0; side < 2; side++) {
+    for (int side = 0; side < 2; ++side) {
         const char *const names[2][3] = {{"drive", "drive_contact", "drive_pairs"},
                                          {"coast", "coast_contact", "coast_pairs"}};
         good &= inside(sum[side], low.sum[side], high.sum[side], 1e-12, 0.0, names[side][0]);
@@ -64,12 +64,12 @@ static void run(uint64_t seed, int with_flanks) {
     int failed = 0;
     int touching = 0;
     int jumps = 0;
-    for (int i = 0; i < CASES / 2 && failed < PRINTED; i++) {
+    for (int i = 0; i < CASES / 2 && failed < PRINTED; ++i) {
         random_case c;
         const uint64_t first = seed;
         gm_test_context("case %d, seed %llx", i, (unsigned long long)first);
         if (!GM_ASSERT_INT(random_case_make(&c, &seed, with_flanks), GM_OK)) {
-            failed++;
+            ++failed;
         } else {
             gm_test_context("case %d, seed %llx, z %d/%d, helix %.3g, x %.3g p_bt, angle %.3g", i,
                             (unsigned long long)first, c.params.pinion_teeth, c.params.wheel_teeth,
@@ -104,7 +104,7 @@ static void real_flanks_agree_with_the_second_model(void) {
 
 static void derived_geometry_agrees_with_the_second_model(void) {
     uint64_t seed = UINT64_C(20260103);
-    for (int i = 0; i < CASES; i++) {
+    for (int i = 0; i < CASES; ++i) {
         gm_pair_params params;
         model_pair model;
         gm_pair pair;
@@ -124,7 +124,7 @@ static void derived_geometry_agrees_with_the_second_model(void) {
         /* Roll lengths are square roots of differences of squares: where they are short they lose
          * by the ratio of radius and roll length. Below the base circle they are exactly 0. */
         const gm_gear *const gears[2] = {&pair.pinion, &pair.wheel};
-        for (int g = 0; g < 2; g++) {
+        for (int g = 0; g < 2; ++g) {
             const double r_b = (double)model.base_radius[g];
             good &= GM_ASSERT_ABS(gears[g]->base_radius, r_b, e);
             good &= GM_ASSERT_ABS(gears[g]->tip_radius, (double)model.tip_radius[g], e);

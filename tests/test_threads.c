@@ -23,7 +23,7 @@ static void *work(void *argument) {
     worker *w = argument;
     const random_case *c = w->shared;
     gm_position position;
-    for (int i = 0; i < EVALUATIONS; i++) {
+    for (int i = 0; i < EVALUATIONS; ++i) {
         const double angle = 0.01 * i - 10.0;
         const double offset = (i % 2 == 0 ? 1.0 : -1.0) * (c->pair.backlash / 2 + 1e-9 * i);
         w->failures +=
@@ -53,19 +53,19 @@ static void every_thread_gets_the_same_bits(void) {
     }
     memset(workers, 0, sizeof workers);
     pthread_t threads[THREADS];
-    for (int t = 0; t < THREADS; t++) {
+    for (int t = 0; t < THREADS; ++t) {
         workers[t].shared = &c;
         GM_ASSERT_INT(pthread_create(&threads[t], NULL, work, &workers[t]), 0);
     }
-    for (int t = 0; t < THREADS; t++) {
+    for (int t = 0; t < THREADS; ++t) {
         GM_ASSERT_INT(pthread_join(threads[t], NULL), 0);
     }
     int touching = 0;
-    for (int i = 0; i < EVALUATIONS; i++) {
+    for (int i = 0; i < EVALUATIONS; ++i) {
         touching += workers[0].results[i].drive_pairs + workers[0].results[i].coast_pairs > 0;
     }
     GM_ASSERT(touching > EVALUATIONS / 4);
-    for (int t = 0; t < THREADS; t++) {
+    for (int t = 0; t < THREADS; ++t) {
         gm_test_context("thread %d", t);
         GM_ASSERT_INT(workers[t].failures, 0);
         GM_ASSERT(memcmp(workers[t].results, workers[0].results, sizeof workers[0].results) == 0);

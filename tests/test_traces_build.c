@@ -61,7 +61,7 @@ static double roll_of(double t2) {
 
 /* Which number the machine gives to a tooth. */
 static int number_of(int tooth) {
-    for (int number = 0; number <= gear()->teeth; number++) {
+    for (int number = 0; number <= gear()->teeth; ++number) {
         if (gm_measurement_tooth(&setup, &pair, wheel, number) == tooth) {
             return number;
         }
@@ -93,7 +93,7 @@ static void add_trace(surface *of, int tooth, int side, int kind, double at, dou
     trace->position = malloc((size_t)count * sizeof(double));
     trace->deviation = malloc((size_t)count * sizeof(double));
     const int turned = !profile && setup.datum_face == GM_FACE_II;
-    for (int i = 0; i < count; i++) {
+    for (int i = 0; i < count; ++i) {
         const double t = from + (to - from) * i / (count - 1);
         const int place = turned ? count - 1 - i : i;
         trace->position[place] = profile ? roll_of(t) : face_of(t);
@@ -111,7 +111,7 @@ static void add_helix(surface *of, int tooth, int side, double t2, double consta
 }
 
 static const double *table_of(int tooth, int side) {
-    for (int i = 0; i < deviations.set_count; i++) {
+    for (int i = 0; i < deviations.set_count; ++i) {
         const gm_deviation_set *set = &deviations.sets[i];
         if ((set->tooth == tooth || set->tooth < 0) && set->side == side) {
             return set->values;
@@ -145,8 +145,8 @@ static void assert_surface(surface *of, int tooth, int side) {
     }
     double worst = 0.0;
     const double constant = table[0] - of(tooth, side, 0.0, 0.0);
-    for (int i = 0; i < FACE_NODES; i++) {
-        for (int k = 0; k < PROFILE_NODES; k++) {
+    for (int i = 0; i < FACE_NODES; ++i) {
+        for (int k = 0; k < PROFILE_NODES; ++k) {
             const double expected =
                 of(tooth, side, (double)i / (FACE_NODES - 1), (double)k / (PROFILE_NODES - 1)) +
                 constant;
@@ -171,13 +171,13 @@ static double additive(int tooth, int side, double t1, double t2) {
 
 static void profile_and_helix_come_back_as_their_sum(void) {
     begin();
-    for (int which = 0; which < 8; which++) {
+    for (int which = 0; which < 8; ++which) {
         gm_test_context("case %d", which);
         wheel = which & 1;
         setup.datum_face = which & 2 ? GM_FACE_II : GM_FACE_I;
         setup.counting = which & 4 ? GM_COUNTERCLOCKWISE : GM_CLOCKWISE;
         setup.first_tooth = 5 * which;
-        for (int side = 0; side < 2; side++) {
+        for (int side = 0; side < 2; ++side) {
             for (int tooth = 1; tooth < 41; tooth += 13) {
                 add_helix(additive, tooth, side, 0.4, 17e-6 * tooth); /* between two nodes */
                 add_profile(additive, tooth, side, 0.55, -3e-6);
@@ -204,9 +204,9 @@ static double twisted(int tooth, int side, double t1, double t2) {
 
 static void a_twist_comes_back_from_two_traces_each_way(void) {
     begin();
-    for (int face = GM_FACE_I; face <= GM_FACE_II; face++) {
+    for (int face = GM_FACE_I; face <= GM_FACE_II; ++face) {
         setup.datum_face = face;
-        for (int side = 0; side < 2; side++) {
+        for (int side = 0; side < 2; ++side) {
             /* At nodes, as the crossings are; every trace at a level of its own, in any order. */
             add_profile(twisted, 2, side, 0.8, 5e-6);
             add_helix(twisted, 2, side, 0.2, -4e-6);
@@ -239,16 +239,16 @@ static double curved_twist(int tooth, int side, double t1, double t2) {
 static void three_profiles_are_met_and_the_surface_is_linear_in_between(void) {
     static const int places[] = {0, 8, 20};
     begin();
-    for (int i = 0; i < 3; i++) {
+    for (int i = 0; i < 3; ++i) {
         add_profile(curved_twist, 2, 0, places[i] / 20.0, 1e-6 * i);
     }
     add_helix(curved_twist, 2, 0, 0.2, 0.0);
     GM_ASSERT_INT(build(), GM_IO_OK);
     const double *table = table_of(2, 0);
-    for (int k = 0; table != NULL && k < PROFILE_NODES; k++) {
+    for (int k = 0; table != NULL && k < PROFILE_NODES; ++k) {
         const double t2 = (double)k / (PROFILE_NODES - 1);
         double rise[3]; /* from where the helix is */
-        for (int i = 0; i < 3; i++) {
+        for (int i = 0; i < 3; ++i) {
             const double *row = table + places[i] * PROFILE_NODES;
             rise[i] = row[k] - row[6];
             GM_ASSERT_ABS(rise[i],
@@ -269,7 +269,7 @@ static void three_profiles_are_met_and_the_surface_is_linear_in_between(void) {
 
 static void too_many_traces_of_a_flank_are_refused(void) {
     begin();
-    for (int i = 0; i <= 100; i++) {
+    for (int i = 0; i <= 100; ++i) {
         add_profile(additive, 2, 0, i / 100.0, 0.0);
     }
     GM_ASSERT_INT(build(), GM_IO_ERR_FORMAT);
@@ -286,7 +286,7 @@ static void beyond_close_traces_the_surface_does_not_run_away(void) {
     add_profile(twisted, 2, 0, 0.6, 0.0);
     GM_ASSERT_INT(build(), GM_IO_OK);
     const double *table = table_of(0, GM_DRIVE);
-    for (int k = 0; table != NULL && k < PROFILE_NODES; k++) {
+    for (int k = 0; table != NULL && k < PROFILE_NODES; ++k) {
         GM_ASSERT_ABS(table[k], table[8 * PROFILE_NODES + k], 1e-18);
         GM_ASSERT_ABS(table[20 * PROFILE_NODES + k], table[14 * PROFILE_NODES + k], 1e-18);
         const double slope = table[12 * PROFILE_NODES + k] - table[10 * PROFILE_NODES + k];
@@ -306,7 +306,7 @@ static void one_kind_alone_is_constant_the_other_way(void) {
     GM_ASSERT_INT(deviations.set_count, 2);
     const double *drive = table_of(30, GM_DRIVE);
     const double *coast = table_of(30, GM_COAST);
-    for (int node = 0; node < FACE_NODES * PROFILE_NODES; node++) {
+    for (int node = 0; node < FACE_NODES * PROFILE_NODES; ++node) {
         GM_ASSERT_ABS(drive[node], drive[node % PROFILE_NODES], 1e-18);
         GM_ASSERT_ABS(coast[node], coast[node - node % PROFILE_NODES], 1e-18);
     }
@@ -394,7 +394,7 @@ static void teeth_in_between_are_linear_around_the_gear(void) {
     add_helix(slope_of_tooth, 10, 0, 0.5, 0.0); /* the only helix: that of all */
     GM_ASSERT_INT(build(), GM_IO_OK);
     GM_ASSERT_INT(deviations.set_count, 45);
-    for (int tooth = 0; tooth < 45; tooth++) {
+    for (int tooth = 0; tooth < 45; ++tooth) {
         const double *table = table_of(tooth, GM_DRIVE);
         const double slope = tooth >= 40   ? 40 + (5 - 40) * (tooth - 40) / 10.0
                              : tooth < 5   ? 40 + (5 - 40) * (tooth + 5) / 10.0
@@ -418,7 +418,7 @@ static void equal_teeth_stay_equal_to_the_bit(void) {
     }
     GM_ASSERT_INT(build(), GM_IO_OK);
     GM_ASSERT_INT(deviations.set_count, 45);
-    for (int tooth = 1; tooth < 45; tooth++) {
+    for (int tooth = 1; tooth < 45; ++tooth) {
         GM_ASSERT_INT(
             memcmp(table_of(tooth, 1), table_of(0, 1), FACE_NODES * PROFILE_NODES * sizeof(double)),
             0);
@@ -450,7 +450,7 @@ static void a_side_may_stand_for_all_beside_one_tooth_by_tooth(void) {
 static const gm_deviations *made;
 
 static double made_surface(int tooth, int side, double t1, double t2) {
-    for (int i = 0; i < made->set_count; i++) {
+    for (int i = 0; i < made->set_count; ++i) {
         if (made->sets[i].tooth == tooth && made->sets[i].side == side) {
             return table_at(made->sets[i].values, t1, t2);
         }
@@ -469,15 +469,15 @@ static void make(gm_deviations *flanks, gm_pitch *pitch, int quality_class, unsi
 
 static void made_flanks_keep_their_quality(void) {
     begin();
-    for (wheel = 0; wheel < 2; wheel++) {
+    for (wheel = 0; wheel < 2; ++wheel) {
         gm_deviations flanks;
         gm_pitch pitch;
         gm_quality before;
         gm_quality after;
         make(&flanks, &pitch, 5, 3);
         setup.datum_face = wheel ? GM_FACE_II : GM_FACE_I;
-        for (int tooth = 0; tooth < gear()->teeth; tooth++) {
-            for (int side = 0; side < 2; side++) {
+        for (int tooth = 0; tooth < gear()->teeth; ++tooth) {
+            for (int side = 0; side < 2; ++side) {
                 add_profile(made_surface, tooth, side, 0.5, 1e-6 * tooth);
                 add_helix(made_surface, tooth, side, 0.5, -2e-6);
             }
@@ -488,7 +488,7 @@ static void made_flanks_keep_their_quality(void) {
         GM_ASSERT_INT(
             gm_quality_evaluate(&after, NULL, &pair, wheel, &deviations, NULL, NULL, &error),
             GM_IO_OK);
-        for (int kind = GM_QUALITY_PROFILE_SLOPE; kind <= GM_QUALITY_HELIX_FORM; kind++) {
+        for (int kind = GM_QUALITY_PROFILE_SLOPE; kind <= GM_QUALITY_HELIX_FORM; ++kind) {
             GM_ASSERT_ABS(after.worst[kind].value, before.worst[kind].value, 1e-15);
             GM_ASSERT_INT(after.worst[kind].tooth, before.worst[kind].tooth);
             GM_ASSERT_INT(after.worst[kind].side, before.worst[kind].side);
@@ -503,7 +503,7 @@ static void made_flanks_keep_their_quality(void) {
 
 static void flanks_of_random_form_raise_no_alarm(void) {
     static const int classes[] = {2, 5, 8, 11};
-    for (int which = 0; which < 32; which++) {
+    for (int which = 0; which < 32; ++which) {
         begin();
         wheel = which & 1;
         gm_deviations flanks;
@@ -511,7 +511,7 @@ static void flanks_of_random_form_raise_no_alarm(void) {
         make(&flanks, &pitch, classes[which / 2 % 4], 100 + (unsigned)which);
         const int step = which < 16 ? 11 : 3;
         for (int tooth = 0; tooth + step <= gear()->teeth; tooth += step) {
-            for (int side = 0; side < 2; side++) {
+            for (int side = 0; side < 2; ++side) {
                 add_profile(made_surface, tooth, side, 0.5, 0.0);
                 add_helix(made_surface, tooth, side, 0.5, 0.0);
             }
@@ -546,8 +546,8 @@ static double hollow_helix(int tooth, int side, double t1, double t2) {
 }
 
 static void add_teeth(surface *of, int teeth) {
-    for (int tooth = 0; tooth < teeth; tooth++) {
-        for (int side = 0; side < 2; side++) {
+    for (int tooth = 0; tooth < teeth; ++tooth) {
+        for (int side = 0; side < 2; ++side) {
             add_profile(of, 11 * tooth, side, 0.5, 0.0);
             add_helix(of, 11 * tooth, side, 0.5, 0.0);
         }
@@ -576,7 +576,7 @@ static void the_opposite_sign_is_noticed(void) {
     end();
     /* Helices that are hollow beside profiles that are relieved are meant so; and three of four may be chance. */
     begin();
-    for (int tooth = 0; tooth < 18; tooth++) {
+    for (int tooth = 0; tooth < 18; ++tooth) {
         add_helix(hollow_helix, tooth, 0, 0.5, 0.0);
     }
     add_profile(hollow_helix, 0, 0, 0.5, 0.0);
@@ -584,7 +584,7 @@ static void the_opposite_sign_is_noticed(void) {
     GM_ASSERT_INT(report.hollow_traces, 18);
     end();
     begin();
-    for (int tooth = 0; tooth < 44; tooth++) {
+    for (int tooth = 0; tooth < 44; ++tooth) {
         add_profile(tooth % 4 ? wrong_sign : crowned, tooth, 0, 0.5, 0.0);
     }
     GM_ASSERT_INT(build(), GM_IO_OK);
@@ -624,11 +624,11 @@ static void other_units_are_noticed(void) {
 
 /* Multiplies all lengths along the traces by a factor. */
 static void stretch(double profile_factor, double face_factor) {
-    for (int i = 0; i < traces.count; i++) {
+    for (int i = 0; i < traces.count; ++i) {
         gm_trace *trace = &traces.traces[i];
         const int profile = trace->kind == GM_TRACE_PROFILE;
         trace->at *= profile ? face_factor : profile_factor;
-        for (int k = 0; k < trace->count; k++) {
+        for (int k = 0; k < trace->count; ++k) {
             trace->position[k] *= profile ? profile_factor : face_factor;
         }
     }
@@ -644,7 +644,7 @@ static void lengths_in_other_units_are_noticed(void) {
         {1e3, 1.0, "micrometres"}, {1.0, 0.1, "centimetres"}, {1.0, 1 / 25.4, "inches"},
         {1.0, 1e3, "micrometres"}, {1.1, 1.0, "the tip"},     {1.0, 1.1, "the face width"},
     };
-    for (size_t i = 0; i < GM_TEST_COUNT(cases); i++) {
+    for (size_t i = 0; i < GM_TEST_COUNT(cases); ++i) {
         begin();
         add_profile(crowned, 0, 0, 1.0, 0.0);
         if (cases[i].face != 1.0) {
@@ -657,17 +657,17 @@ static void lengths_in_other_units_are_noticed(void) {
 }
 
 static void a_spike_is_refused_or_left_out(void) {
-    for (int width = 1; width <= 3; width++) {
+    for (int width = 1; width <= 3; ++width) {
         begin();
         gm_test_context("width %d", width);
         setup.datum_face = GM_FACE_II; /* the helix is turned */
         add_trace(crowned, 0, 0, GM_TRACE_HELIX, 0.5, 0.0, 1.0, 101, 0.0);
         gm_trace *trace = &traces.traces[0];
         trace->line = malloc(101 * sizeof *trace->line);
-        for (int k = 0; k < 101; k++) {
+        for (int k = 0; k < 101; ++k) {
             trace->line[k] = 2 + k;
         }
-        for (int k = 0; k < width; k++) {
+        for (int k = 0; k < width; ++k) {
             trace->deviation[70 + k] += 6e-6;
         }
         GM_ASSERT_INT(build(), GM_IO_ERR_FORMAT);
@@ -678,7 +678,7 @@ static void a_spike_is_refused_or_left_out(void) {
         GM_ASSERT_INT(report.spikes, width);
         gm_deviations_free(&deviations);
         /* What is not a spike: a step, as at the edge of a relief, and one below 2 um. */
-        for (int k = 0; k < width; k++) {
+        for (int k = 0; k < width; ++k) {
             trace->deviation[70 + k] -= 4.2e-6;
         }
         options.remove_spikes = 0;
@@ -687,7 +687,7 @@ static void a_spike_is_refused_or_left_out(void) {
     }
     begin();
     add_trace(crowned, 0, 0, GM_TRACE_PROFILE, 0.5, 0.0, 1.0, 101, 0.0);
-    for (int k = 60; k < 101; k++) {
+    for (int k = 60; k < 101; ++k) {
         traces.traces[0].deviation[k] -= 20e-6;
     }
     GM_ASSERT_INT(build(), GM_IO_OK);
@@ -766,7 +766,7 @@ static void traces_that_contradict_each_other_are_refused(void) {
     add_helix(twisted, 2, 0, 0.2, 0.0);
     add_helix(twisted, 2, 0, 0.8, 0.0);
     /* The second profile with a slope of its own: what no level can take out is a quarter of 16 um * 0.6. */
-    for (int k = 0; k < PROFILE_NODES; k++) {
+    for (int k = 0; k < PROFILE_NODES; ++k) {
         traces.traces[1].deviation[k] += 16e-6 * k / (PROFILE_NODES - 1);
     }
     GM_ASSERT_INT(build(), GM_IO_OK);
@@ -775,7 +775,7 @@ static void traces_that_contradict_each_other_are_refused(void) {
     GM_ASSERT_REL(mixed_difference(table_of(2, 0)) - mixed_difference_of(twisted),
                   0.5 * 16e-6 * 0.6, 1e-9);
     gm_deviations_free(&deviations);
-    for (int k = 0; k < PROFILE_NODES; k++) { /* a hump at one of the two crossings */
+    for (int k = 0; k < PROFILE_NODES; ++k) { /* a hump at one of the two crossings */
         traces.traces[1].deviation[k] -= 16e-6 * k / (PROFILE_NODES - 1);
         traces.traces[1].deviation[k] += 18e-6 * fmax(0.0, 1.0 - fabs(k - 6.0) / 6.0);
     }

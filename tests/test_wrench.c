@@ -43,7 +43,7 @@ static void add_expected_side(const random_case *c, const model_result *m, int s
     double on_pinion[3];
     cross(from_wheel, along, on_wheel);
     cross(point, along, on_pinion);
-    for (int k = 0; k < 3; k++) {
+    for (int k = 0; k < 3; ++k) {
         w->wheel_force[k] += force * along[k];
         w->pinion_force[k] -= force * along[k];
         w->wheel_moment[k] += force * on_wheel[k];
@@ -55,7 +55,7 @@ static void each_line_of_contact_pushes_where_it_is(void) {
     uint64_t seed = UINT64_C(41);
     int touching = 0;
     int both = 0;
-    for (int i = 0; i < 800; i++) {
+    for (int i = 0; i < 800; ++i) {
         random_case c;
         gm_test_context("case %d, seed %llx", i, (unsigned long long)seed);
         GM_ASSERT_INT(random_case_make(&c, &seed, i % 4 != 0), GM_OK);
@@ -93,7 +93,7 @@ static void each_line_of_contact_pushes_where_it_is(void) {
                              2.0 * damping * fabs(speed) * e / fabs((double)c.model.face_advance);
         const double arm = 2.0 * c.params.center_distance + c.params.face_width;
         int good = 1;
-        for (int k = 0; k < 3 && certain; k++) {
+        for (int k = 0; k < 3 && certain; ++k) {
             good &= GM_ASSERT_ABS(got.wheel_force[k], expected.wheel_force[k], 2.0 * force);
             good &= GM_ASSERT_ABS(got.pinion_force[k], expected.pinion_force[k], 2.0 * force);
             good &= GM_ASSERT_ABS(got.wheel_moment[k], expected.wheel_moment[k], 2.0 * force * arm);
@@ -106,7 +106,7 @@ static void each_line_of_contact_pushes_where_it_is(void) {
         const double arms[3] = {c.params.center_distance, 0.0, 0.0};
         double moved[3];
         cross(arms, got.wheel_force, moved);
-        for (int k = 0; k < 3; k++) {
+        for (int k = 0; k < 3; ++k) {
             good &= GM_ASSERT_ABS(got.pinion_force[k] + got.wheel_force[k], 0.0, rounding);
             good &= GM_ASSERT_ABS(got.pinion_moment[k] + got.wheel_moment[k] + moved[k], 0.0,
                                   rounding * arm);
@@ -187,7 +187,7 @@ static void the_common_face_may_begin_later(void) {
     const gm_pair narrow = make_pair(&params);
     GM_ASSERT_ABS(wide.face_start, begin, 1e-17);
     const double turned = begin * tan(narrow.base_helix_angle);
-    for (int i = 0; i < 20; i++) {
+    for (int i = 0; i < 20; ++i) {
         gm_test_context("position %d", i);
         gm_position of_wide, of_narrow;
         gm_wrench got, same;
@@ -207,7 +207,7 @@ static void the_common_face_may_begin_later(void) {
                                      same.pinion_moment[1] + begin * same.pinion_force[0],
                                      same.pinion_moment[2]};
         GM_ASSERT(fabs(same.wheel_force[1]) > 100.0);
-        for (int k = 0; k < 3; k++) {
+        for (int k = 0; k < 3; ++k) {
             /* The origin of the lines is certain to some 1e-17 m of the face's 12 mm on the line of action. */
             GM_ASSERT_ABS(got.wheel_force[k], same.wheel_force[k], 1e-8);
             GM_ASSERT_ABS(got.wheel_moment[k], on_wheel[k], 1e-9);
@@ -244,12 +244,12 @@ static void null_pointers_are_refused(void) {
     gm_wrench w;
     GM_ASSERT_INT(gm_position_from_pinion_angle(&pair, 0.1, 0.0, 0.0, &position), GM_OK);
     GM_ASSERT_INT(wrench_3d_at(&pair, NULL, NULL, &position, 1e8, 0.0, NULL), GM_ERR_NULL);
-    for (int k = 0; k < 2; k++) {
+    for (int k = 0; k < 2; ++k) {
         memset(&w, 0, sizeof w);
         GM_ASSERT_INT(wrench_3d_at(k == 0 ? NULL : &pair, NULL, NULL, k == 0 ? &position : NULL,
                                    1e8, 0.0, &w),
                       GM_ERR_NULL);
-        for (int i = 0; i < 3; i++) {
+        for (int i = 0; i < 3; ++i) {
             GM_ASSERT_NAN(w.pinion_force[i]);
             GM_ASSERT_NAN(w.pinion_moment[i]);
             GM_ASSERT_NAN(w.wheel_force[i]);
@@ -264,13 +264,13 @@ static void absurd_stiffness_and_damping_are_refused(void) {
     gm_wrench w;
     GM_ASSERT_INT(gm_position_from_pinion_angle(&pair, 0.1, 40e-6, 0.0, &position), GM_OK);
     static const double bad[] = {NAN, HUGE_VAL, -HUGE_VAL, 1.01e30, -1e-30};
-    for (size_t k = 0; k < 2 * sizeof bad / sizeof bad[0]; k++) {
+    for (size_t k = 0; k < 2 * sizeof bad / sizeof bad[0]; ++k) {
         gm_test_context("%g, case %zu", bad[k / 2], k % 2);
         memset(&w, 0, sizeof w);
         GM_ASSERT_INT(wrench_3d_at(&pair, NULL, NULL, &position, k % 2 ? bad[k / 2] : 1e8,
                                    k % 2 ? 0.0 : bad[k / 2], &w),
                       GM_ERR_PARAMETER);
-        for (int i = 0; i < 3; i++) {
+        for (int i = 0; i < 3; ++i) {
             GM_ASSERT_NAN(w.pinion_force[i]);
             GM_ASSERT_NAN(w.wheel_moment[i]);
         }

@@ -178,7 +178,7 @@ static int take_wave(parsing *state, const char *value) {
         return 0;
     }
     wave->amplitude *= 1e-6;
-    generate->wave_count++;
+    ++generate->wave_count;
     return 1;
 }
 
