@@ -232,6 +232,8 @@ class Means(Case):
             "gears.normal_pressure_angle_deg=20", "gears.center_distance_mm=126", "gears.face_width_mm=30",
             "gears.pinion_tip_diameter_mm=78", "gears.wheel_tip_diameter_mm=186", "mesh.stiffness_N_per_m=3e8",
             "mesh.damping_Ns_per_m=2000", "bodies.wheel_inertia_kg_m2=3e-2", "load.mean_Nm=400"]
+    DRAG = ["bodies.pinion_drag_Nms=0.02", "bodies.wheel_drag_Nms=0.05", "load.per_speed_Nms=0.1",
+            "load.per_speed_squared_Nms2=1e-4", "drive.torque_Nm=90"]
 
     def test_force_is_that_of_the_penetration(self):
         """Contact is not lost: K penetration + D rate of each row, both filtered, is the force but for rounding."""
@@ -239,7 +241,8 @@ class Means(Case):
         simple = self.geometry(SIMPLE)["transverse_contact_ratio"]
         for settings, factor in [([], 1), (TORQUE, 1), (["load.mean_Nm=-80"], 1), (SIMPLE, simple),
                                  ([*SIMPLE, *TORQUE], simple), (["drive.start_rpm=-3000"], 1),
-                                 (["load.noise_interval_s=1e-7"], 1), (["output.oversampling=16"], 1)]:
+                                 (["load.noise_interval_s=1e-7"], 1), (["output.oversampling=16"], 1),
+                                 (self.DRAG, 1), ([*TORQUE, *self.DRAG], 1)]:
             c = self.run_columns([*firm, *settings])
             force = [factor * (K * p + D * r) * 1e-6
                      for p, r in zip(c["penetration_um"], c["penetration_rate_um_per_s"])]
@@ -249,6 +252,22 @@ class Means(Case):
             self.assertLess(largest_difference(c["contact_force_N"][16:], force[16:]),
                             0.02 * spread(force), settings)
             self.assertGreater(spread(force), 1.0)
+
+    def test_force_carries_load_and_drag(self):
+        """Over whole tooth periods x'' vanishes in the mean, and F r_bw is load and drag."""
+        # 24 teeth at 3000 rpm and 45 at 1600 pass 1200 times per second, in the last 0.16 s 192 times.
+        for settings, rpm, ratio, mean in [(self.SPUR, 3000, 24 / 60, 400), ([], 1600, 45 / 41, 20)]:
+            for rate in (25600, 4000):
+                drag = mean / 400
+                run = [*settings, f"drive.start_rpm={rpm}", f"drive.end_rpm={rpm}", "analysis.duration_s=0.2",
+                       f"output.rate_Hz={rate}", f"bodies.wheel_drag_Nms={0.5 * drag}", f"load.per_speed_Nms={drag}",
+                       f"load.per_speed_squared_Nms2={0.01 * drag}", "output.columns=contact_force_N,load_torque_Nm"]
+                c = self.run_columns(run)
+                r_bw, speed = self.geometry(run)["wheel_base_radius_mm"] * 1e-3, rpm * ratio * math.pi / 30
+                load, force = c["load_torque_Nm"][-rate * 16 // 100:], c["contact_force_N"][-rate * 16 // 100:]
+                followed = drag * (speed + 0.01 * speed**2)
+                self.assert_close(statistics.fmean(load), mean + followed, relative=1e-4)
+                self.assert_close(statistics.fmean(force) * r_bw, mean + followed + 0.5 * drag * speed, relative=2e-4)
 
     def test_force_balances_the_load_in_the_mean(self):
         """x'' vanishes in the mean: F r_bw is the load, row by row, where it changes slowly."""
@@ -289,6 +308,41 @@ class ClosedForms(Case):
         self.assert_all_close(c["dte_um"], [dte] * len(c["dte_um"]), absolute=1e-6)
         self.assert_all_close(c["contact_force_N"], [force] * len(c["dte_um"]), relative=1e-6)
         self.assert_all_close(c["pinion_speed_rpm"], [50000 * t for t in c["time_s"]], relative=1e-14)
+
+    def test_drag_and_load_over_speed_are_carried_from_the_start(self):
+        """At constant speed nothing moves: F r_bw = mean + c w + c2 w |w| + c_w w, of which the drag is not in the load."""
+        g = self.geometry(SIMPLE)
+        r_bw = g["wheel_base_radius_mm"] * 1e-3
+        ratio = g["pinion_base_radius_mm"] / g["wheel_base_radius_mm"]
+        for rpm in (3000, -3000):
+            for c, c2, drag in [(0.05, 0, 0), (0, 2e-4, 0), (0, 0, 0.07), (0.05, 2e-4, 0.07)]:
+                speed = rpm * math.pi / 30 * ratio
+                load = LOAD + c * speed + c2 * speed * abs(speed)
+                force = (load + drag * speed) / r_bw
+                settings = [*SIMPLE, f"drive.start_rpm={rpm}", f"drive.end_rpm={rpm}", f"load.per_speed_Nms={c}",
+                            f"load.per_speed_squared_Nms2={c2}", f"bodies.wheel_drag_Nms={drag}"]
+                for samples in (PLAIN, []):
+                    columns = self.run_columns([*settings, *samples])
+                    # It starts at rest, to rounding, and x may be off by 1e-4 um + 1e-4 of 2 um.
+                    rows = len(columns["time_s"])
+                    self.assert_all_close(columns["contact_force_N"], [force] * rows, relative=1e-6, absolute=1e-3)
+                    self.assert_all_close(columns["load_torque_Nm"], [load] * rows, relative=1e-6)
+
+    def test_drag_brings_a_run_up_to_its_end_speed(self):
+        """Both bodies as one: I w' = M - C w with I and C about the pinion's axis."""
+        g = self.geometry(SIMPLE)
+        ratio = g["pinion_base_radius_mm"] / g["wheel_base_radius_mm"]
+        settings = ["bodies.pinion_drag_Nms=0.03", "bodies.wheel_drag_Nms=0.02", "load.per_speed_Nms=0.04"]
+        inertia, drag = I_P + I_W * ratio**2, 0.03 + (0.02 + 0.04) * ratio**2
+        start, last = 40.0, (22.0 - LOAD * ratio) / drag
+        c = self.run_columns([*SIMPLE, *TORQUE, *TIGHT, *PLAIN, *settings, f"drive.start_rpm={start * 30 / math.pi!r}",
+                              "analysis.duration_s=0.2"])
+        for t, rpm, load in zip(c["time_s"], c["pinion_speed_rpm"], c["load_torque_Nm"]):
+            now = last + (start - last) * math.exp(-drag / inertia * t)
+            # The force falls by C_w w' / r_bw = 2 kN/s, x by 7 um/s, which the vibrations of the start have as well.
+            self.assert_close(rpm * math.pi / 30, now, absolute=2e-4, what=f"t = {t}")
+            self.assert_close(load, LOAD + 0.04 * ratio * now, absolute=2e-5, what=f"t = {t}")
+        self.assertGreater(abs(now - start), 10.0)
 
     def test_ideal_flanks_stay_near_the_mean_penetration(self):
         g = self.geometry()

@@ -98,6 +98,10 @@ static void jacobian_is_that_of_differences(void) {
     for (int m = 0; m < 2; ++m) {
         for (int d = 0; d < 2; ++d) {
             config conf = case_config(meshes[m], drives[d]);
+            conf.pinion_drag = 0.3;
+            conf.wheel_drag = 0.5;
+            conf.load_per_speed = 0.7;
+            conf.load_per_speed_squared = 0.02;
             const gear_mesh gears = case_mesh(&conf);
             gear_model model;
             int compared = 0, kinks = 0;

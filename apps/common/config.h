@@ -75,6 +75,8 @@ typedef struct config {
 
     double pinion_inertia; /* kg m2 */
     double wheel_inertia;
+    double pinion_drag; /* N m s */
+    double wheel_drag;
 
     enum drive_kind drive;
     double start_speed, end_speed; /* rad/s */
@@ -85,6 +87,8 @@ typedef struct config {
     double noise_amplitude;
     double noise_interval; /* s */
     uint64_t seed;
+    double load_per_speed;         /* N m s */
+    double load_per_speed_squared; /* N m s2 */
 
     enum analysis_type analysis;
     double duration; /* s */

@@ -129,6 +129,10 @@ static const key_spec keys[] = {
      .help = "about its axis"},
     {NAME("bodies", "wheel_inertia_kg_m2"), NUMBER(UNIT_SI, INERTIA), INTO(wheel_inertia),
      .used = FOR_DYNAMIC, .required = FOR_RUN | FOR_DYNAMIC, .help = "about its axis"},
+    {NAME("bodies", "pinion_drag_Nms"), NUMBER(UNIT_SI, BETWEEN(0, 1e12)), INTO(pinion_drag), .standard = "0",
+     .used = FOR_DYNAMIC | FOR_TORQUE, .help = "viscous drag of bearings and oil: torque over speed, always on"},
+    {NAME("bodies", "wheel_drag_Nms"), NUMBER(UNIT_SI, BETWEEN(0, 1e12)), INTO(wheel_drag), .standard = "0",
+     .used = FOR_DYNAMIC, .help = "the same of the wheel; not part of load_torque_Nm"},
 
     {NAME("drive", "kind"), CHOICE("speed torque"), INTO(drive), .standard = "speed",
      .used = FOR_DYNAMIC, .help = "what is prescribed at the pinion"},
@@ -152,6 +156,10 @@ static const key_spec keys[] = {
      .standard = "1e-5", .used = FOR_DYNAMIC, .help = "time between independent values, cubic in between"},
     {NAME("load", "seed"), .kind = KEY_SEED, INTO(seed),
      .standard = "1", .used = FOR_DYNAMIC, .help = "of the noise; same seed, same run"},
+    {NAME("load", "per_speed_Nms"), NUMBER(UNIT_SI, BETWEEN(0, 1e12)), INTO(load_per_speed), .standard = "0",
+     .used = FOR_DYNAMIC, .help = "load over the wheel's speed w in rad/s: c w is added, also where w < 0"},
+    {NAME("load", "per_speed_squared_Nms2"), NUMBER(UNIT_SI, BETWEEN(0, 1e12)), INTO(load_per_speed_squared),
+     .standard = "0", .used = FOR_DYNAMIC, .help = "c2 w |w| is added, as of fans and propellers"},
 
     {NAME("analysis", "type"), CHOICE("dynamic static"), INTO(analysis), .standard = "dynamic",
      .help = "static: transmission error under load (model 3d)"},

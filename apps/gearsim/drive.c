@@ -18,6 +18,7 @@ drive_motion drive_at(const pinion_drive *drive, double time) {
     const drive_motion motion = {
         .angle = time * (drive->start_speed + 0.5 * drive->acceleration * time),
         .speed = drive->start_speed + drive->acceleration * time,
+        .acceleration = drive->acceleration,
     };
 
     return motion;

@@ -17,8 +17,9 @@ typedef struct pinion_drive {
 } pinion_drive;
 
 typedef struct drive_motion {
-    double angle; /* phi_p, 0 at t = 0 (rad) */
-    double speed; /* rad/s */
+    double angle;        /* phi_p, 0 at t = 0 (rad) */
+    double speed;        /* rad/s */
+    double acceleration; /* rad/s2 */
 } drive_motion;
 
 pinion_drive drive_create(const config *conf);

@@ -16,13 +16,8 @@ static double pinion_speed(const dynamic_sample *sample) {
     return sample->motion.pinion_speed * rpm;
 }
 
-/* From x' = r_bp phi_p' - r_bw phi_w'. */
 static double wheel_speed(const dynamic_sample *sample) {
-    const gm_pair *pair = &sample->model->gears->pair;
-    const double r_bp = pair->pinion.base_radius;
-    const double r_bw = pair->wheel.base_radius;
-
-    return (r_bp * sample->motion.pinion_speed - sample->motion.offset_rate) / r_bw * rpm;
+    return model_wheel_speed(sample->model, &sample->motion) * rpm;
 }
 
 static double pinion_angle(const dynamic_sample *sample) {
@@ -59,7 +54,7 @@ static double mean_contact_force(const dynamic_sample *sample) {
 }
 
 static double load(const dynamic_sample *sample) {
-    return load_torque(&sample->model->load, sample->time);
+    return model_load(sample->model, sample->time, &sample->motion);
 }
 
 static double mean_load(const dynamic_sample *sample) {
@@ -81,7 +76,7 @@ const dynamic_column dynamic_columns[] = {
     {"penetration_um", 1, NEEDS_MESH, penetration, NULL},
     {"penetration_rate_um_per_s", 1, NEEDS_MESH, penetration_rate, NULL},
     {"contact_force_N", 1, NEEDS_MESH, contact_force, mean_contact_force},
-    {"load_torque_Nm", 1, NEEDS_TIME, load, mean_load},
+    {"load_torque_Nm", 1, NEEDS_MOTION, load, mean_load},
     {"pairs_in_contact", 0, NEEDS_PAIRS, pairs_in_contact, NULL},
 };
 

@@ -22,7 +22,7 @@ typedef struct dynamic_sample {
 
 /* What a column takes; the more, the dearer. */
 enum column_need {
-    NEEDS_TIME,   /* and the load */
+    NEEDS_TIME,   /* alone */
     NEEDS_MOTION, /* angles, speeds and x at the time */
     NEEDS_MESH,   /* the penetration */
     NEEDS_PAIRS   /* and the pairs that touch, which a look-up has to count */

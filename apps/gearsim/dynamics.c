@@ -32,7 +32,12 @@ typedef struct dynamic_run {
     double edge_time;           /* where the mean of the sample before has its end or its middle, */
     gear_motion edge;           /* and the motion there */
     gear_motion next;           /* at the next sample */
-    enum column_need row_need;  /* the most that a column asked for needs of the mesh, */
+    int follows;                /* drive or load depend on the motion */
+    double gathered_time;       /* up to which their integrals have been taken, */
+    model_torques gathered
+        [2]; /* of the part since the edge: of the torques, and of them times the share of it */
+    model_torques rising;         /* the second over the side of a triangle before its middle */
+    enum column_need row_need;    /* the most that a column asked for needs of the mesh, */
     enum column_need sample_need; /* and of the mesh between the rows, as it is filtered */
     double rows;                  /* number of rows, a whole number */
     dynamic_sample sample;
@@ -78,28 +83,135 @@ static double sample_time(const dynamic_run *run, double row, double sample) {
     return (row + sample / run->factor) / run->conf->output_rate;
 }
 
-/* Means of force and load with the mean of x'' and the integral of the noise. */
-static void set_means(dynamic_run *run, double acceleration, double noise) {
-    dynamic_sample *sample = &run->sample;
+/* ---------------------------------------------------------------------------------------------
+ * Means about a sample
+ * ------------------------------------------------------------------------------------------- */
 
-    sample->mean_load = run->model.load.mean + noise;
-    sample->mean_force = model_mean_force(&run->model, sample->mean_load, acceleration);
+static void add_torques(model_torques *sum, double weight, const model_torques *torques) {
+    sum->drive += weight * torques->drive;
+    sum->load += weight * torques->load;
+    sum->drag += weight * torques->drag;
+}
+
+/*
+ * What follows the motion at a time. The part that is linear in the speeds is left out of boxes, whose mean
+ * speeds follow exactly from the angles.
+ */
+static int see_torques(dynamic_run *run, double time, model_torques *torques) {
+    gear_motion motion;
+    const int failed = see_motion(run, time, &motion);
+    if (failed) {
+        return failed;
+    }
+
+    *torques = model_by_motion(&run->model, &motion);
+    if (run->mean_kind == SAMPLE_HAT) {
+        const double wheel_speed = model_wheel_speed(&run->model, &motion);
+        const model_torques linear = model_by_speeds(&run->model, motion.pinion_speed, wheel_speed);
+        add_torques(torques, 1.0, &linear);
+    }
+    return 0;
+}
+
+/* Adds the integrals over a time on which the solver goes forward: Gauss's rule of four points in pieces that are short
+ * to a natural vibration, good to 1e-9 of what changes. The weights are 1, and the share of the time that is over. */
+static int gather(dynamic_run *run, double to) {
+    static const double nodes[4] = {0.06943184420297371, 0.33000947820757187, 0.6699905217924281,
+                                    0.9305681557970263};
+    static const double shares[4] = {0.17392742256872693, 0.32607257743127307, 0.32607257743127307,
+                                     0.17392742256872693};
+    const double from = run->gathered_time, length = to - from;
+
+    if (!run->follows || run->mean_kind == SAMPLE_PLAIN || !(length > 0.0)) {
+        return 0;
+    }
+    const double pieces = ceil(length / model_smooth_time(&run->model, &run->edge));
+
+    for (double piece = 0.0; piece < pieces; piece += 1.0) {
+        for (int k = 0; k < 4; ++k) {
+            const double share = (piece + nodes[k]) / pieces;
+            model_torques torques;
+            const int failed = see_torques(run, from + share * length, &torques);
+            if (failed) {
+                return failed;
+            }
+            add_torques(&run->gathered[0], shares[k] * length / pieces, &torques);
+            add_torques(&run->gathered[1], shares[k] * length / pieces * share, &torques);
+        }
+    }
+    run->gathered_time = to;
+    return 0;
+}
+
+static void forget_gathered(dynamic_run *run) {
+    memset(run->gathered, 0, sizeof run->gathered);
+}
+
+/* Means of force and load with those of the torques that follow the motion and of x'', and the integral of the noise. */
+static void set_means(dynamic_run *run, const model_torques *following, double acceleration,
+                      double noise) {
+    static const gear_motion none = {0.0, 0.0, 0.0, 0.0};
+    dynamic_sample *sample = &run->sample;
+    model_torques mean = model_applied(&run->model, sample->time, &none);
+
+    add_torques(&mean, 1.0, following);
+    mean.load += noise;
+    sample->mean_load = mean.load;
+    sample->mean_force = model_mean_force(&run->model, &mean, acceleration);
+}
+
+/* What follows the motion over a box between two times: from the angles at both ends, and what has been gathered. */
+static model_torques mean_following(const dynamic_run *run, double begin, double end,
+                                    const gear_motion *motion) {
+    const gear_model *model = &run->model;
+    const gm_pair *pair = &model->gears->pair;
+    const double turned = motion->pinion_angle - run->edge.pinion_angle;
+    const double rolled = pair->pinion.base_radius * turned - (motion->offset - run->edge.offset);
+    const double weight = 1.0 / (end - begin);
+
+    const model_torques linear = model_by_speeds(model, turned, rolled / pair->wheel.base_radius);
+    model_torques mean = {0.0, 0.0, 0.0};
+    add_torques(&mean, weight, &linear);
+    add_torques(&mean, weight, &run->gathered[0]);
+    return mean;
+}
+
+/* The torques of a motion that follow it. */
+static model_torques following_at(const dynamic_run *run, const gear_motion *motion) {
+    const model_torques linear =
+        model_by_speeds(&run->model, motion->pinion_speed, model_wheel_speed(&run->model, motion));
+    model_torques torques = model_by_motion(&run->model, motion);
+
+    add_torques(&torques, 1.0, &linear);
+    return torques;
 }
 
 /* Over the sample's period: from the middle between two samples to the next, x'' from the change of x'. */
 static int see_box_means(dynamic_run *run, double row, int i) {
     const double end = sample_time(run, row, i + 0.5);
     gear_motion motion;
-    const int failed = see_motion(run, end, &motion);
+    int failed = gather(run, end);
+    if (!failed) {
+        failed = see_motion(run, end, &motion);
+    }
     if (failed) {
         return failed;
     }
 
-    /* Before t = 0 the gears rest against each other. */
+    /* Before t = 0 the gears rest against each other, at the speeds of the start: half of the first box. */
     const double begin = run->is_started ? run->edge_time : -end;
     const double before = run->is_started ? run->edge.offset_rate : 0.0;
     const double weight = 1.0 / (end - begin);
-    set_means(run, (motion.offset_rate - before) * weight,
+    model_torques following = {0.0, 0.0, 0.0};
+    if (run->follows) {
+        following = mean_following(run, begin, end, &motion);
+        if (!run->is_started) {
+            const model_torques rest = following_at(run, &run->edge);
+            add_torques(&following, 0.5, &rest);
+        }
+        forget_gathered(run);
+    }
+    set_means(run, &following, (motion.offset_rate - before) * weight,
               load_noise_integral(&run->model.load, begin, end, weight, weight));
 
     run->edge_time = end;
@@ -111,7 +223,10 @@ static int see_box_means(dynamic_run *run, double row, int i) {
 static int see_hat_means(dynamic_run *run, double row, int i) {
     const double middle = run->sample.time, end = sample_time(run, row, i + 1.0);
     gear_motion motion;
-    const int failed = see_motion(run, end, &motion);
+    int failed = gather(run, end);
+    if (!failed) {
+        failed = see_motion(run, end, &motion);
+    }
     if (failed) {
         return failed;
     }
@@ -122,7 +237,21 @@ static int see_hat_means(dynamic_run *run, double row, int i) {
     const double peak = 2.0 / (end - begin);
     const double rise = (x - before) / (middle - begin),
                  fall = (motion.offset - x) / (end - middle);
-    set_means(run, peak * (fall - rise),
+
+    /* The weight falls from the peak to zero behind the middle; what rises with it is for the next sample. */
+    model_torques following = {0.0, 0.0, 0.0};
+    if (run->follows) {
+        if (!run->is_started) {
+            const model_torques rest = following_at(run, &run->sample.motion);
+            add_torques(&run->rising, 0.5 * (middle - begin), &rest);
+        }
+        add_torques(&following, peak, &run->rising);
+        add_torques(&following, peak, &run->gathered[0]);
+        add_torques(&following, -peak, &run->gathered[1]);
+        run->rising = run->gathered[1];
+        forget_gathered(run);
+    }
+    set_means(run, &following, peak * (fall - rise),
               load_noise_integral(&run->model.load, begin, middle, 0.0, peak) +
                   load_noise_integral(&run->model.load, middle, end, peak, 0.0));
 
@@ -163,11 +292,17 @@ static int take_sample(dynamic_run *run, double row, int i) {
 
     /* Where the gears are, how they touch if a column needs to know, and what they do about that time. */
     run->sample.time = sample_time(run, row, i);
-    int failed = see_sample_motion(run, need);
+    int failed = gather(run, run->sample.time);
+    if (!failed) {
+        failed = see_sample_motion(run, need);
+    }
     if (!failed && need >= NEEDS_MESH) {
         failed = see_mesh(run, need);
     }
     if (!failed) {
+        if (!run->is_started) {
+            run->edge = run->sample.motion;
+        }
         failed = see_means(run, row, i);
     }
     if (failed) {
@@ -320,6 +455,7 @@ static int start_run(dynamic_run *run, const gear_mesh *gears) {
         return message_no_memory(run->conf->messages);
     }
     run->sample.model = &run->model;
+    run->follows = model_follows_motion(&run->model);
 
     int exit_code = start_solver(run);
     if (exit_code != 0) {

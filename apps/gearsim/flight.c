@@ -22,9 +22,8 @@ static const double pi = 3.14159265358979323846;
 typedef struct flight {
     const gear_model *model;
     gear_motion start;
-    double acceleration;        /* x'' of drive and mean load (m/s2) */
-    double noise_acceleration;  /* most that the noise adds to it (m/s2) */
-    double pinion_acceleration; /* (rad/s2) */
+    model_flight force_free;   /* accelerations of drive, load without noise, and drag */
+    double noise_acceleration; /* most that the noise adds to x'' (m/s2) */
     long *evaluations;
 } flight;
 
@@ -33,35 +32,38 @@ typedef struct range {
 } range;
 
 static double offset_at(const flight *free, double t) {
-    return free->start.offset + t * (free->start.offset_rate + 0.5 * free->acceleration * t);
+    return free->start.offset +
+           t * (free->start.offset_rate + 0.5 * free->force_free.acceleration * t);
 }
 
 static double angle_at(const flight *free, double t) {
     return free->start.pinion_angle +
-           t * (free->start.pinion_speed + 0.5 * free->pinion_acceleration * t);
+           t * (free->start.pinion_speed + 0.5 * free->force_free.pinion_acceleration * t);
 }
 
-/* Values of x between two times: those at both ends, at the vertex, and what the noise may add. */
+/* Values of x between two times: those at both ends, at the vertex, and what noise and change of the torques may add. */
 static range offsets_between(const flight *free, double from, double to) {
+    const double fall = free->force_free.acceleration;
     const double first = offset_at(free, from), last = offset_at(free, to);
-    const double vertex =
-        free->acceleration != 0.0 ? -free->start.offset_rate / free->acceleration : from;
+    const double vertex = fall != 0.0 ? -free->start.offset_rate / fall : from;
     const double middle = vertex > from && vertex < to ? offset_at(free, vertex) : first;
-    const double noise = 0.5 * free->noise_acceleration * to * to;
+    const double other =
+        0.5 * free->noise_acceleration * to * to + free->force_free.jerk / 6.0 * to * to * to;
 
     const range found = {
-        .lowest = fmin(fmin(first, last), middle) - noise,
-        .highest = fmax(fmax(first, last), middle) + noise,
+        .lowest = fmin(fmin(first, last), middle) - other,
+        .highest = fmax(fmax(first, last), middle) + other,
     };
     return found;
 }
 
 /* Largest speed of the contact along the profiles between two times (m/s). */
 static double sliding_between(const flight *free, double from, double to) {
-    const double first = free->start.pinion_speed + free->pinion_acceleration * from;
-    const double last = free->start.pinion_speed + free->pinion_acceleration * to;
+    const double first = free->start.pinion_speed + free->force_free.pinion_acceleration * from;
+    const double last = free->start.pinion_speed + free->force_free.pinion_acceleration * to;
+    const double other = 0.5 * free->force_free.pinion_jerk * to * to;
 
-    return free->model->gears->pair.pinion.base_radius * fmax(fabs(first), fabs(last));
+    return free->model->gears->pair.pinion.base_radius * (fmax(fabs(first), fabs(last)) + other);
 }
 
 /* Whether a side is free of contact at a time, if x were the one given. A failed evaluation is no freedom. */
@@ -95,7 +97,10 @@ static int side_stays_clear(const flight *free, int side, double from, double to
         return 0;
     }
 
-    const double way = sliding_between(free, from, to) * (to - from) + (x.highest - x.lowest);
+    const double off_parabola =
+        model->gears->pair.pinion.base_radius * free->force_free.pinion_jerk / 6.0 * to * to * to;
+    const double way =
+        sliding_between(free, from, to) * (to - from) + (x.highest - x.lowest) + off_parabola;
     const double closest = nearest + direction * model->slope[side] * way;
     return side_is_free(free, side, from, closest) && side_is_free(free, side, to, closest);
 }
@@ -114,7 +119,8 @@ static int stays_clear(const flight *free, double from, double to) {
 static double shortest_touch(const flight *free, const flight_options *options) {
     const double w0 = free->model->natural_frequency;
     const double slope = fmax(free->model->slope[GM_DRIVE], free->model->slope[GM_COAST]);
-    const double fall = fabs(free->acceleration) + free->noise_acceleration;
+    const double fall = fabs(free->force_free.acceleration) + free->noise_acceleration +
+                        free->force_free.jerk * options->longest;
     const double approach = fabs(free->start.offset_rate) + fall * options->longest +
                             slope * sliding_between(free, 0.0, options->longest);
 
@@ -126,16 +132,14 @@ static double noise_acceleration(const gear_model *model) {
 }
 
 static flight flight_from(const gear_model *model, double time, const double state[],
-                          long *evaluations) {
-    const load_signal *load = &model->load;
+                          double horizon, long *evaluations) {
     flight free = {
         .model = model,
         .start = model_motion(model, time, state),
-        .acceleration = model->drive_to_offset + model->torque_to_offset * load->mean,
         .noise_acceleration = noise_acceleration(model),
-        .pinion_acceleration = model->drive_to_offset / model->gears->pair.pinion.base_radius,
     };
 
+    free.force_free = model_without_contact(model, time, &free.start, horizon);
     free.evaluations = evaluations;
     return free;
 }
@@ -146,7 +150,7 @@ int flight_noise_guides(const gear_model *model, const flight_options *options) 
 
 double flight_light_step(const gear_model *model, double time, const double state[],
                          const flight_options *options) {
-    const flight free = flight_from(model, time, state, NULL);
+    const flight free = flight_from(model, time, state, options->longest, NULL);
     const double shortest = shortest_touch(&free, options);
     const double while_it_widens = widening * pi / model->natural_frequency;
 
@@ -155,7 +159,7 @@ double flight_light_step(const gear_model *model, double time, const double stat
 
 double flight_clear_time(const gear_model *model, double time, const double state[],
                          const flight_options *options, long *evaluations) {
-    const flight free = flight_from(model, time, state, evaluations);
+    const flight free = flight_from(model, time, state, options->longest, evaluations);
     const double shortest = fmin(shortest_touch(&free, options), options->longest);
     double clear = 0.0, piece = options->longest;
 

@@ -17,7 +17,10 @@ static uint64_t mix(uint64_t z) {
 
 load_signal load_create(double mean, double amplitude, double interval, uint64_t seed) {
     /* Mixed once more, so that neighbouring seeds do not give the same values some places apart. */
-    const load_signal created = {mean, amplitude, interval, mix(seed + golden_step)};
+    const load_signal created = {.mean = mean,
+                                 .amplitude = amplitude,
+                                 .interval = interval,
+                                 .stream = mix(seed + golden_step)};
 
     return created;
 }
@@ -48,12 +51,12 @@ void load_noise_cubic(const load_signal *load, int64_t k, double coefficients[4]
     coefficients[3] = half * (3.0 * (p1 - p2) + p3 - p0);
 }
 
-double load_torque(const load_signal *load, double time) {
+double load_with_noise(const load_signal *load, double torque, double time) {
     const double position = time / load->interval;
 
     /* Beyond 2^52 intervals (1400 years of 1e-5 s) a double cannot tell one value from the next. */
     if (load->amplitude == 0.0 || !(fabs(position) < 0x1p52)) {
-        return load->mean;
+        return torque;
     }
 
     /* Conversion truncates towards zero, which is upwards before t = 0. */
@@ -63,7 +66,19 @@ double load_torque(const load_signal *load, double time) {
     double c[4];
 
     load_noise_cubic(load, k, c);
-    return load->mean + c[0] + s * (c[1] + s * (c[2] + s * c[3]));
+    return torque + c[0] + s * (c[1] + s * (c[2] + s * c[3]));
+}
+
+double load_torque(const load_signal *load, double time) {
+    return load_with_noise(load, load->mean, time);
+}
+
+double load_at_speed(const load_signal *load, double wheel_speed) {
+    return wheel_speed * (load->per_speed + load->per_speed_squared * fabs(wheel_speed));
+}
+
+double load_by_speed(const load_signal *load, double wheel_speed) {
+    return load->per_speed + 2.0 * load->per_speed_squared * fabs(wheel_speed);
 }
 
 /* Integral of weight times cubic over the part [from, to] of a piece, in its own s; the weight is w[0] + w[1] s. */

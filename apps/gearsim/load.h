@@ -2,7 +2,7 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 
 /*
- * The load torque on the wheel: a mean and seeded noise.
+ * The load torque on the wheel: a mean, seeded noise, and what follows the wheel's speed.
  *
  * Noise value k, at the time k * interval, is a pure function of seed and k: no state, any order of
  * calls, the same on every machine. Between the values runs a cubic (Catmull-Rom), which is C1, so that
@@ -14,10 +14,12 @@
 #include "config.h"
 
 typedef struct load_signal {
-    double mean;      /* N m */
-    double amplitude; /* noise values are uniform in +- amplitude, N m */
-    double interval;  /* between noise values, s */
-    uint64_t stream;  /* what the seed has been mixed to */
+    double mean;              /* N m */
+    double amplitude;         /* noise values are uniform in +- amplitude, N m */
+    double interval;          /* between noise values, s */
+    uint64_t stream;          /* what the seed has been mixed to */
+    double per_speed;         /* c of what follows the wheel's speed w: c w + c2 w |w| (N m s) */
+    double per_speed_squared; /* c2 (N m s2) */
 } load_signal;
 
 load_signal load_create(double mean, double amplitude, double interval, uint64_t seed);
@@ -25,8 +27,15 @@ load_signal load_create(double mean, double amplitude, double interval, uint64_t
 /* Coefficients of the noise between the values k and k + 1: powers of (time / interval - k), N m. */
 void load_noise_cubic(const load_signal *load, int64_t k, double coefficients[4]);
 
-/* M_w(t), constant cost at any t (N m). */
+/* Mean and noise, constant cost at any t (N m). */
 double load_torque(const load_signal *load, double time);
+
+/* A torque with the noise added. */
+double load_with_noise(const load_signal *load, double torque, double time);
+
+/* What follows the speed of the wheel in rad/s (N m), and its derivative by that speed (N m s). */
+double load_at_speed(const load_signal *load, double wheel_speed);
+double load_by_speed(const load_signal *load, double wheel_speed);
 
 /*
  * Integral of the noise from one time to a later one, weighted by a straight line between the weights at both, exact:

@@ -60,13 +60,17 @@ static void init_bodies(gear_model *model, const config *conf) {
     if (model->drive.kind == DRIVE_SPEED) {
         /* A prescribed speed is an infinite inertia. */
         model->pinion_mobility = 0.0;
-        model->drive_to_offset = r_bp * model->drive.acceleration;
+        model->pinion_inertia = HUGE_VAL;
+        model->torque_to_pinion = 0.0;
         model->states = 2;
     } else {
         model->pinion_mobility = square(r_bp) / conf->pinion_inertia;
-        model->drive_to_offset = r_bp * model->drive.torque / conf->pinion_inertia;
+        model->pinion_inertia = conf->pinion_inertia;
+        model->torque_to_pinion = r_bp / conf->pinion_inertia;
         model->states = 4;
     }
+    model->pinion_drag = conf->pinion_drag;
+    model->wheel_drag = conf->wheel_drag;
 }
 
 /* Adds what the flanks of one gear can do to meet their mates. */
@@ -122,6 +126,8 @@ int model_init(gear_model *model, const config *conf, const gear_mesh *gears) {
     model->drive = drive_create(conf);
     model->load =
         load_create(conf->mean_load, conf->noise_amplitude, conf->noise_interval, conf->seed);
+    model->load.per_speed = conf->load_per_speed;
+    model->load.per_speed_squared = conf->load_per_speed_squared;
     init_bodies(model, conf);
     init_flanks(model);
 
@@ -157,8 +163,13 @@ static int equilibrium(const gear_model *model, double force, double *offset) {
 }
 
 int model_quasi_static_start(const gear_model *model, double state[]) {
-    /* x'' = 0: the force that balances drive and load, acceleration torque included. */
-    const double applied = model->drive_to_offset + model->torque_to_offset * model->load.mean;
+    const double start_speed =
+        model->states == STATES_MAX ? model->drive.start_speed : drive_at(&model->drive, 0.0).speed;
+
+    /* x' = x'' = 0: the force that balances drive, load and drag, acceleration torque included. */
+    const gear_motion motion = {.pinion_speed = start_speed};
+    const model_torques torques = model_applied(model, 0.0, &motion);
+    const double applied = torques.drive + model->torque_to_offset * (torques.load + torques.drag);
     double offset = 0.0;
     const int status = equilibrium(model, applied / mobility(model), &offset);
 
@@ -168,8 +179,7 @@ int model_quasi_static_start(const gear_model *model, double state[]) {
         const double r_bp = model->gears->pair.pinion.base_radius;
 
         state[STATE_PINION_ARC] = 0.0;
-        state[STATE_PINION_SPEED] =
-            r_bp * model->drive.start_speed / (model->natural_frequency * micrometre);
+        state[STATE_PINION_SPEED] = r_bp * start_speed / (model->natural_frequency * micrometre);
     }
     return status;
 }
@@ -185,30 +195,30 @@ static response_value noise_response(const gear_model *model, double time) {
     return model->noise != NULL ? response_at(model->noise, time) : none;
 }
 
-/* x'' or u'' without the force: what drive and load would do, and what p assumes of the mesh. */
+/* x'' or u'' without the force: what drive, load and drag would do, and what p assumes of the mesh. */
 static double applied_acceleration(const gear_model *model, double time,
-                                   const response_value *noise) {
+                                   const model_torques *torques, const response_value *noise) {
     if (model->noise == NULL) {
-        return model->drive_to_offset + model->torque_to_offset * load_torque(&model->load, time);
+        const double load = load_with_noise(&model->load, torques->load, time);
+        return torques->drive + model->torque_to_offset * (load + torques->drag);
     }
-    return model->drive_to_offset + model->torque_to_offset * model->load.mean +
+    return torques->drive + model->torque_to_offset * (torques->load + torques->drag) +
            2.0 * model->response_decay * noise->rate +
            square(model->natural_frequency) * noise->offset;
 }
 
-static double pinion_speed(const gear_model *model, double time, const double state[]) {
-    if (model->states == STATES_MAX) {
-        return state[STATE_PINION_SPEED] * model->natural_frequency * micrometre /
-               model->gears->pair.pinion.base_radius;
+/* Angle and speed of the pinion, prescribed or from the state. */
+static drive_motion pinion_motion(const gear_model *model, double time, const double state[]) {
+    if (model->states != STATES_MAX) {
+        return drive_at(&model->drive, time);
     }
-    return drive_at(&model->drive, time).speed;
-}
 
-static double pinion_angle(const gear_model *model, double time, const double state[]) {
-    if (model->states == STATES_MAX) {
-        return state[STATE_PINION_ARC] * micrometre / model->gears->pair.pinion.base_radius;
-    }
-    return drive_at(&model->drive, time).angle;
+    const double r_bp = model->gears->pair.pinion.base_radius;
+    const drive_motion motion = {
+        .angle = state[STATE_PINION_ARC] * micrometre / r_bp,
+        .speed = state[STATE_PINION_SPEED] * model->natural_frequency * micrometre / r_bp,
+    };
+    return motion;
 }
 
 double model_speed_unit(const gear_model *model) {
@@ -218,9 +228,10 @@ double model_speed_unit(const gear_model *model) {
 static gear_motion motion_with(const gear_model *model, double time, const double state[],
                                const response_value *noise) {
     const double speed_unit = model_speed_unit(model);
+    const drive_motion pinion = pinion_motion(model, time, state);
     const gear_motion motion = {
-        .pinion_angle = pinion_angle(model, time, state),
-        .pinion_speed = pinion_speed(model, time, state),
+        .pinion_angle = pinion.angle,
+        .pinion_speed = pinion.speed,
         .offset = state[STATE_OFFSET] * micrometre + noise->offset,
         .offset_rate = state[STATE_OFFSET_RATE] * speed_unit + noise->rate,
     };
@@ -245,10 +256,92 @@ int model_evaluate(const gear_model *model, const gear_motion *motion, int wante
                : gm_mesh_evaluate_at(model->gears->prepared, &position, wanted, NULL, result);
 }
 
-double model_mean_force(const gear_model *model, double load, double acceleration) {
-    const double applied = model->drive_to_offset + model->torque_to_offset * load;
+/* From x' = r_bp phi_p' - r_bw phi_w'. */
+double model_wheel_speed(const gear_model *model, const gear_motion *motion) {
+    const gm_pair *pair = &model->gears->pair;
+
+    return (pair->pinion.base_radius * motion->pinion_speed - motion->offset_rate) /
+           pair->wheel.base_radius;
+}
+
+double model_load(const gear_model *model, double time, const gear_motion *motion) {
+    const double torque =
+        model->load.mean + load_at_speed(&model->load, model_wheel_speed(model, motion));
+
+    return load_with_noise(&model->load, torque, time);
+}
+
+model_torques model_by_speeds(const gear_model *model, double pinion_speed, double wheel_speed) {
+    const model_torques torques = {
+        .drive = -model->torque_to_pinion * model->pinion_drag * pinion_speed,
+        .load = model->load.per_speed * wheel_speed,
+        .drag = model->wheel_drag * wheel_speed,
+    };
+    return torques;
+}
+
+model_torques model_by_motion(const gear_model *model, const gear_motion *motion) {
+    const double wheel_speed = model_wheel_speed(model, motion);
+    const model_torques torques = {
+        .load = load_at_speed(&model->load, wheel_speed) - model->load.per_speed * wheel_speed,
+    };
+    return torques;
+}
+
+int model_follows_motion(const gear_model *model) {
+    return model->load.per_speed != 0.0 || model->load.per_speed_squared != 0.0 ||
+           model->wheel_drag != 0.0 || model->torque_to_pinion * model->pinion_drag != 0.0;
+}
+
+double model_smooth_time(const gear_model *model, const gear_motion *motion) {
+    (void)motion;
+    return 1.0 / model->natural_frequency;
+}
+
+model_torques model_applied(const gear_model *model, double time, const gear_motion *motion) {
+    const double wheel_speed = model_wheel_speed(model, motion);
+    const double r_bp = model->gears->pair.pinion.base_radius;
+    const model_torques torques = {
+        .drive = model->states == STATES_MAX
+                     ? r_bp * (model->drive.torque - model->pinion_drag * motion->pinion_speed) /
+                           model->pinion_inertia
+                     : r_bp * drive_at(&model->drive, time).acceleration,
+        .load = model->load.mean + load_at_speed(&model->load, wheel_speed),
+        .drag = model->wheel_drag * wheel_speed,
+    };
+    return torques;
+}
+
+double model_mean_force(const gear_model *model, const model_torques *mean, double acceleration) {
+    const double applied = mean->drive + model->torque_to_offset * (mean->load + mean->drag);
 
     return (applied - acceleration) / mobility(model);
+}
+
+/* Without contact every torque that follows a speed slows its body down, and what it does becomes less. */
+model_flight model_without_contact(const gear_model *model, double time, const gear_motion *motion,
+                                   double horizon) {
+    const gm_pair *pair = &model->gears->pair;
+    const double r_bp = pair->pinion.base_radius, r_bw = pair->wheel.base_radius;
+    const model_torques torques = model_applied(model, time, motion);
+    const double load_part = model->torque_to_offset * (torques.load + torques.drag);
+
+    /* The load's torques fall by their slope times what the wheel's speed changes by until the horizon. */
+    const double wheel_acceleration = fabs(load_part) / r_bw;
+    const double wheel_speed =
+        fabs(model_wheel_speed(model, motion)) + wheel_acceleration * horizon;
+    const double wheel_slope = model->wheel_drag + load_by_speed(&model->load, wheel_speed);
+
+    /* The pinion likewise; a prescribed speed has a constant acceleration. */
+    const double pinion_jerk =
+        model->torque_to_pinion * model->pinion_drag * fabs(torques.drive) / square(r_bp);
+    const model_flight flight = {
+        .acceleration = torques.drive + load_part,
+        .pinion_acceleration = torques.drive / r_bp,
+        .jerk = model->torque_to_offset * wheel_slope * wheel_acceleration + r_bp * pinion_jerk,
+        .pinion_jerk = pinion_jerk,
+    };
+    return flight;
 }
 
 static enum mesh_contact contact_of(const gear_model *model, const gm_mesh_result *mesh) {
@@ -276,7 +369,8 @@ int model_derivative(const gear_model *model, double time, const double state[],
 
     const double w0 = model->natural_frequency;
     const double to_state = 1.0 / (w0 * micrometre);
-    const double applied = applied_acceleration(model, time, &noise);
+    const model_torques torques = model_applied(model, time, &motion);
+    const double applied = applied_acceleration(model, time, &torques, &noise);
     *contact = contact_of(model, &mesh);
 
     derivative[STATE_OFFSET] = w0 * state[STATE_OFFSET_RATE];
@@ -285,7 +379,7 @@ int model_derivative(const gear_model *model, double time, const double state[],
     if (model->states == STATES_MAX) {
         derivative[STATE_PINION_ARC] = w0 * state[STATE_PINION_SPEED];
         derivative[STATE_PINION_SPEED] =
-            (model->drive_to_offset - model->pinion_mobility * mesh.force) * to_state;
+            (torques.drive - model->pinion_mobility * mesh.force) * to_state;
     }
     return GM_OK;
 }
@@ -331,6 +425,22 @@ static void coordinate_row(double jacobian[STATES_MAX][STATES_MAX], int row, int
     }
 }
 
+/* What drag and load do to the rows of the speeds, by x' = r_bp phi_p' - r_bw phi_w'. */
+static void add_torques(double jacobian[STATES_MAX][STATES_MAX], const gear_model *model,
+                        const gear_motion *motion) {
+    const gm_pair *pair = &model->gears->pair;
+    const double ratio = pair->pinion.base_radius / pair->wheel.base_radius;
+    const double wheel_speed = model_wheel_speed(model, motion);
+    const double wheel_slope =
+        model->torque_to_offset * (model->wheel_drag + load_by_speed(&model->load, wheel_speed));
+    const double pinion_slope = model->torque_to_pinion * model->pinion_drag;
+
+    jacobian[STATE_OFFSET_RATE][STATE_OFFSET_RATE] -= wheel_slope / pair->wheel.base_radius;
+    jacobian[STATE_PINION_SPEED][STATE_OFFSET_RATE] +=
+        (wheel_slope * ratio - pinion_slope) / pair->pinion.base_radius;
+    jacobian[STATE_PINION_SPEED][STATE_PINION_SPEED] -= pinion_slope / pair->pinion.base_radius;
+}
+
 int model_jacobian(const gear_model *model, double time, const double state[],
                    double jacobian[STATES_MAX][STATES_MAX]) {
     const gear_motion motion = model_motion(model, time, state);
@@ -347,6 +457,7 @@ int model_jacobian(const gear_model *model, double time, const double state[],
     speed_row(jacobian, STATE_OFFSET_RATE, model, mobility(model), &force);
     coordinate_row(jacobian, STATE_PINION_ARC, STATE_PINION_SPEED, w0);
     speed_row(jacobian, STATE_PINION_SPEED, model, model->pinion_mobility, &force);
+    add_torques(jacobian, model, &motion);
 
     return GM_OK;
 }
@@ -359,8 +470,10 @@ int model_jacobian(const gear_model *model, double time, const double state[],
 static double tooth_step(const gear_model *model, double time, const double state[]) {
     const gm_gear *pinion = &model->gears->pair.pinion;
     const double angle = pinion->pitch_angle / steps_per_tooth;
-    const double speed = fabs(pinion_speed(model, time, state));
-    const double acceleration = fabs(model->drive_to_offset) / pinion->base_radius;
+    const gear_motion motion = model_motion(model, time, state);
+    const model_torques torques = model_applied(model, time, &motion);
+    const double speed = fabs(motion.pinion_speed);
+    const double acceleration = fabs(torques.drive) / pinion->base_radius;
     const double reach = speed + sqrt(speed * speed + 2.0 * acceleration * angle);
 
     return reach > 0.0 ? 2.0 * angle / reach : 0.0;

@@ -7,9 +7,10 @@
  *     x  = r_bp phi_p - r_bw phi_w
  *     x'' = r_bp alpha_p + r_bw M_w / I_w - F r_bw^2 / I_w
  *
- * with the prescribed alpha_p, or alpha_p = (M_p - F r_bp) / I_p if the pinion is driven by a torque.
- * Both cases read x'' = a(t) - mobility F, where a(t) is what drive and load would do to x without
- * contact, and the mobility is what a force of 1 N along the line of action does.
+ * with the prescribed alpha_p, or alpha_p = (M_p - c_p phi_p' - F r_bp) / I_p if the pinion is driven by a
+ * torque. M_w contains the wheel's drag c_w phi_w' and what of the load follows its speed. Both cases read
+ * x'' = a - mobility F, where a is what drive, load and drag would do to x without contact, and the mobility
+ * is what a force of 1 N along the line of action does.
  *
  * The solver's state is scaled to the size of the vibration: micrometres, and micrometres times the
  * natural frequency. With an absolute wheel angle of thousands of radians as state, its tolerance
@@ -46,7 +47,10 @@ typedef struct gear_model {
     double pinion_mobility;   /* r_bp^2 / I_p, 0 if its speed is prescribed (1/kg) */
     double wheel_mobility;    /* r_bw^2 / I_w (1/kg) */
     double torque_to_offset;  /* r_bw / I_w: from the load to x'' (1/(kg m)) */
-    double drive_to_offset;   /* x'' that the drive alone causes (m/s2) */
+    double pinion_inertia;    /* I_p, infinite if its speed is prescribed (kg m2) */
+    double torque_to_pinion;  /* r_bp / I_p: from the pinion's torque to x'' (1/(kg m)) */
+    double pinion_drag;       /* c_p (N m s) */
+    double wheel_drag;        /* c_w (N m s) */
     double natural_frequency; /* w0 (rad/s) */
     double response_decay;    /* zeta w0 of the response (1/s) */
     response *noise;          /* to the noise; NULL: the load is as it is, and u = x */
@@ -76,7 +80,7 @@ typedef struct gear_motion {
 int model_init(gear_model *model, const config *conf, const gear_mesh *gears);
 void model_free(gear_model *model);
 
-/* State in which x' = x'' = 0 at the mean load. Returns a library status. */
+/* State in which x' = x'' = 0 at the mean load, drag and speed included. Returns a library status. */
 int model_quasi_static_start(const gear_model *model, double state[]);
 
 /* x' of 1 in the state (m/s). */
@@ -88,11 +92,47 @@ gear_motion model_motion(const gear_model *model, double time, const double stat
 int model_evaluate(const gear_model *model, const gear_motion *motion, int wanted,
                    gm_mesh_result *result);
 
+/* Speed of the wheel in a motion (rad/s). */
+double model_wheel_speed(const gear_model *model, const gear_motion *motion);
+
+/* M_w in a motion, without the drag: what the column of the load shows (N m). */
+double model_load(const gear_model *model, double time, const gear_motion *motion);
+
+/* What drive, load and drag do, at a time or in the mean over one. */
+typedef struct model_torques {
+    double drive; /* x'' that drive and pinion's drag cause (m/s2) */
+    double load;  /* M_w without drag and noise (N m) */
+    double drag;  /* of the wheel (N m) */
+} model_torques;
+
+model_torques model_applied(const gear_model *model, double time, const gear_motion *motion);
+
+/* The parts of it that are linear in both speeds, and those that follow the motion in any other way. */
+model_torques model_by_speeds(const gear_model *model, double pinion_speed, double wheel_speed);
+model_torques model_by_motion(const gear_model *model, const gear_motion *motion);
+
+/* Whether there is any such part. */
+int model_follows_motion(const gear_model *model);
+
+/* Time in which they change so little that a polynomial describes them (s). */
+double model_smooth_time(const gear_model *model, const gear_motion *motion);
+
 /*
- * Mean of the force over a time in which the load has the mean given (N m) and x'' the mean acceleration (m/s2): the
- * momentum that neither load nor drive accounts for has come through the mesh. Exact, whatever the force does meanwhile.
+ * Mean of the force over a time in which the torques (noise included) and x'' (m/s2) have the means given: the momentum
+ * that neither load nor drive accounts for has come through the mesh. Exact, whatever the force does meanwhile.
  */
-double model_mean_force(const gear_model *model, double load, double acceleration);
+double model_mean_force(const gear_model *model, const model_torques *mean, double acceleration);
+
+/* Motion as long as nothing touches. */
+typedef struct model_flight {
+    double acceleration;        /* x'' without the noise (m/s2) */
+    double pinion_acceleration; /* (rad/s2) */
+    double jerk;                /* most that both change by, until the horizon (m/s3, rad/s3) */
+    double pinion_jerk;
+} model_flight;
+
+model_flight model_without_contact(const gear_model *model, double time, const gear_motion *motion,
+                                   double horizon);
 
 /* d state / dt, and the contact that it belongs to. Returns a library status: > 0 a smaller step may help,
  * < 0 it cannot. */
