@@ -261,6 +261,30 @@ static void too_much_torque_has_no_equilibrium(void) {
     }
 }
 
+/*
+ * Just below |x| = p_bt / 2, where teeth are not yet skipped, a load is carried still; at that place the load has hardly
+ * any room to grow: from 0.4999 to 0.5 p_bt by 1 / 5000 of itself, as contact lines get no longer under load.
+ */
+static void loads_are_carried_up_to_half_a_base_pitch(void) {
+    const gm_pair pair = reference_pair(REFERENCE_FACE_WIDTH);
+    const double stiffness = 1e8;
+    for (int i = 0; i < 12; ++i) {
+        gm_test_context("position %d", i);
+        const double angle = 0.013 * i, sign = i % 2 == 0 ? 1.0 : -1.0;
+        const double x = sign * 0.4999 * pair.transverse_base_pitch;
+        const double torque =
+            at(&pair, NULL, NULL, angle, x).penetration * stiffness * pair.wheel.base_radius;
+        double found = 0.0;
+        GM_ASSERT_INT(equilibrium(&pair, NULL, NULL, angle, stiffness, torque, &found, NULL),
+                      GM_OK);
+        GM_ASSERT_ABS(found, x, 1e-12);
+        GM_ASSERT_INT(
+            equilibrium(&pair, NULL, NULL, angle, stiffness, 1.001 * torque, &found, NULL),
+            GM_NO_EQUILIBRIUM);
+        GM_ASSERT_NAN(found);
+    }
+}
+
 static void equilibrium_refuses_what_it_must(void) {
     const gm_pair pair = reference_pair(REFERENCE_FACE_WIDTH);
     double x = 0.0;
@@ -692,6 +716,7 @@ int main(int argc, char **argv) {
         GM_TEST(no_torque_leaves_the_position_open),
         GM_TEST(negative_backlash_has_an_equilibrium_without_torque),
         GM_TEST(too_much_torque_has_no_equilibrium),
+        GM_TEST(loads_are_carried_up_to_half_a_base_pitch),
         GM_TEST(equilibrium_refuses_what_it_must),
         GM_TEST(bisection_of_the_sum_gives_the_same),
         GM_TEST(no_torque_is_carried_where_both_sides_touch),
