@@ -285,6 +285,64 @@ static void loads_are_carried_up_to_half_a_base_pitch(void) {
     }
 }
 
+/*
+ * Short paths: a line that is pressed leaves its path before half a base pitch is reached, so that the sum rises, falls and
+ * may come to nothing. A load just below the largest sum is carried, where a scan of the sum finds it first; also if a
+ * tooth far from the mesh sticks out, so that the search begins where the sum has fallen already.
+ */
+static void a_load_below_the_largest_sum_is_carried(void) {
+    enum { STEPS = 2000 };
+    const double stiffness = 1e8;
+    static double memory[512];
+    const gm_flanks_params sizes = {.teeth = 45};
+    uint64_t seed = UINT64_C(56);
+    int falling = 0;
+    for (int i = 0; i < 400; ++i) {
+        gm_test_context("case %d, seed %llx", i, (unsigned long long)seed);
+        gm_pair_params params = reference_params(15e-3);
+        params.helix_angle = gm_test_uniform(&seed, 0.002, 0.2);
+        params.center_distance = 0.5 * (45 + 41) * 1.65e-3 / cos(params.helix_angle);
+        params.pinion_tip_radius = params.wheel_tip_radius = (double)NAN;
+        params.pinion_tip_alteration = params.wheel_tip_alteration =
+            gm_test_uniform(&seed, -1.3, -1.0);
+        const gm_pair pair = make_pair(&params);
+        gm_flanks *flanks;
+        GM_ASSERT_INT(gm_flanks_init(&flanks, &sizes, memory, sizeof memory), GM_OK);
+        const double high_tooth = i % 2 * gm_test_uniform(&seed, 0.1e-3, 0.6e-3);
+        GM_ASSERT_INT(gm_flanks_set_pitch(flanks, GM_DRIVE, 22, high_tooth), GM_OK);
+        const double angle = gm_test_uniform(&seed, 0.0, 0.2);
+        const double limit = 0.49999 * pair.transverse_base_pitch;
+        const double begin = 0.5 * pair.backlash, step = (limit - begin) / STEPS;
+        double largest = 0.0;
+        for (int k = 0; k <= STEPS; ++k) {
+            largest = fmax(largest, at(&pair, flanks, NULL, angle, begin + k * step).penetration);
+        }
+        const double wanted = gm_test_uniform(&seed, 0.8, 0.995) * largest;
+        if (!(largest > 1e-4) || at(&pair, flanks, NULL, angle, limit).penetration > 0.9 * wanted) {
+            continue;
+        }
+        ++falling;
+
+        /* The first crossing of the scan, by bisection. */
+        int k = 0;
+        while (at(&pair, flanks, NULL, angle, begin + k * step).penetration < wanted) {
+            ++k;
+        }
+        double low = begin + (k - 1) * step, high = begin + k * step;
+        for (int halving = 0; halving < 60; ++halving) {
+            const double middle = 0.5 * (low + high);
+            *(at(&pair, flanks, NULL, angle, middle).penetration < wanted ? &low : &high) = middle;
+        }
+        double found = 0.0;
+        const double torque = wanted * stiffness * pair.wheel.base_radius;
+        GM_ASSERT_INT(equilibrium(&pair, flanks, NULL, angle, stiffness, torque, &found, NULL),
+                      GM_OK);
+        GM_ASSERT_ABS(found, high, 1e-11);
+    }
+    gm_test_context("all cases");
+    GM_ASSERT(falling > 100);
+}
+
 static void equilibrium_refuses_what_it_must(void) {
     const gm_pair pair = reference_pair(REFERENCE_FACE_WIDTH);
     double x = 0.0;
@@ -717,6 +775,7 @@ int main(int argc, char **argv) {
         GM_TEST(negative_backlash_has_an_equilibrium_without_torque),
         GM_TEST(too_much_torque_has_no_equilibrium),
         GM_TEST(loads_are_carried_up_to_half_a_base_pitch),
+        GM_TEST(a_load_below_the_largest_sum_is_carried),
         GM_TEST(equilibrium_refuses_what_it_must),
         GM_TEST(bisection_of_the_sum_gives_the_same),
         GM_TEST(no_torque_is_carried_where_both_sides_touch),

@@ -65,6 +65,18 @@ static double clamp(double value, double limit) {
     return fmin(fmax(value, -limit), limit);
 }
 
+/* The largest load lies behind: it falls here, or all lines have left their path, which grows shorter with travel. */
+static int is_beyond_largest(const problem *p, double travel, double slope) {
+    if (slope != 0.0) {
+        return slope < 0.0;
+    }
+    gm_position position = p->position;
+    position.offset = p->direction * travel;
+    gmi_side_sum lines = gmi_no_contact();
+    gmi_side_sum_ideal(p->pair, &p->mesh->engagement, loaded_side(p), &position, GMI_SUM, &lines);
+    return !(lines.contact > 0.0);
+}
+
 /*
  * From `travel` on: Newton's method within the bracket. Where nothing is known of its upper end, outwards by `reach` at
  * most, which doubles. Returns 0 if the load is not reached.
@@ -85,7 +97,7 @@ static int solve(const problem *p, bracket within, double travel, double reach, 
             within.end = CARRIES;
         } else if (travel >= within.upper) {
             return 0;
-        } else if (within.end == LOAD_FALLS && slope < 0.0) {
+        } else if (within.end == LOAD_FALLS && is_beyond_largest(p, travel, slope)) {
             within.upper = travel;
         } else {
             within.lower = travel;
@@ -159,6 +171,11 @@ static int find_loaded(const problem *p, double guess, double *found, gm_mesh_re
     }
     if (!carried) {
         carried = solve(p, bent, start, reach, found, result);
+    }
+    if (!carried) {
+        /* Where ideal flanks carry it: teeth that stick out elsewhere have moved the start beyond the largest load. */
+        const double ideal = 0.5 * p->mesh->engagement.backlash + p->target;
+        carried = solve(p, bent, fmin(fmax(ideal, lower), limit), reach, found, result);
     }
 
     /* An earlier place, before a line leaves, counts first. */
