@@ -448,8 +448,8 @@ static void judge_amount(const config *conf, const char *key, double amount) {
 }
 
 /* The keys of one kind in one place: lengths in terms of face width, module and reference diameter. */
-static void judge_modification(const config *conf, const usual_gear *usual, int gear, int place,
-                               int kind) {
+static void judge_modification(const config *conf, const usual_gear *usual, enum gm_role gear,
+                               int place, int kind) {
     static const double width_possible[] = {3e-3, HUGE_VAL}, width_usual[] = {0.01, 1};
     static const double length_possible[] = {0.02, HUGE_VAL}, length_usual[] = {0.1, 20};
     const modification_values *given = &conf->modifications[gear][place][kind];
@@ -477,7 +477,7 @@ static void judge_modification(const config *conf, const usual_gear *usual, int 
 }
 
 static void judge_modifications(const config *conf, const usual_gear *usual) {
-    for (int gear = 0; gear < 2; ++gear) {
+    for (enum gm_role gear = GM_PINION; gear <= GM_WHEEL; ++gear) {
         for (int place = 0; place < MODIFICATION_PLACES; ++place) {
             for (int kind = 0; kind < GM_MODIFICATION_KINDS; ++kind) {
                 judge_modification(conf, usual, gear, place, kind);

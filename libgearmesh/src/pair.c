@@ -715,8 +715,8 @@ int gm_pair_init(gm_pair *pair, const gm_pair_params *params) {
 static double root_form_roll_length(const gm_pair *pair, const gm_pair_params *params,
                                     enum gm_role role) {
     const gear_params p = params_of(params, role);
-    const gm_gear *gear = gmi_gear_of(pair, role);
-    const gm_gear *mate = gmi_gear_of(pair, mate_of(role));
+    const gm_gear *gear = gmi_gear_of(pair, role == GM_WHEEL);
+    const gm_gear *mate = gmi_gear_of(pair, role == GM_PINION);
 
     /* Depth below the reference circle. A rack of which nothing is said reaches a little deeper than the mate's tip. */
     const int rack_given = !isnan(p.rack_dedendum) || !isnan(p.rack_fillet_radius);
@@ -751,7 +751,7 @@ static int warnings_of_gear(const gm_pair *pair, const gm_pair_params *params, e
                       GM_WARN_WHEEL_TIP_ALTERATION},
     };
     const gear_params p = params_of(params, role);
-    const gm_gear *gear = gmi_gear_of(pair, role);
+    const gm_gear *gear = gmi_gear_of(pair, role == GM_WHEEL);
     const gear_warnings *flag = &flags[role];
     int warnings = 0;
 

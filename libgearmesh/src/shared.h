@@ -24,9 +24,9 @@
 /* Of one designed or scattered deviation of a flank (m); what is more is a slip of the unit. */
 #define GMI_LARGEST_AMOUNT 0.01
 
-/* The gear of a pair in a role. */
-static inline const gm_gear *gmi_gear_of(const gm_pair *pair, enum gm_role role) {
-    return role == GM_PINION ? &pair->pinion : &pair->wheel;
+/* One gear of a pair: the pinion for 0, else the wheel. */
+static inline const gm_gear *gmi_gear_of(const gm_pair *pair, int wheel) {
+    return wheel ? &pair->wheel : &pair->pinion;
 }
 
 /*
