@@ -176,19 +176,51 @@ static void spur_wrench_acts_at_mid_face(void) {
     GM_ASSERT_REL(w.pinion_moment[1], pair.face_width / 2 * w.pinion_force[0], 1e-13);
 }
 
-/* A wider pinion that begins earlier moves z = 0 away from the common face, and with it the point of the moments. */
+enum { FACE_MM = 20, BEGIN_MM = 2, WIDE_MM = FACE_MM + 2 * BEGIN_MM, PROFILE_NODES = 4 };
+
+/* One table for all teeth and both sides, in static memory; rows of PROFILE_NODES. */
+static gm_flanks *flanks_of(int place, int teeth, int face_nodes, const double *values) {
+    static double memory[3][2000];
+    const gm_flanks_params sizes = {teeth, 1,          face_nodes,   PROFILE_NODES,
+                                    1,     face_nodes, PROFILE_NODES};
+    gm_flanks *flanks;
+    GM_ASSERT_INT(gm_flanks_init(&flanks, &sizes, memory[place], sizeof memory[place]), GM_OK);
+    for (int side = GM_DRIVE; side <= GM_COAST; ++side) {
+        GM_ASSERT_INT(gm_flanks_set_table(flanks, side, GM_ALL_TEETH, values, 1.0), GM_OK);
+    }
+    return flanks;
+}
+
+/*
+ * A wider pinion that begins earlier moves z = 0 away from the common face, and with it the point of the moments. Its
+ * table has a row per mm, so that the narrow pinion has rows of it; the wheel's has one per 2 mm.
+ */
 static void the_common_face_may_begin_later(void) {
     gm_pair_params params = reference_params((double)NAN);
-    const double begin = 2e-3;
-    params.wheel_face_width = 20e-3;
-    params.pinion_face_width = 20e-3 + 2.0 * begin;
+    const double begin = BEGIN_MM * 1e-3;
+    params.wheel_face_width = FACE_MM * 1e-3;
+    params.pinion_face_width = WIDE_MM * 1e-3;
     const gm_pair wide = make_pair(&params);
-    params.pinion_face_width = 20e-3;
+    params.pinion_face_width = FACE_MM * 1e-3;
     const gm_pair narrow = make_pair(&params);
     GM_ASSERT_ABS(wide.face_start, begin, 1e-17);
     const double turned = begin * tan(narrow.base_helix_angle);
-    for (int i = 0; i < 20; ++i) {
+    uint64_t seed = UINT64_C(46);
+    double values[(WIDE_MM + 1) * PROFILE_NODES], wheel_values[(FACE_MM / 2 + 1) * PROFILE_NODES];
+    for (int k = 0; k < (WIDE_MM + 1) * PROFILE_NODES; ++k) {
+        values[k] = gm_test_uniform(&seed, -3e-6, 3e-6);
+    }
+    for (int k = 0; k < (FACE_MM / 2 + 1) * PROFILE_NODES; ++k) {
+        wheel_values[k] = gm_test_uniform(&seed, -3e-6, 3e-6);
+    }
+    const gm_flanks *wide_flanks = flanks_of(0, 45, WIDE_MM + 1, values);
+    const gm_flanks *narrow_flanks =
+        flanks_of(1, 45, FACE_MM + 1, values + BEGIN_MM * PROFILE_NODES);
+    const gm_flanks *wheel_flanks = flanks_of(2, 41, FACE_MM / 2 + 1, wheel_values);
+    for (int i = 0; i < 80; ++i) {
         gm_test_context("position %d", i);
+        const int with_pinion = i / 20 % 2, with_wheel = i / 40;
+        const gm_flanks *wheel = with_wheel ? wheel_flanks : NULL;
         gm_position of_wide, of_narrow;
         gm_wrench got, same;
         const double angle = 0.07 * i;
@@ -197,8 +229,12 @@ static void the_common_face_may_begin_later(void) {
         GM_ASSERT_INT(gm_position_from_pinion_angle(
                           &narrow, angle + turned / narrow.pinion.base_radius, x, 0.0, &of_narrow),
                       GM_OK);
-        GM_ASSERT_INT(wrench_3d_at(&wide, NULL, NULL, &of_wide, 1e8, 0.0, &got), GM_OK);
-        GM_ASSERT_INT(wrench_3d_at(&narrow, NULL, NULL, &of_narrow, 1e8, 0.0, &same), GM_OK);
+        GM_ASSERT_INT(
+            wrench_3d_at(&wide, with_pinion ? wide_flanks : NULL, wheel, &of_wide, 1e8, 0.0, &got),
+            GM_OK);
+        GM_ASSERT_INT(wrench_3d_at(&narrow, with_pinion ? narrow_flanks : NULL, wheel, &of_narrow,
+                                   1e8, 0.0, &same),
+                      GM_OK);
         /* About a point that lies `begin` lower: plus begin e_z cross force. */
         const double on_wheel[3] = {same.wheel_moment[0] - begin * same.wheel_force[1],
                                     same.wheel_moment[1] + begin * same.wheel_force[0],
