@@ -343,6 +343,41 @@ static void a_load_below_the_largest_sum_is_carried(void) {
     GM_ASSERT(falling > 100);
 }
 
+/* The spring of the simple model carries any torque: it has no tooth to skip. Only numbers end. */
+static void the_simple_model_carries_what_can_be_written(void) {
+    const gm_pair pair = reference_pair(REFERENCE_FACE_WIDTH);
+    gm_mesh_params params;
+    gm_mesh_params_default(&params);
+    params.model = GM_MODEL_SIMPLE;
+    params.stiffness = 1e-10;
+    params.simple_stiffness = 1e-10;
+    plain_mesh room;
+    gm_mesh *mesh;
+    GM_ASSERT_INT(gm_mesh_init(&mesh, &params, &pair, NULL, NULL, room.memory, sizeof room.memory),
+                  GM_OK);
+
+    static const double torques[] = {1e-15, 1.0, 1e290, 1e300, 1e307, 1.7e308};
+    for (size_t k = 0; k < sizeof torques / sizeof torques[0]; k++) {
+        for (int sign = -1; sign <= 1; sign += 2) {
+            gm_test_context("torque %g", sign * torques[k]);
+            double x = 0.0;
+            gm_mesh_result r;
+            const int status =
+                gm_static_equilibrium(mesh, 0.1, sign * torques[k], NAN, NULL, &x, &r);
+            const double compression = torques[k] / pair.wheel.base_radius / params.stiffness;
+            if (isfinite(compression)) {
+                GM_ASSERT_INT(status, GM_OK);
+                GM_ASSERT_REL(x, sign * (0.5 * pair.backlash + compression), 1e-14);
+                GM_ASSERT_REL(r.force * pair.wheel.base_radius, sign * torques[k], 1e-9);
+            } else {
+                GM_ASSERT_INT(status, GM_NO_EQUILIBRIUM);
+                GM_ASSERT_NAN(x);
+                GM_ASSERT_NAN(r.force);
+            }
+        }
+    }
+}
+
 static void equilibrium_refuses_what_it_must(void) {
     const gm_pair pair = reference_pair(REFERENCE_FACE_WIDTH);
     double x = 0.0;
@@ -776,6 +811,7 @@ int main(int argc, char **argv) {
         GM_TEST(too_much_torque_has_no_equilibrium),
         GM_TEST(loads_are_carried_up_to_half_a_base_pitch),
         GM_TEST(a_load_below_the_largest_sum_is_carried),
+        GM_TEST(the_simple_model_carries_what_can_be_written),
         GM_TEST(equilibrium_refuses_what_it_must),
         GM_TEST(bisection_of_the_sum_gives_the_same),
         GM_TEST(no_torque_is_carried_where_both_sides_touch),

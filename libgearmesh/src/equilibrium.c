@@ -229,7 +229,10 @@ static int find(const problem *p, double guess, double *found, gm_mesh_result *r
     if (p->mesh->model == GM_MODEL_SIMPLE) {
         const int status = find_simple(p, found);
         (void)residual(p, *found, result);
-        return status;
+
+        /* The spring has no end, but numbers have. */
+        const int is_number = gmi_is_finite(*found) && gmi_is_finite(result->force);
+        return status == GM_OK && !is_number ? GM_NO_EQUILIBRIUM : status;
     }
     return p->target > 0.0 ? find_loaded(p, guess, found, result)
                            : find_unloaded(p, guess, found, result);

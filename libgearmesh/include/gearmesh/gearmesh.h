@@ -865,7 +865,8 @@ GM_API double gm_mesh_touching_stiffness(const gm_mesh *mesh, const gm_mesh_resu
  * @param[out]    offset        x; the transmission error is -x (m)
  * @param[out]    result        there, with GM_WANT_DERIVATIVES; may be NULL
  * @return GM_OK, GM_ERR_NULL, GM_ERR_PARAMETER (torque), GM_STATE_NOT_FINITE, GM_STATE_OUT_OF_RANGE,
- *         GM_NO_EQUILIBRIUM, GM_UNDETERMINED (no torque within the backlash)
+ *         GM_NO_EQUILIBRIUM (simple model: x or F beyond the range of double), GM_UNDETERMINED (no torque within the
+ *         backlash)
  *
  * Accuracy: x to 1e-15 of the centre distance. Cost: some 8 evaluations with derivatives, 4 from a good guess.
  */
