@@ -7,7 +7,6 @@ Results of gearsim in HDF5, read by h5py: the same as in CSV, whole or cut short
     test_gearsim_hdf5.py GEARSIM [-v] [name of a test]...
 """
 import os
-import resource
 import signal
 import subprocess
 import sys
@@ -24,6 +23,7 @@ program.require("h5py")
 import h5py  # noqa: E402
 
 import test_gearsim_runs as runs  # noqa: E402
+import uncounted  # noqa: E402
 
 BLOCK_ROWS = 4096
 NOISY = ["load.noise_amplitude_Nm=10", "output.oversampling=1"]
@@ -119,7 +119,7 @@ class Ends(runs.Case):
     def test_full_disk(self):
         """A limit on the size of a file stands for it."""
         result = self.gearsim(self.ENDLESS, "--output", "run.h5",
-                              preexec_fn=lambda: resource.setrlimit(resource.RLIMIT_FSIZE, (2000000, 2000000)))
+                              preexec_fn=uncounted.limit_files(2000000))
         self.assertEqual(result.returncode, 1, result.stderr)
         self.assertIn("run.h5.part: File too large", result.stderr)
         self.assertIn("the disk took no more at t = ", result.stderr)
@@ -129,7 +129,7 @@ class Ends(runs.Case):
 
     def test_disk_full_from_the_start_is_told_at_once(self):
         result = self.gearsim(self.ENDLESS, "--output", "run.h5",
-                              preexec_fn=lambda: resource.setrlimit(resource.RLIMIT_FSIZE, (3000, 3000)))
+                              preexec_fn=uncounted.limit_files(3000))
         self.assertEqual(result.returncode, 1, result.stderr)
         self.assertIn("run.h5.part: File too large", result.stderr)
         self.assertEqual(self.text("run.h5"), runs.OLD_RESULT)

@@ -11,7 +11,6 @@ import math
 import os
 import pty
 import re
-import resource
 import signal
 import statistics
 import subprocess
@@ -20,6 +19,10 @@ import tempfile
 import time
 import unittest
 from random import Random
+
+sys.dont_write_bytecode = True
+
+import uncounted  # noqa: E402
 
 GEARSIM = os.environ.get("GEARSIM", "gearsim")
 OLD_RESULT = "an older result\n"
@@ -639,7 +642,7 @@ class Ends(Case):
         """A limit on the size of a file stands for it. The mark finds its place wherever a row ends."""
         for size in range(300000, 300160, 20):
             result = self.gearsim(self.ENDLESS, "--output", "run.csv",
-                                  preexec_fn=lambda: resource.setrlimit(resource.RLIMIT_FSIZE, (size, size)))
+                                  preexec_fn=uncounted.limit_files(size))
             self.assertEqual(result.returncode, 1, result.stderr)
             self.assertIn("run.csv.part: File too large", result.stderr)
             self.assertGreater(self.assert_part_has_whole_lines("File too large$"), 1000)
@@ -648,7 +651,7 @@ class Ends(Case):
 
     def test_full_disk_static(self):
         result = self.gearsim(["analysis.type=static", "analysis.positions=20000"], "--output", "run.csv",
-                              preexec_fn=lambda: resource.setrlimit(resource.RLIMIT_FSIZE, (300000, 300000)))
+                              preexec_fn=uncounted.limit_files(300000))
         self.assertEqual(result.returncode, 1, result.stderr)
         self.assertEqual(self.text("run.csv"), OLD_RESULT)
         self.assertTrue(self.text("run.csv.part").endswith("\n"))

@@ -9,7 +9,6 @@ What becomes of results: two runs with one output, links, signals, closed descri
 import fcntl
 import os
 import re
-import resource
 import signal
 import stat
 import subprocess
@@ -17,6 +16,10 @@ import sys
 import tempfile
 import time
 import unittest
+
+sys.dont_write_bytecode = True
+
+import uncounted  # noqa: E402
 
 try:
     import h5py
@@ -60,6 +63,7 @@ SIGNALS = (signal.SIGINT, signal.SIGTERM, signal.SIGHUP, signal.SIGXCPU, signal.
 
 def restore_signals():
     """In the child: a shell starts background jobs with SIGINT ignored, and the programs would leave it so."""
+    uncounted.uncounted()
     for number in SIGNALS:
         signal.signal(number, signal.SIG_DFL)
 
@@ -301,6 +305,7 @@ class Links(Case):
 class Descriptors(Case):
     def closed(self, command, *descriptors):
         def close():
+            uncounted.uncounted()
             for descriptor in descriptors:
                 os.close(descriptor)
 
@@ -390,7 +395,7 @@ class Signals(Case):
 
 class Limits(Case):
     def limited(self, command, size):
-        return self.call(command, preexec_fn=lambda: resource.setrlimit(resource.RLIMIT_FSIZE, (size, size)))
+        return self.call(command, preexec_fn=uncounted.limit_files(size))
 
     def test_a_limit_on_file_sizes_is_a_message(self):
         self.accepted(self.flanks("wf.csv", "wp.csv"))
