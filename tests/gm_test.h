@@ -27,6 +27,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "shared.h"
+
 #if defined(__GNUC__)
 #define GM_TEST_PRINTF(text, first) __attribute__((format(printf, text, first)))
 #define GM_TEST_UNUSED              __attribute__((unused))
@@ -109,21 +111,16 @@ GM_TEST_UNUSED static int gm_test_string(const char *got, const char *expected, 
                    (double)(got))
 
 /* ---------------------------------------------------------------------------------------------
- * Random numbers (splitmix64): the same sequence from the same seed on every machine.
+ * Random numbers: the same sequence from the same seed on every machine.
  * ------------------------------------------------------------------------------------------- */
 
 GM_TEST_UNUSED static uint64_t gm_test_bits(uint64_t *seed) {
-    *seed += UINT64_C(0x9E3779B97F4A7C15);
-    uint64_t bits = *seed;
-    bits = (bits ^ (bits >> 30)) * UINT64_C(0xBF58476D1CE4E5B9);
-    bits = (bits ^ (bits >> 27)) * UINT64_C(0x94D049BB133111EB);
-    return bits ^ (bits >> 31);
+    return gmi_random_bits(seed);
 }
 
 /** Uniform in [low, high). */
 GM_TEST_UNUSED static double gm_test_uniform(uint64_t *seed, double low, double high) {
-    const double unit = (double)(gm_test_bits(seed) >> 11) * 0x1p-53;
-    return low + (high - low) * unit;
+    return low + (high - low) * gmi_random_unit(seed);
 }
 
 /** Uniform integer in low .. high, both included. */

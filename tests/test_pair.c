@@ -9,15 +9,29 @@
 static const double degree = 0.017453292519943295;
 
 /** All doubles of a pair. */
-enum { GEAR_DOUBLES = 19, OWN_DOUBLES = 28, PAIR_DOUBLES = 2 * GEAR_DOUBLES + OWN_DOUBLES };
+enum { GEAR_DOUBLES = 20, OWN_DOUBLES = 29, PAIR_DOUBLES = 2 * GEAR_DOUBLES + OWN_DOUBLES };
 
 static void list_gear(const gm_gear *g, double *out) {
-    const double values[GEAR_DOUBLES] = {
-        g->profile_shift,      g->reference_radius, g->base_radius,          g->tip_radius,
-        g->start_radius,       g->normal_thickness, g->base_half_thickness,  g->start_roll_length,
-        g->tip_roll_length,    g->pitch_angle,      g->rack_addendum,        g->rack_dedendum,
-        g->rack_fillet_radius, g->tip_alteration,   g->root_radius,          g->tip_thickness,
-        g->face_width,         g->face_start,       g->pitch_angle_remainder};
+    const double values[GEAR_DOUBLES] = {g->profile_shift,
+                                         g->reference_radius,
+                                         g->base_radius,
+                                         g->tip_radius,
+                                         g->start_radius,
+                                         g->normal_thickness,
+                                         g->base_half_thickness,
+                                         g->start_roll_length,
+                                         g->tip_roll_length,
+                                         g->pitch_angle,
+                                         g->rack_addendum,
+                                         g->rack_dedendum,
+                                         g->rack_fillet_radius,
+                                         g->tip_alteration,
+                                         g->root_radius,
+                                         g->tip_thickness,
+                                         g->face_width,
+                                         g->face_start,
+                                         g->pitch_angle_remainder,
+                                         g->normal_tip_thickness};
     memcpy(out, values, sizeof values);
 }
 
@@ -51,7 +65,8 @@ static void list_pair(const gm_pair *p, double out[PAIR_DOUBLES]) {
                                         p->pinion_working_pitch_radius,
                                         p->wheel_working_pitch_radius,
                                         p->pinion_tip_clearance,
-                                        p->wheel_tip_clearance};
+                                        p->wheel_tip_clearance,
+                                        p->hunting_passes};
     memcpy(out + 2 * GEAR_DOUBLES, values, sizeof values);
 }
 
@@ -1240,10 +1255,37 @@ static void the_least_tip_land_is_a_fifth_of_a_module(void) {
             gm_pair_params params = reference_params(REFERENCE_FACE_WIDTH);
             *(wheel ? &params.wheel_tip_radius : &params.pinion_tip_radius) =
                 low + (above ? 1e-8 : -1e-8);
+            const gm_pair at_limit = make_pair(&params);
+            const gm_gear *thin = wheel ? &at_limit.wheel : &at_limit.pinion;
+            GM_ASSERT_REL(thin->normal_tip_thickness, 0.2 * p.normal_module, 1e-3);
             const int flag = wheel ? GM_WARN_WHEEL_TIP_LAND : GM_WARN_PINION_TIP_LAND;
             GM_ASSERT_INT(warnings_of(&params) & (GM_WARN_WHEEL_TIP_LAND | GM_WARN_PINION_TIP_LAND),
                           above ? flag : 0);
         }
+    }
+}
+
+/* The same two teeth meet again after the first number of passes that both numbers of teeth divide. */
+static void the_hunting_period_is_the_least_that_both_gears_divide(void) {
+    static const int teeth[][2] = {{45, 41}, {20, 20}, {20, 40},      {40, 20},
+                                   {24, 36}, {3, 97},  {99990, 99999}};
+    for (size_t k = 0; k < sizeof teeth / sizeof teeth[0]; k++) {
+        gm_test_context("%d/%d", teeth[k][0], teeth[k][1]);
+        gm_pair_params params;
+        gm_pair_params_default(&params);
+        params.pinion_teeth = teeth[k][0];
+        params.wheel_teeth = teeth[k][1];
+        params.normal_module = 2e-3;
+        params.normal_pressure_angle = 20.0 * degree;
+        params.face_width = 20e-3;
+        params.center_distance = 1e-3 * (teeth[k][0] + teeth[k][1]);
+        const gm_pair pair = make_pair(&params);
+
+        long long passes = teeth[k][0];
+        while (passes % teeth[k][1] != 0) {
+            passes += teeth[k][0];
+        }
+        GM_ASSERT_ABS(pair.hunting_passes, (double)passes, 0.0);
     }
 }
 
@@ -1425,6 +1467,7 @@ int main(int argc, char **argv) {
         GM_TEST(few_teeth_without_shift_are_undercut),
         GM_TEST(thin_and_pointed_tips_are_warned_of),
         GM_TEST(the_least_tip_land_is_a_fifth_of_a_module),
+        GM_TEST(the_hunting_period_is_the_least_that_both_gears_divide),
         GM_TEST(a_start_below_the_root_form_is_warned_of),
         GM_TEST(the_rack_that_is_given_cuts_the_root),
         GM_TEST(the_assumed_rack_suits_the_mates_tip),

@@ -87,16 +87,9 @@ int drawing_derive(gm_pair *pair, const config *conf) {
  * Pairs to be warned of
  * ------------------------------------------------------------------------------------------- */
 
-/* Normal tooth thickness at the tip circle, in modules; negative = the flanks cross below it. */
-static double tip_land(const gm_gear *gear, const gm_pair *pair) {
-    const double helix = atan(gear->tip_radius / gear->reference_radius * tan(pair->helix_angle));
-
-    return gear->tip_thickness * cos(helix) / pair->normal_module;
-}
-
 static void warn_of_tip(const config *conf, const gm_pair *pair, const gm_gear *gear,
                         const char *key, const char *name) {
-    const double land = tip_land(gear, pair);
+    const double land = gear->normal_tip_thickness / pair->normal_module;
 
     if (land <= 0) {
         config_warn(conf, key,

@@ -13,25 +13,13 @@
 
 static const double two_pi = 6.283185307179586;
 
-static int greatest_common_divisor(int a, int b) {
-    while (b != 0) {
-        const int rest = a % b;
-        a = b;
-        b = rest;
-    }
-    return a;
-}
-
-/* Tooth passes in the period: the hunting period is over when the first pair of teeth meets again. */
-static double tooth_passes(const config *conf) {
-    const int pinion = conf->gears.pinion_teeth;
-    const int wheel = conf->gears.wheel_teeth;
-
+/* Tooth passes in the period. */
+static double tooth_passes(const config *conf, const gm_pair *pair) {
     switch (conf->period) {
     case PERIOD_PINION:
-        return pinion;
+        return pair->pinion.teeth;
     case PERIOD_HUNTING:
-        return (double)pinion * (wheel / greatest_common_divisor(pinion, wheel));
+        return pair->hunting_passes;
     case PERIOD_MESH:
     default:
         return 1.0;
@@ -39,9 +27,9 @@ static double tooth_passes(const config *conf) {
 }
 
 /* From a fraction of whole numbers, so that no error adds up along the period. */
-static double pinion_angle(const config *conf, int position) {
-    return two_pi * (tooth_passes(conf) * position) /
-           ((double)conf->positions * conf->gears.pinion_teeth);
+static double pinion_angle(const config *conf, const gm_pair *pair, int position) {
+    return two_pi * (tooth_passes(conf, pair) * position) /
+           ((double)conf->positions * pair->pinion.teeth);
 }
 
 /* The ends exactly as given. */
@@ -125,7 +113,7 @@ static int write_period(const config *conf, const gear_mesh *gears, double load,
     sweep before = {load, 0.0, (double)NAN, 0.0};
 
     for (int position = 0; position < conf->positions; ++position) {
-        const double angle = pinion_angle(conf, position);
+        const double angle = pinion_angle(conf, &gears->pair, position);
         int status;
 
         if (interrupt_requested()) {

@@ -50,13 +50,13 @@ static int period_of(const gmi_tables *tables, int teeth) {
     return 1;
 }
 
-static int greatest_common_divisor(int a, int b) {
-    while (b != 0) {
-        const int rest = a % b;
-        a = b;
-        b = rest;
+/* Greatest common divisor of both periods, each of which is 1 or the number of teeth. */
+static int common_divisor(const gm_cache *cache) {
+    if (cache->pinion_period == 1 || cache->wheel_period == 1) {
+        return 1;
     }
-    return a;
+    const double all = (double)cache->pinion_period * cache->wheel_period;
+    return (int)(all / cache->pair->hunting_passes);
 }
 
 /* Number of the tooth pass, -1 if these two teeth never meet in the pair as assembled. */
@@ -205,7 +205,7 @@ static int describe(gm_cache *cache, const gm_cache_params *params, const gm_mes
     cache->side = params->side;
     cache->pinion_period = period_of(side->pinion, pair->pinion.teeth);
     cache->wheel_period = period_of(side->wheel, pair->wheel.teeth);
-    cache->common = greatest_common_divisor(cache->pinion_period, cache->wheel_period);
+    cache->common = common_divisor(cache);
 
     /* The grid over phase and delta. */
     cache->depth = params->depth;

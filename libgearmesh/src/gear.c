@@ -63,9 +63,14 @@ void gmi_gear_set_thickness(gm_gear *gear, double normal_thickness, double helix
                                 gmi_involute(transverse_pressure_angle);
 }
 
-/* s_ta = 2 r_a (psi_b - inv(alpha_a)) with tan(alpha_a) = rho_a / r_b [ISO21771]. */
-void gmi_gear_set_tip_thickness(gm_gear *gear) {
+/*
+ * s_ta = 2 r_a (psi_b - inv(alpha_a)) with tan(alpha_a) = rho_a / r_b; s_na = s_ta cos(beta_a) with
+ * tan(beta_a) = tan(beta) r_a / r, as the lead is the same on every cylinder [ISO21771].
+ */
+void gmi_gear_set_tip_thickness(gm_gear *gear, double helix_angle) {
     const double tip_pressure_angle = atan2(gear->tip_roll_length, gear->base_radius);
+    const double tip_helix = atan(tan(helix_angle) * gear->tip_radius / gear->reference_radius);
     gear->tip_thickness =
         2.0 * gear->tip_radius * (gear->base_half_thickness - gmi_involute(tip_pressure_angle));
+    gear->normal_tip_thickness = gear->tip_thickness * cos(tip_helix);
 }

@@ -69,7 +69,7 @@ void gmi_gear_set_start(gm_gear *gear, double start_radius);
 void gmi_gear_set_start_roll_length(gm_gear *gear, double start_roll_length);
 void gmi_gear_set_thickness(gm_gear *gear, double normal_thickness, double helix_angle,
                             double transverse_pressure_angle);
-void gmi_gear_set_tip_thickness(gm_gear *gear);
+void gmi_gear_set_tip_thickness(gm_gear *gear, double helix_angle);
 
 /* meshing.c: two gears at a centre distance. */
 

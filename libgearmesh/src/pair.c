@@ -293,6 +293,18 @@ static problem derive_faces(gm_pair *pair, const gm_pair_params *p) {
     return check_common_width(pair, p);
 }
 
+/* Least common multiple by Euclid's algorithm; exact, as 1e5 teeth each give 1e10 at most. */
+static double hunting_passes(int pinion_teeth, int wheel_teeth) {
+    int divisor = pinion_teeth;
+    int rest = wheel_teeth;
+    while (rest != 0) {
+        const int next = divisor % rest;
+        divisor = rest;
+        rest = next;
+    }
+    return (double)pinion_teeth * (wheel_teeth / divisor);
+}
+
 /* Transverse section, base circles and base helix: what no mate and no pose changes. */
 static void derive_sections(gm_pair *pair, const gm_pair_params *p) {
     const double cos_helix = cos(p->helix_angle);
@@ -306,6 +318,7 @@ static void derive_sections(gm_pair *pair, const gm_pair_params *p) {
 
     gmi_gear_init(&pair->pinion, p->pinion_teeth, pair->transverse_module, alpha_t);
     gmi_gear_init(&pair->wheel, p->wheel_teeth, pair->transverse_module, alpha_t);
+    pair->hunting_passes = hunting_passes(p->pinion_teeth, p->wheel_teeth);
     pair->transverse_base_pitch = GMI_PI * pair->transverse_module * cos(alpha_t);
     pair->reference_center_distance = pair->pinion.reference_radius + pair->wheel.reference_radius;
 
@@ -467,7 +480,7 @@ static problem derive_tip(gm_pair *pair, const gm_pair_params *params, enum gm_r
     gmi_gear_set_tip(gear,
                      or_else(p.tip_radius, gear->reference_radius + pair->normal_module * height),
                      pair->normal_module);
-    gmi_gear_set_tip_thickness(gear);
+    gmi_gear_set_tip_thickness(gear, pair->helix_angle);
     if (gear->tip_roll_length > 0.0) {
         return no_problem;
     }
@@ -632,6 +645,7 @@ static gm_gear gear_nan(void) {
         .normal_thickness = nan,
         .base_half_thickness = nan,
         .tip_thickness = nan,
+        .normal_tip_thickness = nan,
         .start_roll_length = nan,
         .tip_roll_length = nan,
         .pitch_angle = nan,
@@ -659,6 +673,7 @@ static gm_pair pair_nan(void) {
         .face_start = nan,
         .face_advance = nan,
         .normal_to_transverse = nan,
+        .hunting_passes = nan,
         .center_distance = nan,
         .reference_center_distance = nan,
         .working_pressure_angle = nan,
@@ -729,13 +744,6 @@ static double root_form_roll_length(const gm_pair *pair, const gm_pair_params *p
     return gear->reference_radius * sin_transverse - depth * pair->normal_module / sin_transverse;
 }
 
-/* s_na = s_ta cos(beta_a), the helix angle growing with the radius. */
-static double normal_tip_land(const gm_pair *pair, const gm_gear *gear) {
-    const double tip_helix =
-        atan(tan(pair->helix_angle) * gear->tip_radius / gear->reference_radius);
-    return gear->tip_thickness * cos(tip_helix);
-}
-
 /* The warnings that both gears share, as one gear has them. */
 typedef struct gear_warnings {
     int undercut, tip_land, root_form, start_radius, tip_clearance, tip_alteration;
@@ -770,7 +778,7 @@ static int warnings_of_gear(const gm_pair *pair, const gm_pair_params *params, e
     /* Tip: its thickness, and its clearance to the mate's root. */
     const double clearance =
         role == GM_PINION ? pair->pinion_tip_clearance : pair->wheel_tip_clearance;
-    if (normal_tip_land(pair, gear) < SMALLEST_TIP_LAND * pair->normal_module) {
+    if (gear->normal_tip_thickness < SMALLEST_TIP_LAND * pair->normal_module) {
         warnings |= flag->tip_land;
     }
     if (clearance < SMALLEST_TIP_CLEARANCE * pair->normal_module) {

@@ -6,6 +6,8 @@
 #include <stdio.h>
 #include <stdlib.h>
 
+#include "shared.h"
+
 static const double degree = 0.017453292519943295;
 static const double two_pi = 6.283185307179586;
 static const double micro = 1e-6;
@@ -13,20 +15,11 @@ static const double micro = 1e-6;
 /* Of the reference pair. The relatives get the same transverse contact ratio by their tips. */
 static const double contact_ratio = 2.123601;
 
-double bench_uniform(unsigned long long *seed) {
-    *seed += 0x9E3779B97F4A7C15ULL;
-    unsigned long long bits = *seed;
-    bits = (bits ^ (bits >> 30)) * 0xBF58476D1CE4E5B9ULL;
-    bits = (bits ^ (bits >> 27)) * 0x94D049BB133111EBULL;
-    bits ^= bits >> 31;
-    return (double)(bits >> 11) * 0x1p-53;
-}
-
 /* Twelve uniform numbers less six: near enough to normal, and without logarithms. */
-static double normal(unsigned long long *seed) {
+static double normal(uint64_t *seed) {
     double sum = -6.0;
     for (int k = 0; k < 12; ++k) {
-        sum += bench_uniform(seed);
+        sum += gmi_random_unit(seed);
     }
     return sum;
 }
@@ -102,17 +95,16 @@ static void make_pair(gm_pair *pair, const bench_params *wanted) {
  * Flanks: the recipe of data/paper/README.md
  * ------------------------------------------------------------------------------------------- */
 
-static void make_table(double *values, int face_nodes, int profile_nodes,
-                       unsigned long long *seed) {
+static void make_table(double *values, int face_nodes, int profile_nodes, uint64_t *seed) {
     const double slope_profile = 1.0 * normal(seed), slope_face = 2.0 * normal(seed);
     const double crown_profile = 1.0 * (1.0 + 0.3 * normal(seed));
     const double crown_face = 3.0 * (1.0 + 0.3 * normal(seed));
-    const double wave_profile = 0.4 * (0.5 + bench_uniform(seed));
-    const double wave_face = 0.4 * (0.5 + bench_uniform(seed));
-    const double waves_profile = 1.0 + 2.0 * bench_uniform(seed);
-    const double waves_face = 1.0 + 2.0 * bench_uniform(seed);
-    const double start_profile = two_pi * bench_uniform(seed);
-    const double start_face = two_pi * bench_uniform(seed);
+    const double wave_profile = 0.4 * (0.5 + gmi_random_unit(seed));
+    const double wave_face = 0.4 * (0.5 + gmi_random_unit(seed));
+    const double waves_profile = 1.0 + 2.0 * gmi_random_unit(seed);
+    const double waves_face = 1.0 + 2.0 * gmi_random_unit(seed);
+    const double start_profile = two_pi * gmi_random_unit(seed);
+    const double start_face = two_pi * gmi_random_unit(seed);
     const double foot = 6.0 * normal(seed);
 
     double *along_face = allocate((size_t)face_nodes * sizeof *along_face);
@@ -129,7 +121,7 @@ static void make_table(double *values, int face_nodes, int profile_nodes,
             wave_profile * sin(two_pi * waves_profile * t2 + start_profile) +
             foot * fmax(0.0, 1.0 - t2 / 0.35) - 4.0 * tip * tip;
         for (int face = 0; face < face_nodes; ++face) {
-            const double rough = 0.6 * (bench_uniform(seed) - 0.5); /* rms 0.17 */
+            const double rough = 0.6 * (gmi_random_unit(seed) - 0.5); /* rms 0.17 */
             values[face * profile_nodes + profile] =
                 micro * (along_face[face] + along_profile + rough);
         }
@@ -138,7 +130,7 @@ static void make_table(double *values, int face_nodes, int profile_nodes,
 }
 
 static gm_flanks *make_flanks(const gm_pair *pair, int teeth, const bench_params *params,
-                              unsigned long long *seed) {
+                              uint64_t *seed) {
     gm_flanks *flanks;
     const gm_flanks_params sizes = {teeth,
                                     teeth,
@@ -151,7 +143,7 @@ static gm_flanks *make_flanks(const gm_pair *pair, int teeth, const bench_params
     double *values =
         allocate((size_t)params->face_nodes * (size_t)params->profile_nodes * sizeof *values);
     bench_check(gm_flanks_init(&flanks, &sizes, allocate(size), size), "flanks");
-    const double eccentric = two_pi * bench_uniform(seed);
+    const double eccentric = two_pi * gmi_random_unit(seed);
     for (int tooth = 0; tooth < teeth; ++tooth) {
         const double pitch = normal(seed) + 8.0 * sin(two_pi * tooth / teeth + eccentric);
         for (int side = GM_DRIVE; side <= GM_COAST; ++side) {
@@ -294,7 +286,7 @@ static void make_states(bench_gears *gears, const bench_params *params) {
     gears->mean_sum = gears->mean_pieces = gears->mean_lines = 0.0;
     for (int k = 0; k < BENCH_STATES; ++k) {
         const double angle =
-            params->first_angle + bench_uniform(&seed) * two_pi * params->wheel_teeth;
+            params->first_angle + gmi_random_unit(&seed) * two_pi * params->wheel_teeth;
         double offset;
         gm_mesh_result result;
         bench_check(gm_static_equilibrium(gears->mesh, angle, BENCH_TORQUE, (double)NAN, NULL,

@@ -48,9 +48,6 @@ bench_params bench_params_default(void);
 void bench_gears_make(bench_gears *gears, const bench_params *params);
 void bench_gears_free(bench_gears *gears);
 
-/** Uniform in [0, 1), the same on every machine. */
-double bench_uniform(unsigned long long *seed);
-
 /** Ends the program unless the status is GM_OK. */
 void bench_check(int status, const char *what);
 

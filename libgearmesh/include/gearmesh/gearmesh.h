@@ -213,11 +213,12 @@ typedef struct gm_gear {
     double start_radius;     /**< start of the active profile (m) */
     double normal_thickness; /**< s_n at the reference circle, backlash included (m) */
     double base_half_thickness; /**< psi_b, half tooth thickness angle on the base circle (rad) */
-    double tip_thickness;     /**< s_ta, transverse, at the tip circle, backlash included; < 0: the
+    double tip_thickness; /**< s_ta, transverse, at the tip circle, backlash included; < 0: the
                                      flanks cross below it (m) */
-    double start_roll_length; /**< rho at the start radius = r_b chi_start (m) */
-    double tip_roll_length;   /**< rho at the tip radius = r_b chi_end (m) */
-    double pitch_angle;       /**< 2 pi / z, leading part (rad) */
+    double normal_tip_thickness; /**< s_na = s_ta cos(beta_a), in the normal section (m) */
+    double start_roll_length;    /**< rho at the start radius = r_b chi_start (m) */
+    double tip_roll_length;      /**< rho at the tip radius = r_b chi_end (m) */
+    double pitch_angle;          /**< 2 pi / z, leading part (rad) */
     double
         pitch_angle_remainder; /**< 2 pi / z - pitch_angle, so that 1e6 rad cost one rounding (rad) */
     double face_width;         /**< b of this gear (m) */
@@ -246,6 +247,8 @@ typedef struct gm_pair {
                                            of action over the common face, signed (m) */
     double normal_to_transverse; /**< 1 / cos(beta_b): factor from a deviation along the surface
                                            normal to one in the transverse section (1) */
+    double hunting_passes;       /**< tooth passes until the same two teeth meet again: the least
+                                           common multiple of the numbers of teeth (1) */
 
     double center_distance;           /**< d (m) */
     double reference_center_distance; /**< r_p + r_w (m) */
