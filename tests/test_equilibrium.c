@@ -357,7 +357,7 @@ static void the_simple_model_carries_what_can_be_written(void) {
                   GM_OK);
 
     static const double torques[] = {1e-15, 1.0, 1e290, 1e300, 1e307, 1.7e308};
-    for (size_t k = 0; k < sizeof torques / sizeof torques[0]; k++) {
+    for (size_t k = 0; k < sizeof torques / sizeof torques[0]; ++k) {
         for (int sign = -1; sign <= 1; sign += 2) {
             gm_test_context("torque %g", sign * torques[k]);
             double x = 0.0;

@@ -1269,7 +1269,7 @@ static void the_least_tip_land_is_a_fifth_of_a_module(void) {
 static void the_hunting_period_is_the_least_that_both_gears_divide(void) {
     static const int teeth[][2] = {{45, 41}, {20, 20}, {20, 40},      {40, 20},
                                    {24, 36}, {3, 97},  {99990, 99999}};
-    for (size_t k = 0; k < sizeof teeth / sizeof teeth[0]; k++) {
+    for (size_t k = 0; k < sizeof teeth / sizeof teeth[0]; ++k) {
         gm_test_context("%d/%d", teeth[k][0], teeth[k][1]);
         gm_pair_params params;
         gm_pair_params_default(&params);
