@@ -32,6 +32,7 @@ static double any_helix(uint64_t *seed) {
 
 /** Profile shifts and thicknesses in each of the ways that gm_pair_params allows. */
 static void any_thickness(uint64_t *seed, gm_pair_params *params) {
+    /* Shifts without backlash, divided at random; and what turns a shift into a thickness. */
     const double m_n = params->normal_module;
     model_pair zero_backlash;
     model_pair_init(&zero_backlash, params);
@@ -39,6 +40,8 @@ static void any_thickness(uint64_t *seed, gm_pair_params *params) {
     const double x_p = sum / 2 + gm_test_uniform(seed, -0.3, 0.3);
     const double rack = m_n * 1.5707963267948966;
     const double slope = 2.0 * m_n * tan(params->normal_pressure_angle);
+
+    /* All ways to say how thick the teeth are. */
     switch (gm_test_integer(seed, 0, 4)) {
     case 0:
         params->pinion_profile_shift = x_p;

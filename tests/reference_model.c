@@ -204,9 +204,12 @@ static int compare(const void *a, const void *b) {
 /** All t1 in (low, high) where the line crosses a grid line of either table or the edge of a ramp, and the two ends. */
 static int find_breaks(const line *l, long double low, long double high, long double *breaks) {
     int count = 0;
+
+    /* The ends of the line, and for each gear ... */
     breaks[count++] = low;
     breaks[count++] = high;
     for (int g = 0; g < 2; ++g) {
+        /* ... where its ramps begin, ... */
         for (int k = 0; k < l->ramp_count[g]; ++k) {
             const long double first = plane_of(&l->ramp[g][k], 0.0L, profile_position(l, g, 0.0L));
             const long double last = plane_of(&l->ramp[g][k], 1.0L, profile_position(l, g, 1.0L));
@@ -214,6 +217,8 @@ static int find_breaks(const line *l, long double low, long double high, long do
                 breaks[count++] = first / (first - last);
             }
         }
+
+        /* ... where the line crosses the grid of its table. */
         const model_table *table = l->table[g];
         if (table == NULL || table->face_nodes == 0) {
             continue;
@@ -230,6 +235,8 @@ static int find_breaks(const line *l, long double low, long double high, long do
             abort();
         }
     }
+
+    /* Those within the line, in order. */
     int inside = 0;
     for (int i = 0; i < count; ++i) {
         if (breaks[i] >= low && breaks[i] <= high) {
@@ -268,6 +275,8 @@ static void add_piece(const line *l, long double low, long double high, int side
     const long double last = approach_at(l, high);
     const long double c[3] = {first, -3 * first + 4 * middle - last,
                               2 * first - 4 * middle + 2 * last};
+
+    /* The piece is cut where that parabola passes through 0, by the formula that loses no digits. */
     long double cuts[4] = {0.0L, 1.0L, 1.0L, 1.0L};
     int count = 1;
     const long double discriminant = c[1] * c[1] - 4 * c[2] * c[0];
@@ -281,6 +290,8 @@ static void add_piece(const line *l, long double low, long double high, int side
             }
         }
     }
+
+    /* What is above 0 between two cuts touches. */
     qsort(cuts, (size_t)count, sizeof *cuts, compare);
     for (int i = 0; i < count; ++i) {
         const long double u_a = cuts[i];

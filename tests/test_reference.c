@@ -216,6 +216,8 @@ static case_record *read_case(FILE *file) {
     next_word(file, c->id);
     next_word(file, c->group);
     gm_pair_params_default(&c->params);
+
+    /* Each record is a word and its numbers, in any order up to `end`. */
     while (next_word(file, word) && strcmp(word, "end") != 0) {
         if (strcmp(word, "teeth") == 0) {
             c->params.pinion_teeth = next_integer(file, 3, 100000);
@@ -251,6 +253,7 @@ static case_record *read_case(FILE *file) {
             stop_reading("unknown record", word);
         }
     }
+
     if (strcmp(word, "end") != 0) {
         stop_reading("the file ends inside a case", c->id);
     }
@@ -326,6 +329,8 @@ static int prepare(prepared *p, const case_record *c) {
     if (!GM_ASSERT_INT(gm_pair_init(&p->pair, &c->params), GM_OK)) {
         return 0;
     }
+
+    /* The flanks of each gear, with both sides as the case has them. */
     const double factor = c->is_normal ? p->pair.normal_to_transverse : 1.0;
     const int teeth[2] = {c->params.pinion_teeth, c->params.wheel_teeth};
     for (int gear = 0; gear < 2 && c->has_deviation; ++gear) {

@@ -20,12 +20,12 @@ typedef struct dynamic_sample {
     double mean_load;    /* likewise (N m) */
 } dynamic_sample;
 
-/* What a column takes; the more, the dearer. */
+/* What a column takes; the further down, the more time. */
 enum column_need {
     NEEDS_TIME,   /* alone */
     NEEDS_MOTION, /* angles, speeds and x at the time */
     NEEDS_MESH,   /* the penetration */
-    NEEDS_PAIRS   /* and the pairs that touch, which a look-up has to count */
+    NEEDS_PAIRS   /* and the pairs that touch, which a cache has to count */
 };
 
 typedef struct dynamic_column {

@@ -14,7 +14,7 @@
 #include "dynamics.h"
 #include "gear_mesh.h"
 #include "geometry_listing.h"
-#include "lookup.h"
+#include "mesh_cache.h"
 #include "output.h"
 #include "process.h"
 #include "static_columns.h"
@@ -40,7 +40,7 @@ static int perform(enum task task, const config *conf, const gear_mesh *mesh) {
         return EXIT_DONE;
     }
 
-    int status = lookup_check(conf, mesh);
+    int status = mesh_cache_check(conf, mesh);
     if (status == 0) {
         status = check_output(conf);
     }

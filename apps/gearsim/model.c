@@ -121,7 +121,7 @@ static int init_response(gear_model *model) {
 int model_init(gear_model *model, const config *conf, const gear_mesh *gears) {
     model->gears = gears;
     model->noise = NULL;
-    model->lookup = NULL;
+    model->cache = NULL;
     model->mesh = conf->model;
     model->drive = drive_create(conf);
     model->load =
@@ -132,7 +132,7 @@ int model_init(gear_model *model, const config *conf, const gear_mesh *gears) {
     init_flanks(model);
 
     model->natural_frequency = sqrt(gm_mesh_mean_stiffness(gears->prepared) * mobility(model));
-    if (init_response(model) != 0 || lookup_create(&model->lookup, conf, gears) != 0) {
+    if (init_response(model) != 0 || mesh_cache_create(&model->cache, conf, gears) != 0) {
         model_free(model);
         return EXIT_RUN_FAILED;
     }
@@ -141,9 +141,9 @@ int model_init(gear_model *model, const config *conf, const gear_mesh *gears) {
 
 void model_free(gear_model *model) {
     response_free(model->noise);
-    lookup_free(model->lookup, model->gears);
+    mesh_cache_free(model->cache, model->gears);
     model->noise = NULL;
-    model->lookup = NULL;
+    model->cache = NULL;
 }
 
 /* ---------------------------------------------------------------------------------------------

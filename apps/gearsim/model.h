@@ -27,7 +27,7 @@
 #include "drive.h"
 #include "gear_mesh.h"
 #include "load.h"
-#include "lookup.h"
+#include "mesh_cache.h"
 #include "response.h"
 
 /* Places in the state vector. A prescribed speed needs the first two only. */
@@ -54,7 +54,7 @@ typedef struct gear_model {
     double natural_frequency; /* w0 (rad/s) */
     double response_decay;    /* zeta w0 of the response (1/s) */
     response *noise;          /* to the noise; NULL: the load is as it is, and u = x */
-    gm_cache *lookup;         /* that the mesh answers from; NULL: exactly */
+    gm_cache *cache;          /* that the mesh answers from; NULL: exactly */
     int is_ideal[2];          /* [side] neither flank deviates: the gap depends on x alone */
     double reach[2];          /* [side] highest points of both flanks together (m) */
     double slope[2];          /* [side] steepest rise of both along the profile together (m/m) */

@@ -143,6 +143,8 @@ static gm_flanks *make_flanks(const gm_pair *pair, int teeth, const bench_params
     double *values =
         allocate((size_t)params->face_nodes * (size_t)params->profile_nodes * sizeof *values);
     bench_check(gm_flanks_init(&flanks, &sizes, allocate(size), size), "flanks");
+
+    /* Every tooth has tables of its own, and a pitch that scatters about the run-out. */
     const double eccentric = two_pi * gmi_random_unit(seed);
     for (int tooth = 0; tooth < teeth; ++tooth) {
         const double pitch = normal(seed) + 8.0 * sin(two_pi * tooth / teeth + eccentric);
@@ -204,6 +206,8 @@ static gm_flanks *make_relief_flanks(const gm_modifications *reliefs, int in_tab
     if (!in_table) {
         return flanks;
     }
+
+    /* One table of the reliefs for all teeth. */
     double *values = allocate(nodes * sizeof *values);
     for (size_t k = 0; k < nodes; ++k) {
         values[k] = 0.0;
@@ -247,6 +251,8 @@ static double crossings(double origin, double rate, double from, double to) {
 static void count_pieces(bench_gears *gears, const gm_position *position,
                          const bench_params *params) {
     const gm_pair *pair = &gears->pair;
+
+    /* The path of contact in rho_p, and nodes per length on the profile of each gear. */
     const double delta = position->offset - 0.5 * pair->backlash;
     const double reach = pair->line_of_action + delta;
     const double lower = fmax(pair->pinion.start_roll_length, reach - pair->wheel.tip_roll_length);
@@ -256,7 +262,9 @@ static void count_pieces(bench_gears *gears, const gm_position *position,
                                 (pair->pinion.tip_roll_length - pair->pinion.start_roll_length);
     const double wheel_scale =
         (params->profile_nodes - 1) / (pair->wheel.tip_roll_length - pair->wheel.start_roll_length);
+
     for (int k = -20; k <= 20; ++k) {
+        /* The part of line k that lies on the path and on the face. */
         const double origin =
             pair->phase_origin[GM_DRIVE] + position->phase + k * pair->transverse_base_pitch;
         const double at_lower = (lower - origin) / pair->face_advance;
@@ -266,6 +274,8 @@ static void count_pieces(bench_gears *gears, const gm_position *position,
         if (!(from < to)) {
             continue;
         }
+
+        /* It is one piece, and one more for each line of a grid that it crosses. */
         gears->mean_lines += 1.0;
         gears->mean_pieces += 1.0;
         if (params->profile_nodes == 0) {

@@ -147,6 +147,8 @@ static gm_flanks *take_flanks(fuzz_bytes *bytes, int how, int teeth, double m) {
         free(memory);
         return NULL;
     }
+
+    /* Tables and pitch deviations, for sides and teeth that may not exist. */
     for (int calls = fuzz_byte(bytes) % 8; calls > 0; --calls) {
         double values[25];
         for (int k = 0; k < 25; ++k) {
@@ -161,6 +163,8 @@ static gm_flanks *take_flanks(fuzz_bytes *bytes, int how, int teeth, double m) {
         FUZZ_CLAIM(status == GM_OK || status == GM_ERR_TOOTH || status == GM_ERR_MEMORY ||
                    status == GM_ERR_DEVIATION);
     }
+
+    /* Ramps on both sides. */
     for (int side = GM_DRIVE; side <= GM_COAST; ++side) {
         gm_flank_ramp ramps[GM_FLANK_RAMPS_MAX];
         const int count = fuzz_byte(bytes) % (GM_FLANK_RAMPS_MAX + 1);

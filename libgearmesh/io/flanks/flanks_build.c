@@ -44,6 +44,8 @@ void gm_flanks_options_default(gm_flanks_options *options) {
 
 static int check_options(const gm_flanks_options *options, gm_io_error *error) {
     const char *wrong = NULL;
+
+    /* One option at fault is named, the last of them. */
     if (!isfinite(options->scale)) {
         wrong = "the scale must be finite";
     }
@@ -57,6 +59,7 @@ static int check_options(const gm_flanks_options *options, gm_io_error *error) {
     if (!(options->profile_blend >= 0.0) || !isfinite(options->profile_blend)) {
         wrong = "the profile blend must be finite and not below 0";
     }
+
     return wrong == NULL ? GM_IO_OK
                          : gmi_error_set(error, GM_IO_ERR_OPTION, 0, "flank options: %s", wrong);
 }
@@ -225,6 +228,7 @@ static gm_flanks_params sizes_of(const builder *build) {
 
 /* Allocates the flanks and prepares them as ideal. */
 static int make_ideal(builder *build) {
+    /* The size in bytes, which is 0 where it would not fit a size_t. */
     const gm_flanks_params params = sizes_of(build);
     const size_t size = gm_flanks_size(&params);
     if (size == 0) {
@@ -232,6 +236,8 @@ static int make_ideal(builder *build) {
             build->error, GM_IO_ERR_OPTION, 0,
             "the flank tables of %d teeth must fit into memory (got too large ones)", build->teeth);
     }
+
+    /* The flanks lie in memory of their own; who gets them frees it. */
     void *memory = malloc(size);
     if (memory == NULL) {
         return gmi_error_memory(build->error);

@@ -78,6 +78,8 @@ static const double base_tolerance = 5e-6;
 static int roll_of_diameter(const loader *load, const gmi_table *table, double diameter,
                             double *roll) {
     const double base = load->gear->base_radius;
+
+    /* Below the base circle there is no involute; a little below is its rounding. */
     if (!(0.5 * diameter >= (1.0 - base_tolerance) * base)) {
         char quoted[GMI_QUOTE_SIZE];
         char low[GMI_NUMBER_SIZE];
@@ -89,6 +91,7 @@ static int roll_of_diameter(const loader *load, const gmi_table *table, double d
                              gmi_quote(quoted, table->fields[ROLL]),
                              gmi_length_hint(diameter, 2.0 * load->gear->tip_radius));
     }
+
     *roll = gmi_roll_length(0.5 * diameter, base);
     return GM_IO_OK;
 }

@@ -54,6 +54,8 @@ static int fail_roll(const gmi_mapping *map, const gm_trace *trace, int point, d
     char got_diameter[GMI_NUMBER_SIZE];
     char right[GMI_NUMBER_SIZE];
     char right_diameter[GMI_NUMBER_SIZE];
+
+    /* Both lengths also as diameters, as the file may have either. */
     return gmi_error_set(map->error, GM_IO_ERR_FORMAT, line_of(trace, point),
                          "%s leaves the gear: must be at a roll length up to %s mm (diameter %s "
                          "mm), the tip (got %s mm, diameter %s mm)%s",

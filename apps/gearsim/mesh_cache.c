@@ -1,6 +1,6 @@
 /* SPDX-FileCopyrightText: The gearmesh authors */
 /* SPDX-License-Identifier: BSD-3-Clause */
-#include "lookup.h"
+#include "mesh_cache.h"
 
 #include <stdlib.h>
 
@@ -19,7 +19,7 @@ static int is_wanted(const config *conf) {
            conf->analysis == ANALYSIS_DYNAMIC;
 }
 
-int lookup_check(const config *conf, const gear_mesh *gears) {
+int mesh_cache_check(const config *conf, const gear_mesh *gears) {
     const double deepest = 0.25 * gears->pair.transverse_base_pitch;
 
     if (!is_wanted(conf)) {
@@ -39,7 +39,7 @@ int lookup_check(const config *conf, const gear_mesh *gears) {
     return 0;
 }
 
-int lookup_create(gm_cache **cache, const config *conf, const gear_mesh *gears) {
+int mesh_cache_create(gm_cache **cache, const config *conf, const gear_mesh *gears) {
     const gm_cache_params params = params_of(conf);
 
     *cache = NULL;
@@ -59,7 +59,7 @@ int lookup_create(gm_cache **cache, const config *conf, const gear_mesh *gears) 
     return gm_mesh_use_cache(gears->prepared, *cache) == GM_OK ? 0 : EXIT_RUN_FAILED;
 }
 
-void lookup_free(gm_cache *cache, const gear_mesh *gears) {
+void mesh_cache_free(gm_cache *cache, const gear_mesh *gears) {
     if (cache != NULL) {
         (void)gm_mesh_use_cache(gears->prepared, NULL);
     }

@@ -1,18 +1,18 @@
 /* SPDX-FileCopyrightText: The gearmesh authors */
 /* SPDX-License-Identifier: BSD-3-Clause */
 
-/* The look-up cache that `[solver] lookup = on` asks for; it fills itself as the run goes on. */
-#ifndef GEARSIM_LOOKUP_H
-#define GEARSIM_LOOKUP_H
+/* The cache that `[solver] lookup = on` asks for; it fills itself as the run goes on. */
+#ifndef GEARSIM_MESH_CACHE_H
+#define GEARSIM_MESH_CACHE_H
 
 #include "gear_mesh.h"
 
 /* Whether these gears can have what is asked for. Returns 0, or EXIT_BAD_INPUT after a message. */
-int lookup_check(const config *conf, const gear_mesh *gears);
+int mesh_cache_check(const config *conf, const gear_mesh *gears);
 
 /* Lets the mesh answer from a cache; NULL if the run is not to use one. Returns 0, or EXIT_RUN_FAILED if there is no
  * memory. */
-int lookup_create(gm_cache **cache, const config *conf, const gear_mesh *gears);
-void lookup_free(gm_cache *cache, const gear_mesh *gears);
+int mesh_cache_create(gm_cache **cache, const config *conf, const gear_mesh *gears);
+void mesh_cache_free(gm_cache *cache, const gear_mesh *gears);
 
 #endif
