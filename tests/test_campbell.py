@@ -2,8 +2,6 @@
 # SPDX-FileCopyrightText: The gearmesh authors
 # SPDX-License-Identifier: BSD-3-Clause
 """scripts/campbell and the modules it is made of, with signals of which everything is known."""
-import importlib.machinery
-import importlib.util
 import os
 import re
 import subprocess
@@ -24,17 +22,10 @@ from scipy import signal  # noqa: E402
 
 import indicators  # noqa: E402
 import runup  # noqa: E402
+import script_case  # noqa: E402
 
 MEAN_N = 524.0
 EIGENFREQUENCY_HZ = 1979.16
-
-
-def load_script(name):
-    """A script without suffix as a module."""
-    loader = importlib.machinery.SourceFileLoader(name, os.path.join(SCRIPTS, name))
-    module = importlib.util.module_from_spec(importlib.util.spec_from_loader(name, loader))
-    loader.exec_module(module)
-    return module
 
 
 def run_up(force, start_rpm=600.0, end_rpm=6000.0, duration_s=10.0, rate_Hz=25600.0, pairs=None):
@@ -441,11 +432,17 @@ class CommandLine(unittest.TestCase):
                 file.attrs[name] = value
         return path
 
-    def campbell(self, *arguments, **environment):
+    def campbell(self, *arguments):
+        return script_case.call("campbell", *arguments, folder=self.folder)
+
+    def campbell_without(self, package, *arguments):
+        """As a process that cannot import a package."""
+        with open(os.path.join(self.folder, package + ".py"), "w", encoding="ascii") as file:
+            file.write("raise ImportError('as if it were not installed')\n")
         return subprocess.run(
             [sys.executable, os.path.join(SCRIPTS, "campbell"), *arguments],
             cwd=self.folder,
-            env={**os.environ, "PYTHONDONTWRITEBYTECODE": "1", **environment},
+            env={**os.environ, "PYTHONDONTWRITEBYTECODE": "1", "PYTHONPATH": self.folder},
             capture_output=True,
             text=True,
         )
@@ -521,10 +518,9 @@ class CommandLine(unittest.TestCase):
         self.assert_input_error(self.campbell(path), "run.h5")
 
     def test_missing_h5py_is_said_in_a_line(self):
-        with open(os.path.join(self.folder, "h5py.py"), "w", encoding="ascii") as file:
-            file.write("raise ImportError('as if it were not installed')\n")
-        self.assert_input_error(self.campbell(self.write_hdf5(), PYTHONPATH=self.folder), "run.h5", "python3-h5py")
-        result = self.campbell(self.write(), "--no-pictures", PYTHONPATH=self.folder)
+        result = self.campbell_without("h5py", self.write_hdf5())
+        self.assert_input_error(result, "run.h5", "python3-h5py")
+        result = self.campbell_without("h5py", self.write(), "--no-pictures")
         self.assertEqual(result.returncode, 0, result.stderr)
 
     def test_missing_column_is_named(self):
@@ -586,7 +582,7 @@ class Claims(unittest.TestCase):
     """scripts/check_paper_figures holds what it should and fails what it should."""
 
     def setUp(self):
-        self.script = load_script("check_paper_figures")
+        self.script = script_case.module_of("check_paper_figures")
         # Values that fit every claim: the limit of each, passed by a little.
         self.values = {figure: dict.fromkeys(indicators.INDICATORS, 1.0) for figure in self.script.FIGURES}
         self.values["13"]["HF_N"], self.values["14"]["HF_N"] = 10.0, 50.0

@@ -22,6 +22,7 @@ program.require("numpy")
 import numpy as np  # noqa: E402
 
 import flankfile  # noqa: E402
+import script_case  # noqa: E402
 
 HEADER = "tooth,flank,t1,t2,deviation_um\n"
 PITCH_HEADER = "tooth,flank,deviation_um\n"
@@ -56,13 +57,7 @@ class Folder(unittest.TestCase):
         return self.path(name)
 
     def flanks(self, *arguments):
-        return subprocess.run(
-            [sys.executable, os.path.join(SCRIPTS, "flanks"), *arguments],
-            cwd=self.folder,
-            env={**os.environ, "PYTHONDONTWRITEBYTECODE": "1"},
-            capture_output=True,
-            text=True,
-        )
+        return script_case.call("flanks", *arguments, folder=self.folder)
 
     def text_of(self, name):
         with open(self.path(name), encoding="utf-8") as file:

@@ -6,12 +6,9 @@ scripts/harris and scripts/relief against the closed form of the long tip relief
 
     test_relief_scripts.py GEARSIM [-v] [name of a test]...
 """
-import contextlib
 import csv
-import functools
 import importlib.machinery
 import importlib.util
-import io
 import math
 import os
 import re
@@ -37,6 +34,7 @@ program.require("numpy", "scipy")
 import numpy as np  # noqa: E402
 
 import loaded_te  # noqa: E402
+import script_case  # noqa: E402
 
 GEARSIM = None
 
@@ -70,14 +68,6 @@ def length_error_um(amount_um, torque_Nm):
     return 0.02 + amount_um * abs(torque_Nm / DESIGN_NM - 1) * DEFLECTION_UM / LENGTH_UM
 
 
-@functools.cache
-def module_of(script):
-    loader = importlib.machinery.SourceFileLoader(script, os.path.join(SCRIPTS, script))
-    module = importlib.util.module_from_spec(importlib.util.spec_from_loader(script, loader))
-    loader.exec_module(module)
-    return module
-
-
 def heed_interrupts():
     """What shells start in the background ignores them, and so would the scripts."""
     signal.signal(signal.SIGINT, signal.SIG_DFL)
@@ -91,18 +81,7 @@ class Case(unittest.TestCase):
 
     def run_script(self, script, *arguments):
         """As from the command line, without the time that Python takes to start."""
-        module, argv = module_of(script), [script, *arguments, "--gearsim", GEARSIM]
-        stdout, stderr = io.StringIO(), io.StringIO()
-        os.chdir(self.folder)
-        given = mock.patch.object(sys, "argv", argv)
-        with given, contextlib.redirect_stdout(stdout), contextlib.redirect_stderr(stderr):
-            try:
-                status = program.run(module.work, module.arguments)
-            except SystemExit as end:
-                status = end.code
-            finally:
-                os.chdir(ROOT)
-        return subprocess.CompletedProcess(argv, status, stdout.getvalue(), stderr.getvalue())
+        return script_case.call(script, *arguments, "--gearsim", GEARSIM, folder=self.folder)
 
     def run_program(self, script, *arguments):
         return subprocess.run(
@@ -588,7 +567,7 @@ class Parts(unittest.TestCase):
         self.assertEqual((cycles[-1], cycles.shape, te_um.shape), (2, (401,), (1, 401)))
 
     def test_numbers_on_contour_lines_are_clear_of_all_else(self):
-        harris = module_of("harris")
+        harris = script_case.module_of("harris")
         x, y = np.meshgrid(np.linspace(0, 1, 241), np.linspace(0, 1, 241))
         half_height = 0.013  # of what gnuplot draws: 20 of 720 pixels; the width is 9 of 1022 for each digit
         for slope in (5, 40):  # so steep that lines stand closer than their numbers are wide
