@@ -1025,6 +1025,96 @@ class Output(Case):
         self.assertEqual(sorted(os.listdir(self.folder)), ["run.csv", "run.ini"])
 
 
+class Tables(Case):
+    """Bad tables over time: the message names that file, its line, and the key of the INI file."""
+
+    def params(self, section, **others):
+        params = PARAMS
+        for key in {"drive": ["start_rpm", "end_rpm"], "load": ["mean_Nm"]}[section]:
+            params = without_key(params, key)
+        params = with_key(params, section, "file", "table.csv")
+        for key, value in others.items():
+            params = with_key(params, section, key, value)
+        return params
+
+    def refused_table(self, section, text, *fragments, **others):
+        self.write("table.csv", text)
+        params = self.params(section, **others)
+        self.refused("table.csv", f"run.ini:{line_of(params, 'file = ')}: {section}.file: names this file", *fragments,
+                     params=params, arguments=["--check"])
+
+    def test_right_tables(self):
+        for section, column in (("drive", "speed_rpm"), ("load", "torque_Nm")):
+            for text in ["time_s,{}\n0,20\n100,30\n", "\ufeff# made\r\ntime_s , {}\r\n\r\n-1,20\r\n100,-3e1\r\n",
+                         "time_s,{}\n0,20\n1,20\n1,20\n100,30"]:
+                with self.subTest(text):
+                    self.write("table.csv", text.format(column))
+                    self.write("run.ini", self.params(section, interpolation="cubic"))
+                    self.assertEqual(self.accepted("run.ini", "--check").stderr, "")
+
+    def test_bad_tables(self):
+        head = "time_s,torque_Nm\n"
+        for text, fragments in [
+                ("", ["the columns must be time_s,torque_Nm (got nothing)"]),
+                ("time_s,speed_rpm\n0,1\n9,1\n", [":1: the columns must be time_s,torque_Nm (got time_s,speed_rpm)"]),
+                ("time_s,torque_Nm,x\n0,1,1\n", [":1: the columns must be"]),
+                ("time_ms,torque_Nm\n0,1\n", [":1: the columns must be"]),
+                (head, ["must have rows at two times"]),
+                (head + "0,1\n", ["must have rows at two times"]),
+                (head + "0,1\n0,2\n", ["must have rows at two times"]),
+                (head + "0,1\n0.5,2\n0.4,1\n100,2\n", [":4: time_s must increase", "(got 0.4)"]),
+                (head + "0,1\n0.5,2\n0.5,1\n0.5,3\n100,2\n", [":5: time_s must stand twice at most"]),
+                (head + "0,1\n0.5,2\n0.5000000001,1\n100,2\n", [":4: time_s must increase by 1e-9"]),
+                (head + "0.1,1\n100,2\n", [":2: must begin at a time of 0 or before (got 0.1 s)"]),
+                (head + "0,1\n1e-4,2\n", [":3: must reach the end of the run", "`repeat = on`", "(got 0.0001 s)"]),
+                (head + "0,1\n1,nan\n100,1\n", [":3: must be a plain number", "(got nan)"]),
+                (head + "0,1\n1,inf\n100,1\n", [":3: must be a plain number", "(got inf)"]),
+                (head + "0,1\n1,\n100,1\n", [":3: must be a plain number"]),
+                (head + "0,1\n1,0x10\n100,1\n", [":3: must be a plain number", "(got 0x10)"]),
+                (head + "0,1\n1,1e300\n100,1\n", [":3: must be a plain number from -1e12 to 1e12"]),
+                (head + "0,1\n1;2\n100,1\n", [":3: a row must be two numbers with a comma"]),
+                (head + "0,1\n1,2,3\n100,1\n", [":3: a row must be two numbers with a comma"]),
+                (head + "0,1\n" + "1" * 5000 + ",2\n100,1\n", [":3: a row must be two numbers with a comma"])]:
+            with self.subTest(text[:60]):
+                self.refused_table("load", text, *fragments)
+
+    def test_speeds_do_not_step(self):
+        head = "time_s,speed_rpm\n"
+        self.refused_table("drive", head + "0,1\n1,2\n1,3\n100,1\n", ":4: speed_rpm must not step")
+        self.refused_table("drive", head + "0,1\n1,2\n", ":3: speed_rpm must end with the value it begins with",
+                           "(got 1 and 2 rpm)", repeat="on")
+
+    def test_missing_file(self):
+        params = self.params("load")
+        self.refused("table.csv: cannot be read", "load.file: names this file", params=params, arguments=["--check"])
+
+    def test_table_and_number_exclude_each_other(self):
+        self.write("table.csv", "time_s,torque_Nm\n0,1\n100,1\n")
+        self.refused("load.mean_Nm: must not stand beside load.file", params=with_key(PARAMS, "load", "file", "table.csv"))
+        params = with_key(PARAMS, "drive", "file", "table.csv")
+        self.refused("drive.start_rpm: must not stand beside drive.file", "drive.end_rpm: must not stand beside drive.file",
+                     params=params)
+        self.refused("drive.torque_Nm: must not stand beside drive.file", params=params, arguments=[
+            "--set", "drive.kind=torque", "--set", "drive.torque_Nm=1", "--set", "bodies.pinion_inertia_kg_m2=1"])
+
+    def test_result_does_not_replace_a_table(self):
+        text = "time_s,torque_Nm\n0,1\n100,1\n"
+        self.write("table.csv", text)
+        self.refused("output.file: must not overwrite an input", "load.file", params=self.params("load"),
+                     arguments=["--output", "table.csv"])
+        self.assertEqual(self.read("table.csv"), text)
+
+    def test_keys_without_a_table_are_told(self):
+        self.write("run.ini", with_key(with_key(PARAMS, "load", "repeat", "on"), "drive", "interpolation", "cubic"))
+        told = self.accepted("run.ini", "--check").stderr
+        self.assertIn("load.repeat: warning: not used without load.file", told)
+        self.assertIn("drive.interpolation: warning: not used without drive.file", told)
+
+    def test_bad_choices(self):
+        self.refused_value("load", "interpolation", "spline", "must be linear | cubic")
+        self.refused_value("drive", "repeat", "yes", "must be off | on")
+
+
 class Example(Case):
     """data/example/params.ini is complete and right."""
 
@@ -1080,6 +1170,7 @@ class Example(Case):
 
     def test_every_line_of_it_may_be_activated(self):
         text = re.sub(r"(?m)^; (\w+ = )", r"\1", self.example())
+        text = re.sub(r"(?m)^file = (speed|load).csv", r"; \g<0>", text)  # in the place of numbers that are there
         folder = os.path.dirname(EXAMPLE)
         text = re.sub(r"(?m)^(wheel_pitch|pinion_pitch|pinion|wheel) = (\S+)", rf"\1 = {folder}/\2", text)
         self.write("run.ini", text.replace("wheel_pitch = ", "; wheel_pitch = "))  # a pitch file of 45 teeth

@@ -403,6 +403,141 @@ class ClosedForms(Case):
         self.assertGreater(spread(static["te_um"]), 1e-3)
 
 
+class Tables(Case):
+    """Speeds and torques over time."""
+
+    def table(self, name, column, rows):
+        with open(self.path(name), "w") as file:
+            file.write(f"# a table\ntime_s,{column}\n" + "".join(f"{t!r}, {v!r}\n" for t, v in rows))
+        return name
+
+    def run_with(self, settings, drop=(), **tables):
+        """A run with tables {section: (column, rows)} in the place of numbers."""
+        names = {"drive": ["start_rpm", "end_rpm"], "load": ["mean_Nm"]}
+        dropped = [f"{section}.{key}=" for section in tables for key in names[section]]
+        files = [f"{section}.file={self.table(section + '.csv', *given)}" for section, given in tables.items()]
+        return self.run_columns([*dropped, *files, *settings])
+
+    def test_straight_table_is_the_run_up(self):
+        for kind in ([], [*TORQUE, "drive.start_rpm=500"]):
+            ramp = [*PLAIN, *TIGHT, "drive.start_rpm=500", "drive.end_rpm=4500", *kind]
+            expected = self.run_columns(ramp)
+            for interpolation in ("linear", "cubic"):
+                given = ("speed_rpm", [(-0.01, -1500.0), (0.005, 1500.0), (0.03, 6500.0)]) if not kind else (
+                    "torque_Nm", [(0.0, 22.0), (0.01, 22.0), (0.02, 22.0)])
+                keys = ["drive.torque_Nm=", "drive.start_rpm=500"] if kind else []
+                c = self.run_with([*PLAIN, *TIGHT, *kind, *keys, f"drive.interpolation={interpolation}"], drive=given,
+                                  load=("torque_Nm", [(-1.0, LOAD), (3.0, LOAD)]))
+                for name in expected:
+                    # The solver stops at the rows, so that its steps differ: each run is off by 3e-4 of the rate.
+                    size = max(map(abs, expected[name]))
+                    self.assert_all_close(c[name], expected[name], absolute=5e-4 * size)
+                if not kind:
+                    self.assert_all_close(c["pinion_speed_rpm"], expected["pinion_speed_rpm"], absolute=1e-9)
+                    self.assert_all_close(c["pinion_angle_rad"], expected["pinion_angle_rad"], absolute=1e-12)
+
+    def test_step_of_the_load_rings_down(self):
+        """Clunk in firm contact: x goes from one equilibrium to the other as a damped vibration."""
+        g = self.geometry(SIMPLE)
+        r_bw, factor = g["wheel_base_radius_mm"] * 1e-3, g["transverse_contact_ratio"]
+        w0 = math.sqrt(K * factor * r_bw**2 / I_W)
+        decay = D * factor * r_bw**2 / I_W / 2
+        turned = math.sqrt(w0**2 - decay**2)
+        at = 0.0031234567
+        rows = [(0.0, 20.0), (at, 20.0), (at, 60.0), (1.0, 60.0)]
+        for method in ("adams", "bdf", "erk"):
+            c = self.run_with([*SIMPLE, *PLAIN, *TIGHT, f"solver.method={method}"], load=("torque_Nm", rows))
+            for t, dte, load in zip(c["time_s"], c["dte_um"], c["load_torque_Nm"]):
+                s = max(t - at, 0.0)
+                share = math.exp(-decay * s) * (math.cos(turned * s) + decay / turned * math.sin(turned * s))
+                x = GAP / 2 + (60.0 - 40.0 * share) / (r_bw * K * factor)
+                # Tolerances of 1e-9 of 2 um add up over some hundred steps.
+                self.assert_close(-dte, x * 1e6, absolute=1e-5 if method == "bdf" else 2e-6, what=f"{method}, t = {t}")
+                self.assertEqual(load, 20.0 if t < at else 60.0)
+
+    def test_short_pulse_at_rest_is_not_passed_over(self):
+        """Ahead of it nothing moves and steps are long; its torque times its time is the wheel's momentum."""
+        rows = [(0.0, 20.0), (0.01, 20.0), (0.01001, 120.0), (0.01002, 20.0), (1.0, 20.0)]
+        for method in ("adams", "erk"):
+            c = self.run_with([*SIMPLE, *PLAIN, *TIGHT, f"solver.method={method}"], load=("torque_Nm", rows))
+            r_bw = self.geometry(SIMPLE)["wheel_base_radius_mm"] * 1e-3
+            speed = 0.5 * 2e-5 * 100 / I_W * 30 / math.pi
+            fall = [c["wheel_speed_rpm"][0] - w for w in c["wheel_speed_rpm"]]
+            # The vibration of 3 kHz and 5 % begins with this amplitude: its first extreme is at the first row behind.
+            self.assert_close(max(fall), speed, relative=0.1)
+            self.assertGreater(r_bw, 0.0)
+
+    def test_repeated_table_is_a_long_one(self):
+        period = 0.0037
+        rows = [(0.0, 20.0), (0.001, 40.0), (0.002, 40.0), (0.002, 25.0), (period, 30.0)]
+        long_rows = [(round(t + k * period, 9), v) for k in range(7) for t, v in rows]
+        for interpolation in ("linear", "cubic"):
+            settings = [*PLAIN, *TIGHT, f"load.interpolation={interpolation}"]
+            once = self.run_with(settings, load=("torque_Nm", long_rows))
+            again = self.run_with([*settings, "load.repeat=on"], load=("torque_Nm", rows))
+            self.assert_all_close(again["load_torque_Nm"], once["load_torque_Nm"], absolute=1e-10)
+            self.assert_all_close(again["dte_um"], once["dte_um"], absolute=1e-4)
+
+    def test_cubic_goes_through_parabolas(self):
+        """Three neighbours give the slope of a parabola exactly: 5 + 3000 t - 1e5 t^2 with uneven rows."""
+        rows = [(t, 5 + 3000 * t - 1e5 * t**2) for t in (-0.002, 0.0, 0.003, 0.0035, 0.009, 0.014, 0.022, 0.03)]
+        c = self.run_with([*SIMPLE, *PLAIN, "load.interpolation=cubic"], load=("torque_Nm", rows))
+        self.assert_all_close(c["load_torque_Nm"], [5 + 3000 * t - 1e5 * t**2 for t in c["time_s"]], absolute=1e-11)
+        linear = self.run_with([*SIMPLE, *PLAIN], load=("torque_Nm", rows))
+        self.assertGreater(largest_difference(linear["load_torque_Nm"], c["load_torque_Nm"]), 0.5)
+
+    def test_means_hold_steps_and_slopes(self):
+        """Filtered rows have the integral of the table, and the force that of the momentum."""
+        rows = [(0.0, 20.0), (0.0051234, 20.0), (0.0051234, 50.0), (0.012, 80.0), (0.012, 30.0), (0.3, 30.0)]
+        integral = 20 * 0.0051234 + 65 * (0.012 - 0.0051234) + 30 * 0.008
+        for settings in ([], SIMPLE, ["drive.start_rpm=900", *TORQUE]):
+            c = self.run_with([*settings, *TIGHT], load=("torque_Nm", rows))
+            # Half a row at each end belongs to other rows; the value is that of the ends.
+            total = sum(c["load_torque_Nm"]) - 0.5 * (20 + 30)
+            self.assert_close(total / 25600, integral, relative=2e-6)
+            factor = self.geometry(SIMPLE)["transverse_contact_ratio"] if settings == SIMPLE else 1
+            force = [factor * (K * p + D * r) * 1e-6
+                     for p, r in zip(c["penetration_um"], c["penetration_rate_um_per_s"])]
+            # x'' steps with the load, and the one is a box mean over 1e-5 s, the other a value.
+            self.assertLess(largest_difference(c["contact_force_N"][16:], force[16:]), 0.04 * spread(force))
+
+    def test_means_of_a_drive_with_kinks(self):
+        given = ("speed_rpm", [(0.0, 1000.0), (0.006, 3000.0), (0.013, 2500.0), (0.5, 2500.0)])
+        spur = [*Means.SPUR, "load.mean_Nm=900"]
+        for settings, absolute in (([], 0.0), (spur, 2.0)):
+            for interpolation in ("linear", "cubic"):
+                c = self.run_with([*settings, f"drive.interpolation={interpolation}", "load.mean_Nm=900", *TIGHT],
+                                  drive=given)
+                k, d = (3e8, 2000) if settings else (K, D)
+                force = [(k * p + d * r) * 1e-6 for p, r in zip(c["penetration_um"], c["penetration_rate_um_per_s"])]
+                # Helical teeth: row by row. Spur teeth jump, and only the means of some rows agree.
+                if settings:
+                    pairs = [(statistics.fmean(c["contact_force_N"][i:i + 64]), statistics.fmean(force[i:i + 64]))
+                             for i in range(32, 400, 64)]
+                    for one, other in pairs:
+                        self.assert_close(one, other, relative=0.01)
+                else:
+                    self.assertLess(largest_difference(c["contact_force_N"][16:], force[16:]), 0.02 * spread(force))
+
+    def test_reversal_through_zero_speed(self):
+        """The load follows the speed and its sign: the other flank carries after the reversal."""
+        given = ("speed_rpm", [(0.0, 3000.0), (0.02, 3000.0), (0.12, -3000.0), (0.2, -3000.0)])
+        c = self.run_with(["analysis.duration_s=0.2", "load.mean_Nm=0", "load.per_speed_Nms=0.1", *PLAIN], drive=given)
+        g = self.geometry()
+        r_bw, ratio = g["wheel_base_radius_mm"] * 1e-3, g["pinion_base_radius_mm"] / g["wheel_base_radius_mm"]
+        speed = 3000 * math.pi / 30 * ratio
+        rows = {t: k for k, t in enumerate(c["time_s"])}
+        for at, sign in ((0.015, 1), (0.195, -1)):
+            k = rows[at]
+            force = statistics.fmean(c["contact_force_N"][k - 100:k + 100])
+            self.assert_close(force, sign * 0.1 * speed / r_bw, relative=1e-2)
+        # The flanks change where the deceleration's torque takes the load over, before the speed is zero.
+        decelerating = I_W * 6000 / 0.1 * math.pi / 30 * ratio
+        zero = next(t for t, f in zip(c["time_s"], c["contact_force_N"]) if t > 0.021 and f <= 0)
+        self.assertLess(zero, 0.07)
+        self.assertGreater(decelerating, 0.0)
+
+
 class Rattle(Case):
     """Rough teeth that part and meet again, without noise: in flight no error estimate limits a step."""
     LIGHT = ["load.mean_Nm=3", "drive.start_rpm=3000", "drive.end_rpm=3001", "analysis.duration_s=0.012", *PLAIN,

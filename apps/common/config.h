@@ -20,6 +20,8 @@ enum drive_kind { DRIVE_SPEED, DRIVE_TORQUE };
 enum analysis_type { ANALYSIS_DYNAMIC, ANALYSIS_STATIC };
 enum static_period { PERIOD_MESH, PERIOD_PINION, PERIOD_HUNTING };
 enum solver_method { METHOD_BDF, METHOD_ADAMS, METHOD_ERK };
+enum table_interpolation { INTERPOLATION_LINEAR, INTERPOLATION_CUBIC };
+enum table_repeat { REPEAT_OFF, REPEAT_ON };
 enum lookup_use { LOOKUP_OFF, LOOKUP_ON };
 enum deviation_direction { DEVIATION_NORMAL, DEVIATION_TRANSVERSE };
 
@@ -81,6 +83,10 @@ typedef struct config {
     enum drive_kind drive;
     double start_speed, end_speed; /* rad/s */
     double drive_torque;           /* N m */
+    char *drive_file;              /* table over time in place of them, NULL = none */
+    enum table_interpolation drive_interpolation;
+    enum table_repeat drive_repeat;
+    struct time_table *drive_table; /* what the file says, once gearsim has read it */
 
     double mean_load; /* N m */
     double end_load;  /* of the last of the static sweeps, N m; NaN: mean_load */
@@ -89,6 +95,10 @@ typedef struct config {
     uint64_t seed;
     double load_per_speed;         /* N m s */
     double load_per_speed_squared; /* N m s2 */
+    char *load_file;               /* table over time in place of mean_load, NULL = none */
+    enum table_interpolation load_interpolation;
+    enum table_repeat load_repeat;
+    struct time_table *load_table;
 
     enum analysis_type analysis;
     double duration; /* s */

@@ -91,8 +91,30 @@ static int check_static(const config *conf) {
     return faults + check_loads(conf);
 }
 
+/* A table and the number that it stands for. */
+static int check_one_of(const config *conf, const char *file, const char *number) {
+    if (config_text(conf, file) == NULL || config_text(conf, number) == NULL) {
+        return 0;
+    }
+    config_complain(conf, number, "must not stand beside %s, which is in its place (got %s)", file,
+                    config_text(conf, number));
+    return 1;
+}
+
+static int check_tables(const config *conf) {
+    int faults = check_one_of(conf, "load.file", "load.mean_Nm");
+
+    if (conf->drive == DRIVE_SPEED) {
+        faults += check_one_of(conf, "drive.file", "drive.start_rpm");
+        faults += check_one_of(conf, "drive.file", "drive.end_rpm");
+    } else {
+        faults += check_one_of(conf, "drive.file", "drive.torque_Nm");
+    }
+    return faults;
+}
+
 static int check_dynamic(const config *conf) {
-    int faults = 0;
+    int faults = check_tables(conf);
 
     if (!(conf->duration * conf->output_rate <= row_limit)) {
         config_complain(conf, "output.rate_Hz",
@@ -127,7 +149,9 @@ static int check_output_is_no_input(const config *conf) {
            check_not_input(conf, conf->pinion_flanks.deviations, "flanks.pinion") +
            check_not_input(conf, conf->wheel_flanks.deviations, "flanks.wheel") +
            check_not_input(conf, conf->pinion_flanks.pitch, "flanks.pinion_pitch") +
-           check_not_input(conf, conf->wheel_flanks.pitch, "flanks.wheel_pitch");
+           check_not_input(conf, conf->wheel_flanks.pitch, "flanks.wheel_pitch") +
+           check_not_input(conf, conf->drive_file, "drive.file") +
+           check_not_input(conf, conf->load_file, "load.file");
 }
 
 int config_check_together(const config *conf) {
@@ -143,6 +167,14 @@ int config_check_together(const config *conf) {
     return faults + check_output_is_no_input(conf);
 }
 
+/* A key about a table that is not there. */
+static void warn_without_table(const config *conf, const char *file, const char *key) {
+    if (conf->analysis == ANALYSIS_DYNAMIC && config_text(conf, file) == NULL &&
+        config_text(conf, key) != NULL) {
+        config_warn(conf, key, "not used without %s", file);
+    }
+}
+
 void config_warn_of_unused(const config *conf) {
     const char *reason;
 
@@ -154,6 +186,10 @@ void config_warn_of_unused(const config *conf) {
     if (conf->analysis == ANALYSIS_STATIC && conf->loads == 1 && !isnan(conf->end_load)) {
         config_warn(conf, "load.end_Nm", "not used with analysis.loads = 1");
     }
+    warn_without_table(conf, "drive.file", "drive.interpolation");
+    warn_without_table(conf, "drive.file", "drive.repeat");
+    warn_without_table(conf, "load.file", "load.interpolation");
+    warn_without_table(conf, "load.file", "load.repeat");
     if (conf->model == MODEL_3D) {
         modification_keys_warn(conf);
     }

@@ -142,7 +142,7 @@ static const char *skip_digits(const char *text) {
 }
 
 /* [+-] digits [. digits] [e [+-] digits]: what strtod() takes beyond that (hex, nan, inf) is refused. */
-static int is_plain_number(const char *text) {
+int key_plain_number(const char *text) {
     const char *start = text + (*text == '+' || *text == '-');
     const char *end = skip_digits(start);
     long digits = end - start;
@@ -178,7 +178,7 @@ static int not_a_number(const char *text, char *fault) {
 }
 
 static int read_number(const char *text, double *value, char *fault) {
-    if (!is_plain_number(text)) {
+    if (!key_plain_number(text)) {
         return not_a_number(text, fault);
     }
     *value = strtod(text, NULL);

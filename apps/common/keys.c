@@ -145,6 +145,12 @@ static const key_spec keys[] = {
     {NAME("drive", "torque_Nm"), NUMBER(UNIT_SI, UP_TO(1e12)), INTO(drive_torque),
      .used = FOR_DYNAMIC | FOR_TORQUE, .required = FOR_RUN | FOR_DYNAMIC | FOR_TORQUE,
      .help = "constant torque on the pinion"},
+    {NAME("drive", "file"), .kind = KEY_PATH, INTO(drive_file), .derived = "no table", .used = FOR_DYNAMIC,
+     .help = "table over time in place of start_rpm and end_rpm, or torque_Nm: time_s,speed_rpm or time_s,torque_Nm"},
+    {NAME("drive", "interpolation"), CHOICE("linear cubic"), INTO(drive_interpolation), .standard = "linear",
+     .used = FOR_DYNAMIC, .help = "between the rows of the table"},
+    {NAME("drive", "repeat"), CHOICE("off on"), INTO(drive_repeat), .standard = "off",
+     .used = FOR_DYNAMIC, .help = "on: the table begins again at its end"},
 
     {NAME("load", "mean_Nm"), NUMBER(UNIT_SI, ANY), INTO(mean_load),
      .required = FOR_RUN, .help = "on the wheel, > 0 resists its driven direction"},
@@ -160,6 +166,12 @@ static const key_spec keys[] = {
      .used = FOR_DYNAMIC, .help = "load over the wheel's speed w in rad/s: c w is added, also where w < 0"},
     {NAME("load", "per_speed_squared_Nms2"), NUMBER(UNIT_SI, BETWEEN(0, 1e12)), INTO(load_per_speed_squared),
      .standard = "0", .used = FOR_DYNAMIC, .help = "c2 w |w| is added, as of fans and propellers"},
+    {NAME("load", "file"), .kind = KEY_PATH, INTO(load_file), .derived = "no table", .used = FOR_DYNAMIC,
+     .help = "table over time in place of mean_Nm: time_s,torque_Nm"},
+    {NAME("load", "interpolation"), CHOICE("linear cubic"), INTO(load_interpolation), .standard = "linear",
+     .used = FOR_DYNAMIC, .help = "between the rows of the table"},
+    {NAME("load", "repeat"), CHOICE("off on"), INTO(load_repeat), .standard = "off",
+     .used = FOR_DYNAMIC, .help = "on: the table begins again at its end"},
 
     {NAME("analysis", "type"), CHOICE("dynamic static"), INTO(analysis), .standard = "dynamic",
      .help = "static: transmission error under load (model 3d)"},
@@ -227,10 +239,20 @@ int key_is_used(const key_spec *key, const config *conf, const char **reason) {
     return lacking == 0;
 }
 
-/* The common face follows from those of both gears. */
+/* The common face follows from those of both gears, and a table over time stands in the place of numbers. */
 static int follows_from_others(const key_spec *key, const config *conf) {
-    return key->target == offsetof(config, gears.face_width) &&
-           !isnan(conf->gears.pinion_face_width) && !isnan(conf->gears.wheel_face_width);
+    switch (key->target) {
+    case offsetof(config, gears.face_width):
+        return !isnan(conf->gears.pinion_face_width) && !isnan(conf->gears.wheel_face_width);
+    case offsetof(config, start_speed):
+    case offsetof(config, end_speed):
+    case offsetof(config, drive_torque):
+        return conf->drive_file != NULL;
+    case offsetof(config, mean_load):
+        return conf->load_file != NULL && conf->analysis == ANALYSIS_DYNAMIC;
+    default:
+        return 0;
+    }
 }
 
 int key_is_required(const key_spec *key, const config *conf) {

@@ -147,15 +147,18 @@ static void forget_gathered(dynamic_run *run) {
     memset(run->gathered, 0, sizeof run->gathered);
 }
 
-/* Means of force and load with those of the torques that follow the motion and of x'', and the integral of the noise. */
-static void set_means(dynamic_run *run, const model_torques *following, double acceleration,
-                      double noise) {
-    static const gear_motion none = {0.0, 0.0, 0.0, 0.0};
+/* Means of force and load, with those of the accelerations and of the torques that follow the motion. */
+static void set_means(dynamic_run *run, const mean_weight *weight, double pinion_acceleration,
+                      const model_torques *following, double acceleration) {
+    const load_signal *load = &run->model.load;
     dynamic_sample *sample = &run->sample;
-    model_torques mean = model_applied(&run->model, sample->time, &none);
+    model_torques mean = model_mean_over_time(&run->model, weight, pinion_acceleration);
 
     add_torques(&mean, 1.0, following);
-    mean.load += noise;
+    for (int side = 0; side < 2; ++side) {
+        mean.load += load_noise_integral(load, weight->time[side], weight->time[side + 1],
+                                         weight->weight[side][0], weight->weight[side][1]);
+    }
     sample->mean_load = mean.load;
     sample->mean_force = model_mean_force(&run->model, &mean, acceleration);
 }
@@ -206,17 +209,33 @@ static int see_box_means(dynamic_run *run, double row, int i) {
     if (run->follows) {
         following = mean_following(run, begin, end, &motion);
         if (!run->is_started) {
-            const model_torques rest = following_at(run, &run->edge);
-            add_torques(&following, 0.5, &rest);
+            const model_torques held = following_at(run, &run->edge);
+            add_torques(&following, 0.5, &held);
         }
         forget_gathered(run);
     }
-    set_means(run, &following, (motion.offset_rate - before) * weight,
-              load_noise_integral(&run->model.load, begin, end, weight, weight));
+    const mean_weight box = {{begin, end, end}, {{weight, weight}, {0.0, 0.0}}};
+    const double speed = motion.pinion_speed - run->edge.pinion_speed;
+    const double rest = run->is_started ? 0.0 : 0.5 * drive_at(&run->model.drive, 0.0).acceleration;
+    set_means(run, &box, rest + speed * weight, &following, (motion.offset_rate - before) * weight);
 
     run->edge_time = end;
     run->edge = motion;
     return 0;
+}
+
+/* Mean of the pinion's acceleration under a triangle: second difference of its angle, constant before t = 0. */
+static double hat_acceleration(const dynamic_run *run, double begin, double middle,
+                               const gear_motion *motion, double end) {
+    const gear_motion *now = &run->sample.motion;
+    const double fall = (motion->pinion_angle - now->pinion_angle) / (end - middle);
+
+    if (run->is_started) {
+        const double rise = (now->pinion_angle - run->edge.pinion_angle) / (middle - begin);
+        return 2.0 * (fall - rise) / (end - begin);
+    }
+    return 0.5 * drive_at(&run->model.drive, 0.0).acceleration +
+           (fall - now->pinion_speed) / (end - middle);
 }
 
 /* Under a triangle from the sample before to the next, x'' from the second difference of x. */
@@ -251,9 +270,9 @@ static int see_hat_means(dynamic_run *run, double row, int i) {
         run->rising = run->gathered[1];
         forget_gathered(run);
     }
-    set_means(run, &following, peak * (fall - rise),
-              load_noise_integral(&run->model.load, begin, middle, 0.0, peak) +
-                  load_noise_integral(&run->model.load, middle, end, peak, 0.0));
+    const mean_weight hat = {{begin, middle, end}, {{0.0, peak}, {peak, 0.0}}};
+    set_means(run, &hat, hat_acceleration(run, begin, middle, &motion, end), &following,
+              peak * (fall - rise));
 
     run->edge_time = middle;
     run->edge = run->sample.motion;

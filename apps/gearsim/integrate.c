@@ -35,11 +35,17 @@ int integrator_keep_status(integrator *solver, int status) {
     return status;
 }
 
+/* Up to a step of a table counts what is before it. */
+double integrator_seen_time(const integrator *solver, double time) {
+    return fmin(time, solver->last_time);
+}
+
 /* The library's status is that of SUNDIALS: > 0 try a smaller step, < 0 give up. */
 int integrator_derivative(sunrealtype time, N_Vector state, N_Vector result, void *data) {
     integrator *solver = data;
+    const double seen = integrator_seen_time(solver, time);
 
-    return integrator_keep_status(solver, model_derivative(solver->model, time, NV_DATA_S(state),
+    return integrator_keep_status(solver, model_derivative(solver->model, seen, NV_DATA_S(state),
                                                            NV_DATA_S(result), &solver->contact));
 }
 
@@ -52,7 +58,7 @@ int integrator_error_weights(N_Vector state, N_Vector weights, void *data) {
 }
 
 double integrator_first_target(const integrator *solver) {
-    return 1.0 / solver->model->natural_frequency;
+    return solver->time + 1.0 / solver->model->natural_frequency;
 }
 
 #if SUNDIALS_VERSION_MAJOR >= 7
@@ -104,6 +110,13 @@ static const solver_package *package_of(enum solver_method method) {
     }
 }
 
+/* The row that the solver has to stop at next. */
+static void look_for_row(integrator *solver) {
+    solver->row_time = model_next_row(solver->model, solver->time, &solver->is_kink);
+    solver->last_time =
+        solver->is_kink ? model_before_row(solver->model, solver->row_time) : HUGE_VAL;
+}
+
 static int set_up(integrator *solver, const double start[]) {
     const sunindextype states = solver->model->states;
 
@@ -116,6 +129,7 @@ static int set_up(integrator *solver, const double start[]) {
         return -1;
     }
     memcpy(NV_DATA_S(solver->state), start, (size_t)states * sizeof start[0]);
+    look_for_row(solver);
 
     /* Whether the first step starts in contact; a state that the model refuses fails in that step. */
     double derivative[STATES_MAX];
@@ -188,8 +202,9 @@ static double stop_time(integrator *solver, double longest) {
         return DBL_MAX;
     }
 
+    const double limit = longest > 0.0 ? longest : longest_flight / model->natural_frequency;
     const flight_options options = {
-        .longest = longest > 0.0 ? longest : longest_flight / model->natural_frequency,
+        .longest = fmin(limit, solver->row_time - solver->time),
         .speed_tolerance = speed_tolerance(solver),
     };
     if (flight_noise_guides(model, &options)) {
@@ -214,6 +229,22 @@ static double longest_step(const integrator *solver) {
     return asked > 0.0 ? asked : needed;
 }
 
+/* Behind a row of a table; where it is a kink, what the solver knows of the steps before is worth nothing. */
+static int pass_row(integrator *solver) {
+    if (solver->time < solver->row_time) {
+        return 0;
+    }
+
+    const int is_kink = solver->is_kink;
+    look_for_row(solver);
+    if (!is_kink) {
+        return 0;
+    }
+    solver->before = integrator_counts(solver);
+    solver->before.looks = 0;
+    return solver->package->restart(solver);
+}
+
 static int step(integrator *solver) {
     /* A fault that the solver got over by a smaller step is not the reason of a later failure, unless the
      * steps have been next to nothing since. */
@@ -222,9 +253,13 @@ static int step(integrator *solver) {
     }
     solver->message[0] = '\0';
 
+    if (pass_row(solver) != 0) {
+        return fail(solver, "the solver could not start again");
+    }
     const double before = solver->time;
     const double longest = longest_step(solver);
-    const int flag = solver->package->step(solver, longest, stop_time(solver, longest));
+    const double stop = fmin(stop_time(solver, longest), solver->row_time);
+    const int flag = solver->package->step(solver, longest, stop);
     if (flag < 0) {
         char *name = solver->package->flag_name(flag);
         char what[sizeof solver->message + 64];
@@ -277,6 +312,10 @@ const char *integrator_failure(const integrator *solver) {
 integrator_statistics integrator_counts(const integrator *solver) {
     integrator_statistics counts = solver->package->counts(solver);
 
+    counts.steps += solver->before.steps;
+    counts.derivatives += solver->before.derivatives;
+    counts.jacobians += solver->before.jacobians;
+    counts.rejected += solver->before.rejected;
     counts.looks = solver->looks;
     return counts;
 }

@@ -3,7 +3,7 @@
 
 /*
  * Integration of a model in time by SUNDIALS, with values at any time wanted interpolated within the
- * solver's steps. It is started once and never restarted: the load is smooth.
+ * solver's steps. It starts again where a table of drive or load has a step: everything else is smooth.
  */
 #ifndef GEARSIM_INTEGRATE_H
 #define GEARSIM_INTEGRATE_H

@@ -103,6 +103,12 @@ static int step(integrator *solver, double longest, double stop) {
     return from_flag < 0 ? from_flag : to_flag;
 }
 
+static int restart(integrator *solver) {
+    arkode_memory *memory = solver->memory;
+
+    return ERKStepReInit(memory->arkode, integrator_derivative, solver->time, solver->state);
+}
+
 /* Value and slope at s in [0, 1] of the polynomial with these values, slopes and curvatures at 0 and 1. */
 static void quintic(const double from[3], const double to[3], double s, double result[2]) {
     const double value = to[0] - from[0] - from[1] - 0.5 * from[2];
@@ -159,6 +165,7 @@ const solver_package arkode_package = {
     .free = destroy,
     .step = step,
     .flag_name = ERKStepGetReturnFlagName,
+    .restart = restart,
     .interpolate = interpolate,
     .counts = counts,
 };

@@ -30,7 +30,8 @@ static int jacobian(sunrealtype time, N_Vector state, N_Vector state_derivative,
     (void)scratch2;
     (void)scratch3;
 
-    const int status = model_jacobian(solver->model, time, NV_DATA_S(state), columns);
+    const int status = model_jacobian(solver->model, integrator_seen_time(solver, time),
+                                      NV_DATA_S(state), columns);
     if (status == GM_OK) {
         for (int column = 0; column < states; ++column) {
             memcpy(SM_COLUMN_D(result, column), columns[column],
@@ -112,6 +113,12 @@ static int step(integrator *solver, double longest, double stop) {
                  CV_ONE_STEP);
 }
 
+static int restart(integrator *solver) {
+    cvode_memory *memory = solver->memory;
+
+    return CVodeReInit(memory->cvode, solver->time, solver->state);
+}
+
 static int interpolate(integrator *solver, double time, double state[]) {
     cvode_memory *memory = solver->memory;
 
@@ -141,6 +148,7 @@ const solver_package cvode_package = {
     .free = destroy,
     .step = step,
     .flag_name = CVodeGetReturnFlagName,
+    .restart = restart,
     .interpolate = interpolate,
     .counts = counts,
 };

@@ -26,6 +26,9 @@ typedef struct solver_package {
     int (*step)(integrator *solver, double longest, double stop);
     char *(*flag_name)(long flag);
 
+    /* Forgets the steps before the time and state reached; 0 = done. */
+    int (*restart)(integrator *solver);
+
     /* State at a time within the last step; 0 = done. */
     int (*interpolate)(integrator *solver, double time, double state[]);
 
@@ -40,19 +43,24 @@ struct integrator {
     const gear_model *model;
     integrator_options options;
     SUNContext context;
-    N_Vector state;            /* at the end of the last step */
-    sunrealtype time;          /* end of the last step (s) */
-    enum mesh_contact contact; /* in the last evaluation of the model */
-    double free_time;
-    long looks;        /* evaluations of the mesh ahead of the solver */
-    int stalled;       /* steps of next to nothing in a row */
-    int status;        /* of the last evaluation of the model that went wrong */
-    char message[256]; /* what the package said last */
+    N_Vector state;               /* at the end of the last step */
+    sunrealtype time;             /* end of the last step (s) */
+    enum mesh_contact contact;    /* in the last evaluation of the model */
+    double row_time;              /* next row of the tables, HUGE_VAL = there is none */
+    double last_time;             /* before it; nothing is evaluated later until it is reached */
+    int is_kink;                  /* the solver starts again there */
+    integrator_statistics before; /* of the starts before */
+    long looks;                   /* evaluations of the mesh ahead of the solver */
+    int stalled;                  /* steps of next to nothing in a row */
+    int status;                   /* of the last evaluation of the model that went wrong */
+    char message[256];            /* what the package said last */
     char failure[512];
 };
 
 /* For both packages, with the integrator as their user data. */
 int integrator_derivative(sunrealtype time, N_Vector state, N_Vector result, void *data);
+/* A time that a package asks about, or the latest before a step of a table. */
+double integrator_seen_time(const integrator *solver, double time);
 int integrator_error_weights(N_Vector state, N_Vector weights, void *data);
 int integrator_keep_status(integrator *solver, int status);
 

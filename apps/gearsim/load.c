@@ -69,8 +69,12 @@ double load_with_noise(const load_signal *load, double torque, double time) {
     return torque + c[0] + s * (c[1] + s * (c[2] + s * c[3]));
 }
 
+double load_steady(const load_signal *load, double time) {
+    return load->table != NULL ? time_table_value(load->table, time) : load->mean;
+}
+
 double load_torque(const load_signal *load, double time) {
-    return load_with_noise(load, load->mean, time);
+    return load_with_noise(load, load_steady(load, time), time);
 }
 
 double load_at_speed(const load_signal *load, double wheel_speed) {

@@ -11,10 +11,11 @@
 #ifndef GEARSIM_LOAD_H
 #define GEARSIM_LOAD_H
 
-#include "config.h"
+#include "time_table.h"
 
 typedef struct load_signal {
     double mean;              /* N m */
+    const time_table *table;  /* in place of the mean, NULL = none */
     double amplitude;         /* noise values are uniform in +- amplitude, N m */
     double interval;          /* between noise values, s */
     uint64_t stream;          /* what the seed has been mixed to */
@@ -27,7 +28,10 @@ load_signal load_create(double mean, double amplitude, double interval, uint64_t
 /* Coefficients of the noise between the values k and k + 1: powers of (time / interval - k), N m. */
 void load_noise_cubic(const load_signal *load, int64_t k, double coefficients[4]);
 
-/* Mean and noise, constant cost at any t (N m). */
+/* Mean or table at a time, without the noise (N m). */
+double load_steady(const load_signal *load, double time);
+
+/* With the noise, constant cost at any t (N m). */
 double load_torque(const load_signal *load, double time);
 
 /* A torque with the noise added. */

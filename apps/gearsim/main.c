@@ -19,6 +19,7 @@
 #include "process.h"
 #include "static_columns.h"
 #include "statics.h"
+#include "time_table.h"
 
 #include <errno.h>
 #include <string.h>
@@ -62,8 +63,12 @@ static int load_and_perform(const arguments *args) {
             status = dynamics_note(&mesh, &conf);
         }
         if (status == 0) {
+            status = time_tables_read(&conf);
+        }
+        if (status == 0) {
             status = perform(args->task, &conf, &mesh);
         }
+        time_tables_free(&conf);
         gear_mesh_close(&mesh);
     }
     config_free(&conf);

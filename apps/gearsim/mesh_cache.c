@@ -1,6 +1,7 @@
 /* SPDX-FileCopyrightText: The gearmesh authors */
 /* SPDX-License-Identifier: BSD-3-Clause */
 #include "mesh_cache.h"
+#include "time_table.h"
 
 #include <stdlib.h>
 
@@ -9,7 +10,9 @@ static gm_cache_params params_of(const config *conf) {
     gm_cache_params params;
 
     gm_cache_params_default(&params);
-    params.side = conf->mean_load < 0.0 ? GM_COAST : GM_DRIVE;
+    const double load =
+        conf->load_table != NULL ? time_table_value(conf->load_table, 0.0) : conf->mean_load;
+    params.side = load < 0.0 ? GM_COAST : GM_DRIVE;
     params.depth = conf->lookup_depth;
     return params;
 }

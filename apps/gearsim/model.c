@@ -126,6 +126,7 @@ int model_init(gear_model *model, const config *conf, const gear_mesh *gears) {
     model->drive = drive_create(conf);
     model->load =
         load_create(conf->mean_load, conf->noise_amplitude, conf->noise_interval, conf->seed);
+    model->load.table = conf->load_table;
     model->load.per_speed = conf->load_per_speed;
     model->load.per_speed_squared = conf->load_per_speed_squared;
     init_bodies(model, conf);
@@ -265,8 +266,8 @@ double model_wheel_speed(const gear_model *model, const gear_motion *motion) {
 }
 
 double model_load(const gear_model *model, double time, const gear_motion *motion) {
-    const double torque =
-        model->load.mean + load_at_speed(&model->load, model_wheel_speed(model, motion));
+    const double torque = load_steady(&model->load, time) +
+                          load_at_speed(&model->load, model_wheel_speed(model, motion));
 
     return load_with_noise(&model->load, torque, time);
 }
@@ -302,11 +303,12 @@ model_torques model_applied(const gear_model *model, double time, const gear_mot
     const double wheel_speed = model_wheel_speed(model, motion);
     const double r_bp = model->gears->pair.pinion.base_radius;
     const model_torques torques = {
-        .drive = model->states == STATES_MAX
-                     ? r_bp * (model->drive.torque - model->pinion_drag * motion->pinion_speed) /
-                           model->pinion_inertia
-                     : r_bp * drive_at(&model->drive, time).acceleration,
-        .load = model->load.mean + load_at_speed(&model->load, wheel_speed),
+        .drive = model->states == STATES_MAX ? r_bp *
+                                                   (drive_torque(&model->drive, time) -
+                                                    model->pinion_drag * motion->pinion_speed) /
+                                                   model->pinion_inertia
+                                             : r_bp * drive_at(&model->drive, time).acceleration,
+        .load = load_steady(&model->load, time) + load_at_speed(&model->load, wheel_speed),
         .drag = model->wheel_drag * wheel_speed,
     };
     return torques;
@@ -318,6 +320,37 @@ double model_mean_force(const gear_model *model, const model_torques *mean, doub
     return (applied - acceleration) / mobility(model);
 }
 
+/* Mean of a table over the time between two weights, or the number that stands in its place. */
+static double mean_of(const time_table *table, double number, const mean_weight *weight) {
+    if (table == NULL) {
+        return number;
+    }
+
+    double mean = 0.0;
+    for (int side = 0; side < 2; ++side) {
+        if (weight->time[side] < weight->time[side + 1]) {
+            mean += time_table_weighted(table, weight->time[side], weight->time[side + 1],
+                                        weight->weight[side][0], weight->weight[side][1]);
+        }
+    }
+    return mean;
+}
+
+model_torques model_mean_over_time(const gear_model *model, const mean_weight *weight,
+                                   double pinion_acceleration) {
+    const double r_bp = model->gears->pair.pinion.base_radius;
+    const int is_prescribed = model->states != STATES_MAX;
+    const double drive_torque = mean_of(
+        model->drive.kind == DRIVE_TORQUE ? model->drive.table : NULL, model->drive.torque, weight);
+    const model_torques mean = {
+        .drive = is_prescribed ? r_bp * (model->drive.table != NULL ? pinion_acceleration
+                                                                    : model->drive.acceleration)
+                               : r_bp * drive_torque / model->pinion_inertia,
+        .load = mean_of(model->load.table, model->load.mean, weight),
+    };
+    return mean;
+}
+
 /* Without contact every torque that follows a speed slows its body down, and what it does becomes less. */
 model_flight model_without_contact(const gear_model *model, double time, const gear_motion *motion,
                                    double horizon) {
@@ -326,19 +359,33 @@ model_flight model_without_contact(const gear_model *model, double time, const g
     const model_torques torques = model_applied(model, time, motion);
     const double load_part = model->torque_to_offset * (torques.load + torques.drag);
 
+    /* What the tables change by until their next row, beyond which the horizon does not go. */
+    const time_table *drive_table = model->drive.table, *load_table = model->load.table;
+    const double load_rate = load_table != NULL ? time_table_steepest(load_table, time) : 0.0;
+    double drive_rate = 0.0; /* of x'' (m/s3) */
+    if (drive_table != NULL) {
+        drive_rate = model->states == STATES_MAX
+                         ? model->torque_to_pinion * time_table_steepest(drive_table, time)
+                         : r_bp * time_table_curvature(drive_table, time);
+    }
+
     /* The load's torques fall by their slope times what the wheel's speed changes by until the horizon. */
-    const double wheel_acceleration = fabs(load_part) / r_bw;
+    const double wheel_acceleration =
+        (fabs(load_part) + model->torque_to_offset * load_rate * horizon) / r_bw;
     const double wheel_speed =
         fabs(model_wheel_speed(model, motion)) + wheel_acceleration * horizon;
     const double wheel_slope = model->wheel_drag + load_by_speed(&model->load, wheel_speed);
 
-    /* The pinion likewise; a prescribed speed has a constant acceleration. */
+    /* The pinion likewise, or as its speed is prescribed. */
     const double pinion_jerk =
-        model->torque_to_pinion * model->pinion_drag * fabs(torques.drive) / square(r_bp);
+        (drive_rate + model->torque_to_pinion * model->pinion_drag *
+                          (fabs(torques.drive) + drive_rate * horizon) / r_bp) /
+        r_bp;
     const model_flight flight = {
         .acceleration = torques.drive + load_part,
         .pinion_acceleration = torques.drive / r_bp,
-        .jerk = model->torque_to_offset * wheel_slope * wheel_acceleration + r_bp * pinion_jerk,
+        .jerk = model->torque_to_offset * (load_rate + wheel_slope * wheel_acceleration) +
+                r_bp * pinion_jerk,
         .pinion_jerk = pinion_jerk,
     };
     return flight;
@@ -482,6 +529,41 @@ static double tooth_step(const gear_model *model, double time, const double stat
 /* Time for a share of a natural vibration. */
 static double vibration_step(const gear_model *model) {
     return two_pi / (steps_per_vibration * model->natural_frequency);
+}
+
+double model_next_row(const gear_model *model, double time, int *is_kink) {
+    const time_table *tables[2] = {model->drive.table, model->load.table};
+    double next = HUGE_VAL;
+
+    *is_kink = 0;
+    for (int i = 0; i < 2; ++i) {
+        if (tables[i] != NULL) {
+            int kink;
+            const double row = time_table_next_row(tables[i], time, &kink);
+            const double same = isfinite(row) ? 2.0 * time_table_tolerance(tables[i], row) : 0.0;
+
+            /* Rows of both tables at one time, to rounding, are one. */
+            if (row < next - same) {
+                *is_kink = kink;
+            } else if (row <= next + same) {
+                *is_kink |= kink;
+            }
+            next = fmin(next, row);
+        }
+    }
+    return next;
+}
+
+double model_before_row(const gear_model *model, double row) {
+    const time_table *tables[2] = {model->drive.table, model->load.table};
+    double before = row;
+
+    for (int i = 0; i < 2; ++i) {
+        if (tables[i] != NULL && isfinite(row)) {
+            before = fmin(before, row - 4.0 * time_table_tolerance(tables[i], row));
+        }
+    }
+    return before;
 }
 
 double model_max_step(const gear_model *model, double time, const double state[]) {

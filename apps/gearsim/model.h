@@ -107,6 +107,16 @@ typedef struct model_torques {
 
 model_torques model_applied(const gear_model *model, double time, const gear_motion *motion);
 
+/* How a mean is weighted: by straight lines between the weights at both ends, over one or two times in a row. */
+typedef struct mean_weight {
+    double time[3];
+    double weight[2][2];
+} mean_weight;
+
+/* Mean of what depends on time alone, without the noise; of the pinion's acceleration as it is given. */
+model_torques model_mean_over_time(const gear_model *model, const mean_weight *weight,
+                                   double pinion_acceleration);
+
 /* The parts of it that are linear in both speeds, and those that follow the motion in any other way. */
 model_torques model_by_speeds(const gear_model *model, double pinion_speed, double wheel_speed);
 model_torques model_by_motion(const gear_model *model, const gear_motion *motion);
@@ -142,6 +152,12 @@ int model_derivative(const gear_model *model, double time, const double state[],
 /* jacobian[column][row] = d derivative[row] / d state[column]. Returns a library status. */
 int model_jacobian(const gear_model *model, double time, const double state[],
                    double jacobian[STATES_MAX][STATES_MAX]);
+
+/* Next row of the tables behind a time, HUGE_VAL = there is none. At a kink the solver has to start again. */
+double model_next_row(const gear_model *model, double time, int *is_kink);
+
+/* A time before a row that is near to it, where what is before the row still counts. */
+double model_before_row(const gear_model *model, double row);
 
 /* Longest step at a time that cannot miss a tooth or a loss of contact (s); 0 = any. */
 double model_max_step(const gear_model *model, double time, const double state[]);
