@@ -709,7 +709,7 @@ class Geometry(Case):
 
     def test_pose_out_of_mesh(self):
         for key, amount in [("center_distance_change_um", 6000), ("center_distance_change_um", -2000), ("offset_um", 40000),
-                            ("axial_shift_um", -17500)]:
+                            ("axial_shift_um", -17500), ("skew_mrad", 60), ("inclination_mrad", -60)]:
             self.refused(f"pose.{key}: must leave the gears in mesh", f"(got {amount})",
                          arguments=["--set", f"pose.{key}={amount}", "--set", "pose.axial_shift_um=1"]
                          if key != "axial_shift_um" else ["--set", f"pose.{key}={amount}"])

@@ -18,26 +18,32 @@ static int load_flanks(gear_mesh *mesh, const config *conf) {
 }
 
 /* The key of the pose that moves the wheel most is the one to look at. */
-static int refuse_pose(const config *conf) {
+static int refuse_pose(const config *conf, const gm_pair *pair) {
+    const double half_face = 0.5 * pair->face_width;
     const struct {
         const char *key;
-        double amount;
+        double amount; /* as the key gives it */
+        double move;   /* (m) */
     } moves[] = {
-        {"pose.center_distance_change_um", conf->pose.center_distance_change},
-        {"pose.offset_um", conf->pose.offset},
-        {"pose.axial_shift_um", conf->pose.axial_shift},
+        {"pose.center_distance_change_um", 1e6 * conf->pose.center_distance_change,
+         conf->pose.center_distance_change},
+        {"pose.offset_um", 1e6 * conf->pose.offset, conf->pose.offset},
+        {"pose.axial_shift_um", 1e6 * conf->pose.axial_shift, conf->pose.axial_shift},
+        {"pose.skew_mrad", 1e3 * conf->pose.skew, half_face * conf->pose.skew},
+        {"pose.inclination_mrad", 1e3 * conf->pose.inclination, half_face * conf->pose.inclination},
     };
     int largest = 0;
 
     for (int k = 1; k < (int)(sizeof moves / sizeof moves[0]); ++k) {
-        if (fabs(moves[k].amount) > fabs(moves[largest].amount)) {
+        if (fabs(moves[k].move) > fabs(moves[largest].move)) {
             largest = k;
         }
     }
     config_complain(conf, moves[largest].key,
                     "must leave the gears in mesh, with tips that reach each other and stay clear "
-                    "of the roots, and faces that overlap (got %.9g)",
-                    1e6 * moves[largest].amount);
+                    "of the roots, faces that overlap, and tilts of less than an eighth of the "
+                    "transverse base pitch over the face (got %.9g)",
+                    moves[largest].amount);
     return EXIT_BAD_INPUT;
 }
 
@@ -67,7 +73,7 @@ static int prepare(gear_mesh *mesh, const config *conf) {
         return 0;
     }
     free(memory);
-    return status == GM_POSE_OUT_OF_MESH ? refuse_pose(conf) : EXIT_RUN_FAILED;
+    return status == GM_POSE_OUT_OF_MESH ? refuse_pose(conf, &mesh->pair) : EXIT_RUN_FAILED;
 }
 
 int gear_mesh_open(gear_mesh *mesh, const config *conf) {

@@ -130,6 +130,7 @@ static const struct {
     [UNIT_MM] = {1e3, 1},
     [UNIT_MM_DIAMETER] = {2e3, 1},
     [UNIT_UM] = {1e6, 1},
+    [UNIT_MRAD] = {1e3, 1},
     [UNIT_DEG] = {180, 3.14159265358979323846},
     [UNIT_RPM] = {30, 3.14159265358979323846},
 };

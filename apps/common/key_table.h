@@ -22,7 +22,16 @@ enum key_kind {
 };
 
 /* SI value = value in the file / divisor * factor: mm have an exact divisor, but no exact factor. */
-enum key_unit { UNIT_SI, UNIT_SHARE, UNIT_MM, UNIT_MM_DIAMETER, UNIT_UM, UNIT_DEG, UNIT_RPM };
+enum key_unit {
+    UNIT_SI,
+    UNIT_SHARE,
+    UNIT_MM,
+    UNIT_MM_DIAMETER,
+    UNIT_UM,
+    UNIT_MRAD,
+    UNIT_DEG,
+    UNIT_RPM
+};
 
 typedef struct key_range {
     double low, high;        /* in the unit of the file */

@@ -123,6 +123,10 @@ static const key_spec keys[] = {
      .standard = "0", .help = "and along +y, to the left seen from the pinion's axis against +z"},
     {NAME("pose", "axial_shift_um"), NUMBER(UNIT_UM, UP_TO(1e9)), INTO(pose.axial_shift),
      .standard = "0", .help = "and the wheel along its axis, +z"},
+    {NAME("pose", "skew_mrad"), NUMBER(UNIT_MRAD, UP_TO(100)), INTO(pose.skew),
+     .standard = "0", .help = "its axis is tilted out of the plane of the axes, about +x at mid-face"},
+    {NAME("pose", "inclination_mrad"), NUMBER(UNIT_MRAD, UP_TO(100)), INTO(pose.inclination),
+     .standard = "0", .help = "and in that plane, about +y"},
 
     {NAME("bodies", "pinion_inertia_kg_m2"), NUMBER(UNIT_SI, INERTIA), INTO(pinion_inertia),
      .used = FOR_DYNAMIC | FOR_TORQUE, .required = FOR_RUN | FOR_DYNAMIC | FOR_TORQUE,

@@ -291,7 +291,7 @@ static gmi_side_sum exact_at(const gm_cache *cache, gm_position *position, doubl
         return gmi_no_contact();
     }
     gmi_side_sum_3d(cache->pair, &cache->mesh->engagement, side, cache->side, position,
-                    GMI_DERIVATIVES, &sum);
+                    GMI_DERIVATIVES | (cache->mesh->engagement.is_tilted ? GMI_MOMENTS : 0), &sum);
     return sum;
 }
 

@@ -3,7 +3,7 @@
 
 /*
  * What the sources of the core share and users never see. Dependencies run one way:
- * gear -> meshing -> pair -> position -> contact -> flank -> line -> ramp -> penetration -> law -> wrench -> mesh ->
+ * gear -> meshing -> pair -> position -> contact -> flank -> line -> ramp, tilt -> penetration -> law -> wrench -> mesh ->
  * equilibrium, cache.
  */
 #ifndef GEARMESH_INTERNAL_H
@@ -118,6 +118,11 @@ typedef struct gmi_engagement {
     double phase_shift;  /* added to the phase (m) */
     double
         axis_direction; /* of the wheel's axis, seen from the pinion's, counter-clockwise from +x (rad) */
+
+    /* The wheel's rotation vector about the middle of its own face, in the frame in which its axis is on +x. */
+    int is_tilted;
+    double tilt[2];     /* about x and y (rad) */
+    double tilt_center; /* z of that middle (m) */
 } gmi_engagement;
 
 /* NULL = no pose. Returns GM_OK, GM_STATE_NOT_FINITE or GM_POSE_OUT_OF_MESH. */
@@ -304,11 +309,14 @@ typedef struct gmi_grid {
 void gmi_grid_init(gmi_grid *grid, const gmi_tables *tables, double climb, double length,
                    double face_origin, double face_scale);
 
-/* One line: t1 from `from` to `to`, with f = gap + 2 half_slope (t1 - from) + tables of both flanks. */
+/*
+ * One line: t1 from `from` to `to`, with f = gap + 2 half_slope s + curvature s^2 + tables of both flanks, s = t1 - from.
+ */
 typedef struct gmi_line {
     double from, to;
     double gap;           /* delta, both pitch deviations, and ramps (m) */
-    double half_slope;    /* half of what the ramps make of d f / d t1 (m) */
+    double half_slope;    /* half of what ramps and tilt make of d f / d t1 there (m) */
+    double curvature;     /* half of what the tilt makes of d2 f / d t1^2 (m) */
     const double *pinion; /* table, NULL = none */
     const double *wheel;
     double pinion_profile; /* v2 of the pinion's table at t1 = 0 */
@@ -336,10 +344,42 @@ typedef struct gmi_line_sum {
 void gmi_line_integrate(const gmi_line *line, const gmi_grid *pinion, const gmi_grid *wheel,
                         int wanted, gmi_line_sum *result);
 
-/* ramp.c: gmi_line_integrate() with the ramps of both flanks, NULL = none, taken off; line->half_slope is 0. */
+/* ramp.c: gmi_line_integrate() with the ramps of both flanks, NULL = none, taken off. */
 void gmi_ramps_integrate(const gmi_line *line, const gmi_grid *pinion, const gmi_grid *wheel,
                          const gmi_tables *pinion_tables, const gmi_tables *wheel_tables,
                          int wanted, gmi_line_sum *result);
+
+/* tilt.c: lines of contact between tilted axes. */
+
+/* f along a line is gain delta + shift + 2 half_slope (t1 - from) + curvature (t1 - from)^2. */
+typedef struct gmi_tilted_line {
+    double gain;       /* (1) */
+    double shift;      /* (m) */
+    double half_slope; /* (m) */
+    double curvature;  /* (m) */
+    double by_rho,
+        by_rho_slope; /* d f / d rho at fixed t1 is by_rho + by_rho_slope (t1 - from) (1) */
+} gmi_tilted_line;
+
+/* Where line of this origin exists, by each gear's own flank; sets what the ends move with. Empty if from >= to. */
+/* The part of a line on both flanks, none where not from < to; and d end / d line origin and / d delta (1/m). */
+typedef struct gmi_tilted_part {
+    double from, to; /* t1 */
+    double from_by_origin, from_by_delta;
+    double to_by_origin, to_by_delta;
+} gmi_tilted_part;
+
+gmi_tilted_part gmi_tilt_clip(const gm_pair *pair, const gmi_engagement *at, int side,
+                              const gmi_lines *lines, double rho_origin);
+
+void gmi_tilt_line(const gm_pair *pair, const gmi_engagement *at, int side, double rho_origin,
+                   double advance, double from, double to, gmi_tilted_line *line);
+
+/* d f / d delta of a side (1). */
+double gmi_tilt_gain(const gm_pair *pair, const gmi_engagement *at, int side);
+
+/* f exceeds delta nowhere on a side by more than this (m). */
+double gmi_tilt_bound(const gm_pair *pair, const gmi_engagement *at, int side);
 
 /* penetration.c: the sums over all lines of one side. */
 
@@ -349,8 +389,11 @@ typedef struct gmi_side {
     const gmi_tables *wheel;
     gmi_grid pinion_grid; /* not set where both flanks are ideal */
     gmi_grid wheel_grid;
-    int ramps;   /* of both flanks */
-    double peak; /* most material of both flanks: nothing touches at a delta <= -peak (m) */
+    int ramps;         /* of both flanks */
+    int is_tilted;     /* the axes are */
+    double tilt_bound; /* what tilted axes add to the overlap at most (m) */
+    double
+        peak; /* that and most material of both flanks: nothing touches at a delta <= -peak (m) */
 } gmi_side;
 
 void gmi_side_init(gmi_side *prepared, const gm_pair *pair, const gmi_engagement *at,
@@ -372,7 +415,7 @@ static inline void gmi_side_sum_3d(const gm_pair *pair, const gmi_engagement *at
                                    const gmi_side *prepared, int side, const gm_position *position,
                                    int wanted, gmi_side_sum *total) {
     *total = gmi_no_contact();
-    if (prepared->pinion == NULL && prepared->wheel == NULL) {
+    if (prepared->pinion == NULL && prepared->wheel == NULL && !at->is_tilted) {
         gmi_side_sum_ideal(pair, at, side, position, wanted, total);
     } else {
         gmi_side_sum_tables(pair, at, prepared, side, position, wanted, total);

@@ -2,7 +2,7 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 
 /*
- * The integral of max(0, f) along one line of contact, f = gap + 2 half_slope (t1 - from) + tables of both flanks, exactly.
+ * The integral of max(0, f) along one line of contact, f a parabola and the tables of both flanks, exactly.
  *
  * In grid units the line climbs straight through a flank's table, and within a cell the bilinear surface is quadratic
  * along it. At a grid line only slope and curvature change, by the second difference of the nodes across that grid
@@ -422,9 +422,9 @@ SPECIALIZED void walk(walk_state at, const gmi_grid *first, const gmi_grid *seco
 static void integrate_ideal(const gmi_line *line, int wanted, gmi_line_sum *result) {
     const double length = line->to - line->from;
     result->at_from = line->gap;
-    result->at_to = line->gap + length * (2.0 * line->half_slope);
-    if (line->half_slope != 0.0) {
-        const quadratic f = {line->gap, line->half_slope, 0.0};
+    result->at_to = line->gap + length * (2.0 * line->half_slope + length * line->curvature);
+    if (line->half_slope != 0.0 || line->curvature != 0.0) {
+        const quadratic f = {line->gap, line->half_slope, line->curvature};
         const piece part = {line->from, length, f, 0.0, 0.0, 0.0, 0.0};
         add_split(&part, wanted, result);
     } else if (line->gap > 0.0) {
@@ -450,7 +450,8 @@ static void integrate_tables(const gmi_line *line, const gmi_grid *first, const 
     walk_state at; /* every field is set below; zeroing all first costs as much as ten pieces */
     at.s = s;
     at.faces = (double)face;
-    at.f = (quadratic){line->gap, line->half_slope / first->face_rate, 0.0};
+    at.f = (quadratic){line->gap, line->half_slope / first->face_rate,
+                       line->curvature / (first->face_rate * first->face_rate)};
     at.three_sums = at.contact = at.two_first = at.two_second = 0.0;
 
     /* Into both tables. Face lines are shared, or those of the second one are counted in cells of the first. */

@@ -25,7 +25,7 @@ void gm_mesh_params_default(gm_mesh_params *params) {
         .stiffness = gmi_nan(),
         .damping = 0.0,
         .simple_stiffness = gmi_nan(),
-        .pose = {0.0, 0.0, 0.0},
+        .pose = {0.0, 0.0, 0.0, 0.0, 0.0},
     };
     *params = defaults;
 }
@@ -189,7 +189,8 @@ static inline int accumulated(const gm_mesh *mesh, double offset_rate, int wante
     int mask = wanted & GM_WANT_WRENCH ? GMI_MOMENTS : GMI_SUM;
     if (wanted & GM_WANT_DERIVATIVES) {
         const int is_damped = mesh->law.damping > 0.0 && offset_rate != 0.0;
-        mask |= GMI_DERIVATIVES | (is_damped ? GMI_CONTACT_DERIVATIVES : 0);
+        mask |= GMI_DERIVATIVES | (is_damped ? GMI_CONTACT_DERIVATIVES : 0) |
+                (mesh->engagement.is_tilted ? GMI_MOMENTS : 0);
     }
     return mask;
 }

@@ -154,6 +154,22 @@ static int move_face(const gm_pair *pair, double shift, gmi_engagement *at) {
     return GM_OK;
 }
 
+/* The rotation vector, turned with the axes; about the middle of the wheel's own face, where that is now. */
+static int tilt_axis(const gm_pair *pair, const gm_pose *pose, gmi_engagement *at) {
+    const double largest = pair->transverse_base_pitch / 8.0;
+    if (!(hypot(pose->skew, pose->inclination) * pair->face_width <= largest)) {
+        return GM_POSE_OUT_OF_MESH;
+    }
+
+    const double cosine = cos(at->axis_direction);
+    const double sine = sin(at->axis_direction);
+    at->is_tilted = 1;
+    at->tilt[0] = cosine * pose->skew + sine * pose->inclination;
+    at->tilt[1] = cosine * pose->inclination - sine * pose->skew;
+    at->tilt_center = pair->wheel.face_start + 0.5 * pair->wheel.face_width + pose->axial_shift;
+    return GM_OK;
+}
+
 int gmi_engagement_find(const gm_pair *pair, const gm_pose *pose, gmi_engagement *engagement) {
     *engagement = drawn(pair);
     if (pose == NULL) {
@@ -162,7 +178,8 @@ int gmi_engagement_find(const gm_pair *pair, const gm_pose *pose, gmi_engagement
     const double along_x = pose->center_distance_change;
     const double along_y = pose->offset;
     const double along_z = pose->axial_shift;
-    if (!gmi_is_finite(along_x) || !gmi_is_finite(along_y) || !gmi_is_finite(along_z)) {
+    if (!gmi_is_finite(along_x) || !gmi_is_finite(along_y) || !gmi_is_finite(along_z) ||
+        !gmi_is_finite(pose->skew) || !gmi_is_finite(pose->inclination)) {
         return GM_STATE_NOT_FINITE;
     }
 
@@ -173,6 +190,9 @@ int gmi_engagement_find(const gm_pair *pair, const gm_pose *pose, gmi_engagement
     }
     if (status == GM_OK && along_z != 0.0) {
         status = move_face(pair, along_z, engagement);
+    }
+    if (status == GM_OK && (pose->skew != 0.0 || pose->inclination != 0.0)) {
+        status = tilt_axis(pair, pose, engagement);
     }
     return status;
 }

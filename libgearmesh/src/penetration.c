@@ -29,8 +29,10 @@ void gmi_side_init(gmi_side *prepared, const gm_pair *pair, const gmi_engagement
     prepared->pinion = gmi_flanks_side(pinion_flanks, side);
     prepared->wheel = gmi_flanks_side(wheel_flanks, side);
     prepared->ramps = 0;
-    prepared->peak = 0.0;
-    if (prepared->pinion == NULL && prepared->wheel == NULL) {
+    prepared->is_tilted = at->is_tilted;
+    prepared->tilt_bound = at->is_tilted ? gmi_tilt_bound(pair, at, side) : 0.0;
+    prepared->peak = prepared->tilt_bound;
+    if (prepared->pinion == NULL && prepared->wheel == NULL && !at->is_tilted) {
         return;
     }
 
@@ -45,7 +47,7 @@ void gmi_side_init(gmi_side *prepared, const gm_pair *pair, const gmi_engagement
         prepared->wheel_grid.face_base == prepared->pinion_grid.face_base &&
         prepared->wheel_grid.face_rate == prepared->pinion_grid.face_rate;
     prepared->ramps = ramp_count(prepared->pinion) + ramp_count(prepared->wheel);
-    prepared->peak = gm_flanks_peak(pinion_flanks, side) + gm_flanks_peak(wheel_flanks, side);
+    prepared->peak += gm_flanks_peak(pinion_flanks, side) + gm_flanks_peak(wheel_flanks, side);
 }
 
 /* ---------------------------------------------------------------------------------------------
@@ -55,9 +57,13 @@ void gmi_side_init(gmi_side *prepared, const gm_pair *pair, const gmi_engagement
 /* One side at one position: everything its lines have in common. */
 typedef struct side_view {
     const gm_pair *pair;
+    const gmi_engagement *at;
+    int side;
     const gmi_side *prepared;
     gmi_lines lines;
     gmi_line_ends ends;
+    gmi_tilted_part tilted_part; /* of the line at hand, if the axes are tilted */
+    gmi_tilted_line tilted;
     double wheel_reach; /* rho_w - start of the wheel's flank = wheel_reach - rho_p (m) */
 } side_view;
 
@@ -109,6 +115,34 @@ static void add_contact_derivatives(const side_view *view, gmi_interval part,
     }
 }
 
+/* Between tilted axes f follows delta by the gain, and the line's origin also by where the point is; and the ends move. */
+static void add_tilt_derivatives(const gmi_tilted_line *tilted, const gmi_tilted_part *part,
+                                 const gmi_line_sum *line, gmi_side_sum *side) {
+    const double from_part = line->contact_t1 - part->from * line->contact;
+    const double f_from = fmax(0.0, line->at_from);
+    const double f_to = fmax(0.0, line->at_to);
+    side->by_delta += (tilted->gain - 1.0) * line->contact + f_to * part->to_by_delta -
+                      f_from * part->from_by_delta;
+    side->by_origin += tilted->by_rho * line->contact + tilted->by_rho_slope * from_part +
+                       f_to * part->to_by_origin - f_from * part->from_by_origin;
+}
+
+/* The touching part, likewise; at its roots the change by the origin is taken as it is in the middle of the line. */
+static void add_tilt_contact_derivatives(const gmi_tilted_line *tilted, const gmi_tilted_part *part,
+                                         const gmi_line_sum *line, gmi_side_sum *side) {
+    const double middle = tilted->by_rho + 0.5 * tilted->by_rho_slope * (part->to - part->from);
+    side->contact_by_delta += (tilted->gain - 1.0) * line->roots;
+    side->contact_by_origin += middle * line->roots;
+    if (line->at_from > 0.0) {
+        side->contact_by_delta -= part->from_by_delta;
+        side->contact_by_origin -= part->from_by_origin;
+    }
+    if (line->at_to > 0.0) {
+        side->contact_by_delta += part->to_by_delta;
+        side->contact_by_origin += part->to_by_origin;
+    }
+}
+
 static inline void add_moments(const gmi_lines *lines, double rho_origin, const gmi_line_sum *line,
                                gmi_side_sum *side) {
     side->sum_t1 += line->sum_t1;
@@ -117,27 +151,84 @@ static inline void add_moments(const gmi_lines *lines, double rho_origin, const 
     side->contact_rho += rho_origin * line->contact + lines->advance * line->contact_t1;
 }
 
-static void add_line(const side_view *view, const gmi_flank *pinion, const gmi_flank *wheel, int k,
+/* The tables are read where parallel axes would have them touch: a line ends where that leaves one of them. */
+static void clip_to_table(const gm_gear *gear, int is_wheel, const gmi_lines *lines, double reach,
+                          double rho_origin, gmi_tilted_part *part) {
+    const double per_advance = 1.0 / lines->advance;
+    const double by_delta = is_wheel ? per_advance : 0.0;
+    const double start = is_wheel ? reach - gear->tip_roll_length : gear->start_roll_length;
+    const double tip = is_wheel ? reach - gear->start_roll_length : gear->tip_roll_length;
+    const int climbs = lines->advance > 0.0;
+    const double enter = ((climbs ? start : tip) - rho_origin) * per_advance;
+    const double leave = ((climbs ? tip : start) - rho_origin) * per_advance;
+    if (enter > part->from) {
+        part->from = enter;
+        part->from_by_origin = -per_advance;
+        part->from_by_delta = by_delta;
+    }
+    if (leave < part->to) {
+        part->to = leave;
+        part->to_by_origin = -per_advance;
+        part->to_by_delta = by_delta;
+    }
+}
+
+/*
+ * Between tilted axes the line has ends of its own, and the overlap is a parabola along it. False where none of it is on
+ * both flanks.
+ */
+static int tilt_line(side_view *view, double rho_origin, gmi_line *line) {
+    gmi_tilted_part *part = &view->tilted_part;
+    gmi_tilted_line *tilted = &view->tilted;
+    const gm_pair *pair = view->pair;
+    const double reach = view->at->line_of_action + view->lines.delta;
+    *part = gmi_tilt_clip(pair, view->at, view->side, &view->lines, rho_origin);
+    if (view->prepared->pinion != NULL && view->lines.advance != 0.0) {
+        clip_to_table(&pair->pinion, 0, &view->lines, reach, rho_origin, part);
+    }
+    if (view->prepared->wheel != NULL && view->lines.advance != 0.0) {
+        clip_to_table(&pair->wheel, 1, &view->lines, reach, rho_origin, part);
+    }
+    if (!(part->from < part->to)) {
+        return 0;
+    }
+
+    gmi_tilt_line(pair, view->at, view->side, rho_origin, view->lines.advance, part->from, part->to,
+                  tilted);
+    line->from = part->from;
+    line->to = part->to;
+    line->gap += (tilted->gain - 1.0) * view->lines.delta + tilted->shift;
+    line->half_slope = tilted->half_slope;
+    line->curvature = tilted->curvature;
+    return 1;
+}
+
+static void add_line(side_view *view, const gmi_flank *pinion, const gmi_flank *wheel, int k,
                      int wanted, gmi_side_sum *side) {
     const gmi_interval part = gmi_line_clip(&view->ends, k);
-    if (!(part.from < part.to)) {
+    const gmi_side *prepared = view->prepared;
+    const int is_tilted = prepared->is_tilted;
+    if (!(part.from < part.to) && !is_tilted) {
         return;
     }
 
     /* The line in the terms of the tables it runs through. */
     const gm_pair *pair = view->pair;
-    const gmi_side *prepared = view->prepared;
     const double rho_origin = view->lines.origin + (double)k * pair->transverse_base_pitch;
-    const gmi_line line = {
+    gmi_line line = {
         part.from,
         part.to,
         view->lines.delta + pinion->pitch + wheel->pitch,
+        0.0,
         0.0,
         pinion->values,
         wheel->values,
         (rho_origin - pair->pinion.start_roll_length) * prepared->pinion_grid.per_rho,
         (view->wheel_reach - rho_origin) * prepared->wheel_grid.per_rho,
     };
+    if (is_tilted && !tilt_line(view, rho_origin, &line)) {
+        return;
+    }
 
     gmi_line_sum sum;
     if (prepared->ramps > 0) {
@@ -160,6 +251,14 @@ static void add_line(const side_view *view, const gmi_flank *pinion, const gmi_f
     if (wanted & GMI_MOMENTS) {
         add_moments(&view->lines, rho_origin, &sum, side);
     }
+
+    /* And what is different between tilted axes. */
+    if (is_tilted && wanted & GMI_DERIVATIVES) {
+        add_tilt_derivatives(&view->tilted, &view->tilted_part, &sum, side);
+    }
+    if (is_tilted && wanted & GMI_CONTACT_DERIVATIVES) {
+        add_tilt_contact_derivatives(&view->tilted, &view->tilted_part, &sum, side);
+    }
 }
 
 static int next_tooth(int tooth, int step, int teeth) {
@@ -171,9 +270,18 @@ void gmi_side_sum_tables(const gm_pair *pair, const gmi_engagement *at, const gm
                          int side, const gm_position *position, int wanted, gmi_side_sum *total) {
     side_view view;
     view.pair = pair;
+    view.at = at;
+    view.side = side;
     view.prepared = prepared;
     gmi_lines_find(pair, at, side, position, &view.lines);
     view.ends = gmi_line_ends_find(pair, at, &view.lines);
+    if (prepared->is_tilted) {
+        /* That may bring a line in that is just outside, and its ends are not those of parallel axes. */
+        --view.lines.first;
+        ++view.lines.last;
+        view.ends.face_from = HUGE_VAL;
+        view.ends.face_to = -HUGE_VAL;
+    }
     view.wheel_reach = at->line_of_action + view.lines.delta - pair->wheel.start_roll_length;
 
     /* Line by line, each with the teeth that meet on it; those that cannot reach each other are left out. */
@@ -181,7 +289,7 @@ void gmi_side_sum_tables(const gm_pair *pair, const gmi_engagement *at, const gm
     for (int k = view.lines.first; k <= view.lines.last; ++k) {
         const gmi_flank pinion = gmi_flank_of(prepared->pinion, teeth.pinion);
         const gmi_flank wheel = gmi_flank_of(prepared->wheel, teeth.wheel);
-        if (view.lines.delta + pinion.peak + wheel.peak > 0.0) {
+        if (view.lines.delta + pinion.peak + wheel.peak + prepared->tilt_bound > 0.0) {
             add_line(&view, &pinion, &wheel, k, wanted, total);
         }
         teeth.pinion = next_tooth(teeth.pinion, teeth.step, pair->pinion.teeth);

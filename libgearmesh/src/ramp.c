@@ -13,24 +13,28 @@
 
 /* One ramp along the line: takes off max(0, at_zero + per_t1 t1). */
 typedef struct trace {
-    double at_zero;     /* at t1 = 0 (m) */
-    double per_t1;      /* (m) */
-    double per_profile; /* the same by v2 of its flank, for the derivatives (m) */
+    double at_zero; /* at t1 = 0 (m) */
+    double per_t1;  /* (m) */
 } trace;
 
 /* The ramps that take something off the line. */
 typedef struct traces {
     trace list[2 * GM_FLANK_RAMPS_MAX];
-    int pinion; /* the first ones; the rest are the wheel's */
+    short of[2 * GM_FLANK_RAMPS_MAX]; /* which ramps of their flank they are */
+    int pinion;                       /* the first ones; the rest are the wheel's */
     int all;
 } traces;
 
+/* What a ramp takes off more per cell of v2 (m). */
+static double per_profile_of(const gm_flank_ramp *ramp, const gmi_grid *grid) {
+    return ramp->per_t2 / grid->profile_cells;
+}
+
 static trace trace_of(const gm_flank_ramp *ramp, const gmi_grid *grid, double profile) {
     trace along;
-    along.per_profile = ramp->per_t2 / grid->profile_cells;
-    along.at_zero = ramp->offset + ramp->per_t1 * grid->face_origin + along.per_profile * profile;
-    along.per_t1 =
-        ramp->per_t1 * grid->face_scale + along.per_profile * (grid->direction * grid->climb);
+    const double per_profile = per_profile_of(ramp, grid);
+    along.at_zero = ramp->offset + ramp->per_t1 * grid->face_origin + per_profile * profile;
+    along.per_t1 = ramp->per_t1 * grid->face_scale + per_profile * (grid->direction * grid->climb);
     return along;
 }
 
@@ -45,7 +49,9 @@ static void add_traces(traces *found, const gmi_tables *tables, const gmi_grid *
     for (int k = 0; k < count; ++k) {
         const trace along = trace_of(&tables->ramps[k], grid, profile);
         if (height(&along, from) > 0.0 || height(&along, to) > 0.0) {
-            found->list[found->all++] = along;
+            found->list[found->all] = along;
+            found->of[found->all] = (short)k;
+            ++found->all;
         }
     }
 }
@@ -64,10 +70,11 @@ static double next_edge(const traces *ramps, double from, double to) {
 }
 
 /*
- * Takes ramps first .. last - 1 off a part of the line that no edge cuts: what a ramp does in its middle it does all
- * along. Returns their sum by v2 of the flank (m).
+ * Takes ramps first .. last - 1, those of one flank, off a part of the line that no edge cuts: what a ramp does in its
+ * middle it does all along. Returns their sum by v2 of the flank (m), if wanted.
  */
-static double take_off(gmi_line *part, const traces *ramps, int first, int last) {
+static double take_off(gmi_line *part, const traces *ramps, int first, int last,
+                       const gmi_tables *tables, const gmi_grid *grid, int wanted) {
     const double middle = 0.5 * (part->from + part->to);
     double per_profile = 0.0;
     for (int k = first; k < last; ++k) {
@@ -77,7 +84,9 @@ static double take_off(gmi_line *part, const traces *ramps, int first, int last)
         }
         part->gap -= height(ramp, part->from);
         part->half_slope -= 0.5 * ramp->per_t1;
-        per_profile += ramp->per_profile;
+        if (wanted & GMI_DERIVATIVES) {
+            per_profile += per_profile_of(&tables->ramps[ramps->of[k]], grid);
+        }
     }
     return per_profile;
 }
@@ -112,9 +121,14 @@ void gmi_ramps_integrate(const gmi_line *line, const gmi_grid *pinion, const gmi
         gmi_line part = *line;
         gmi_line_sum sum;
         part.from = from;
+        const double gone = from - line->from; /* the parabola as seen from here */
+        part.gap += gone * (2.0 * line->half_slope + gone * line->curvature);
+        part.half_slope += gone * line->curvature;
         part.to = next_edge(&ramps, from, line->to);
-        const double by_pinion = take_off(&part, &ramps, 0, ramps.pinion);
-        const double by_wheel = take_off(&part, &ramps, ramps.pinion, ramps.all);
+        const double by_pinion =
+            take_off(&part, &ramps, 0, ramps.pinion, pinion_tables, pinion, wanted);
+        const double by_wheel =
+            take_off(&part, &ramps, ramps.pinion, ramps.all, wheel_tables, wheel, wanted);
 
         /* Tables and straight line as one; the slope of the ramps counts where the flanks touch. */
         gmi_line_integrate(&part, pinion, wheel, wanted, &sum);

@@ -292,7 +292,7 @@ static void count_pieces(bench_gears *gears, const gm_position *position,
 
 /* All over the hunting period, in no order. */
 static void make_states(bench_gears *gears, const bench_params *params) {
-    unsigned long long seed = 7;
+    uint64_t seed = 7;
     gears->mean_sum = gears->mean_pieces = gears->mean_lines = 0.0;
     for (int k = 0; k < BENCH_STATES; ++k) {
         const double angle =
@@ -328,7 +328,7 @@ static void make_mesh(bench_gears *gears) {
 }
 
 void bench_gears_make(bench_gears *gears, const bench_params *params) {
-    unsigned long long seed = 1;
+    uint64_t seed = 1;
     make_pair(&gears->pair, params);
     gears->flanks[GM_PINION] = gears->flanks[GM_WHEEL] = NULL;
     if (params->profile_nodes > 0) {
