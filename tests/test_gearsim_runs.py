@@ -460,12 +460,10 @@ class Tables(Case):
         rows = [(0.0, 20.0), (0.01, 20.0), (0.01001, 120.0), (0.01002, 20.0), (1.0, 20.0)]
         for method in ("adams", "erk"):
             c = self.run_with([*SIMPLE, *PLAIN, *TIGHT, f"solver.method={method}"], load=("torque_Nm", rows))
-            r_bw = self.geometry(SIMPLE)["wheel_base_radius_mm"] * 1e-3
             speed = 0.5 * 2e-5 * 100 / I_W * 30 / math.pi
             fall = [c["wheel_speed_rpm"][0] - w for w in c["wheel_speed_rpm"]]
             # The vibration of 3 kHz and 5 % begins with this amplitude: its first extreme is at the first row behind.
             self.assert_close(max(fall), speed, relative=0.1)
-            self.assertGreater(r_bw, 0.0)
 
     def test_repeated_table_is_a_long_one(self):
         period = 0.0037
@@ -532,10 +530,8 @@ class Tables(Case):
             force = statistics.fmean(c["contact_force_N"][k - 100:k + 100])
             self.assert_close(force, sign * 0.1 * speed / r_bw, relative=1e-2)
         # The flanks change where the deceleration's torque takes the load over, before the speed is zero.
-        decelerating = I_W * 6000 / 0.1 * math.pi / 30 * ratio
         zero = next(t for t, f in zip(c["time_s"], c["contact_force_N"]) if t > 0.021 and f <= 0)
         self.assertLess(zero, 0.07)
-        self.assertGreater(decelerating, 0.0)
 
 
 class Rattle(Case):

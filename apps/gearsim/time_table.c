@@ -208,11 +208,15 @@ static int read_rows(table_reader *reader) {
 
 /* Whether it says something for the whole run. */
 static int check_span(const table_reader *reader, int repeats) {
-    const row *first = &reader->rows[0], *last = &reader->rows[reader->count - 1];
+    static const char two_times[] = "must have rows at two times at least";
     char got[48];
 
-    if (reader->count < 2 || first->time == last->time) {
-        return refuse(reader, 0, "must have rows at two times at least", NULL);
+    if (reader->count < 2) { /* perhaps no memory at all */
+        return refuse(reader, 0, two_times, NULL);
+    }
+    const row *first = &reader->rows[0], *last = &reader->rows[reader->count - 1];
+    if (first->time == last->time) {
+        return refuse(reader, 0, two_times, NULL);
     }
     if (first->time > 0.0) {
         snprintf(got, sizeof got, "%.9g s", first->time);

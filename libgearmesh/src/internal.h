@@ -492,6 +492,8 @@ typedef struct gmi_law {
     double mean_stiffness; /* of the mesh over all pairs that touch on average (N/m) */
 } gmi_law;
 
+gmi_law gmi_law_of(const gm_mesh_params *params, const gm_pair *pair);
+
 /* What the flanks of one side do. */
 typedef struct gmi_side_force {
     double force;               /* >= 0, along the transverse line of action (N) */

@@ -9,6 +9,19 @@
 
 #include <math.h>
 
+/* Both models share eigenfrequency and damping ratio unless the simple one has a spring of its own. */
+gmi_law gmi_law_of(const gm_mesh_params *params, const gm_pair *pair) {
+    const double contact_ratio = pair->transverse_contact_ratio;
+    gmi_law law = {params->stiffness, params->damping, params->stiffness * contact_ratio};
+    if (params->model == GM_MODEL_SIMPLE) {
+        law.damping = params->damping * contact_ratio;
+        law.stiffness =
+            isnan(params->simple_stiffness) ? law.mean_stiffness : params->simple_stiffness;
+        law.mean_stiffness = law.stiffness;
+    }
+    return law;
+}
+
 double gmi_law_sum_of_torque(const gmi_law *law, double torque, double base_radius) {
     return torque / (law->stiffness * base_radius);
 }

@@ -89,19 +89,6 @@ size_t gm_mesh_size(const gm_mesh_params *params, const gm_pair *pair) {
     return check(params, pair) == GM_OK ? sizeof(gm_mesh) + sizeof(gm_pair) : 0;
 }
 
-/* Both models share eigenfrequency and damping ratio unless the simple one has a spring of its own. */
-static gmi_law law_of(const gm_mesh_params *params, const gm_pair *pair) {
-    const double contact_ratio = pair->transverse_contact_ratio;
-    gmi_law law = {params->stiffness, params->damping, params->stiffness * contact_ratio};
-    if (params->model == GM_MODEL_SIMPLE) {
-        law.damping = params->damping * contact_ratio;
-        law.stiffness =
-            isnan(params->simple_stiffness) ? law.mean_stiffness : params->simple_stiffness;
-        law.mean_stiffness = law.stiffness;
-    }
-    return law;
-}
-
 int gm_mesh_init(gm_mesh **mesh, const gm_mesh_params *params, const gm_pair *pair,
                  const gm_flanks *pinion_flanks, const gm_flanks *wheel_flanks, void *memory,
                  size_t memory_size) {
@@ -134,7 +121,7 @@ int gm_mesh_init(gm_mesh **mesh, const gm_mesh_params *params, const gm_pair *pa
     made->model = params->model;
 
     /* What its evaluations have in common. */
-    made->law = law_of(params, pair);
+    made->law = gmi_law_of(params, pair);
     made->engagement = engagement;
     made->is_posed = engagement.offset_shift != 0.0 || engagement.phase_shift != 0.0;
     if (params->model == GM_MODEL_SIMPLE) {
