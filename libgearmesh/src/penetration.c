@@ -158,9 +158,13 @@ static void clip_to_table(const gm_gear *gear, int is_wheel, const gmi_lines *li
     const double by_delta = is_wheel ? per_advance : 0.0;
     const double start = is_wheel ? reach - gear->tip_roll_length : gear->start_roll_length;
     const double tip = is_wheel ? reach - gear->start_roll_length : gear->tip_roll_length;
+
+    /* A line that climbs enters at the lower end of the table, one that falls at the upper one. */
     const int climbs = lines->advance > 0.0;
     const double enter = ((climbs ? start : tip) - rho_origin) * per_advance;
     const double leave = ((climbs ? tip : start) - rho_origin) * per_advance;
+
+    /* An end set here moves with the line's origin, and on the wheel with delta. */
     if (enter > part->from) {
         part->from = enter;
         part->from_by_origin = -per_advance;
