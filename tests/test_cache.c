@@ -471,7 +471,7 @@ static void bad_states_are_refused_as_without_a_cache(void) {
                       status);
         GM_ASSERT_NAN(r.force);
         GM_ASSERT_NAN(r.contact.penetration);
-        GM_ASSERT_NAN(r.force_by_pinion_angle);
+        GM_ASSERT_NAN(r.force_by.pinion_angle);
         GM_ASSERT_INT(r.contact.drive_pairs, 0);
     }
     /* A phase that is finite but not in [0, p_bt] is legal, and exact. */

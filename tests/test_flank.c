@@ -425,7 +425,7 @@ static void the_largest_deviations_give_numbers(void) {
         GM_ASSERT_INT(
             plain_evaluate(&pair, flanks, NULL, &position, 1e30, 1e30, GM_WANT_DERIVATIVES, &whole),
             GM_OK);
-        GM_ASSERT(isfinite(whole.force) && isfinite(whole.force_by_pinion_angle));
+        GM_ASSERT(isfinite(whole.force) && isfinite(whole.force_by.pinion_angle));
         GM_ASSERT_INT(wrench_3d_at(&pair, flanks, NULL, &position, 1e30, 1e30, &w), GM_OK);
         for (int k = 0; k < 3; ++k) {
             GM_ASSERT(isfinite(w.pinion_force[k]) && isfinite(w.pinion_moment[k]));

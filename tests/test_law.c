@@ -111,8 +111,8 @@ static void gradient_of_the_force_is_that_of_differences(void) {
             random_case_free(&c);
             continue;
         }
-        const double exact[] = {r.force_by_pinion_angle, r.force_by_wheel_angle,
-                                r.force_by_pinion_speed, r.force_by_wheel_speed};
+        const double exact[] = {r.force_by.pinion_angle, r.force_by.wheel_angle,
+                                r.force_by.pinion_speed, r.force_by.wheel_speed};
         for (int which = 0; which < 4; ++which) {
             const double scale =
                 which < 2 ? 1e-7 * c.params.normal_module / r_bp * 100.0 : 1e-4 * reach / r_bp;
@@ -168,8 +168,8 @@ static void touching_part_moves_as_in_the_second_model(void) {
         }
 
         /* By x alone, as the wheel turns; and by the phase alone, as both gears roll. */
-        const double by_offset = -r.force_by_wheel_angle / r_bw;
-        const double by_phase = (r.force_by_pinion_angle - r_bp * by_offset) / r_bp;
+        const double by_offset = -r.force_by.wheel_angle / r_bw;
+        const double by_phase = (r.force_by.pinion_angle - r_bp * by_offset) / r_bp;
         for (int rolls = 0; rolls < 2; ++rolls) {
             const long double h = 1e-7L * c.params.normal_module;
             long double moved[3];

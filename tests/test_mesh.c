@@ -246,10 +246,16 @@ static void assert_nan(const gm_mesh_result *r) {
     const double *fields[] = {&r->force,
                               &r->drive_force,
                               &r->coast_force,
-                              &r->force_by_pinion_angle,
-                              &r->force_by_wheel_angle,
-                              &r->force_by_pinion_speed,
-                              &r->force_by_wheel_speed,
+                              &r->force_by.pinion_angle,
+                              &r->force_by.wheel_angle,
+                              &r->force_by.pinion_speed,
+                              &r->force_by.wheel_speed,
+                              &r->pinion_torque,
+                              &r->wheel_torque,
+                              &r->pinion_torque_by.pinion_angle,
+                              &r->pinion_torque_by.wheel_speed,
+                              &r->wheel_torque_by.pinion_angle,
+                              &r->wheel_torque_by.wheel_speed,
                               &r->contact.penetration,
                               &r->contact.rate,
                               &r->contact.drive,
@@ -340,14 +346,14 @@ static int agrees(const gm_mesh_result *r, int wanted, const gm_mesh_result *of_
 
     const int with_derivatives = (wanted & GM_WANT_DERIVATIVES) != 0;
     const gm_mesh_result *derivatives = with_derivatives ? of_derivatives : of_force;
-    good &= GM_ASSERT(same_bits(&r->force_by_pinion_angle, &derivatives->force_by_pinion_angle,
+    good &= GM_ASSERT(same_bits(&r->force_by.pinion_angle, &derivatives->force_by.pinion_angle,
                                 4 * sizeof(double)));
     good &= GM_ASSERT(
         same_bits(&c->d_pinion_angle, &derivatives->contact.d_pinion_angle, 2 * sizeof(double)));
-    good &= GM_ASSERT_INT(isnan(r->force_by_pinion_angle) != 0, !with_derivatives);
-    good &= GM_ASSERT_INT(isnan(r->force_by_wheel_angle) != 0, !with_derivatives);
-    good &= GM_ASSERT_INT(isnan(r->force_by_pinion_speed) != 0, !with_derivatives);
-    good &= GM_ASSERT_INT(isnan(r->force_by_wheel_speed) != 0, !with_derivatives);
+    good &= GM_ASSERT_INT(isnan(r->force_by.pinion_angle) != 0, !with_derivatives);
+    good &= GM_ASSERT_INT(isnan(r->force_by.wheel_angle) != 0, !with_derivatives);
+    good &= GM_ASSERT_INT(isnan(r->force_by.pinion_speed) != 0, !with_derivatives);
+    good &= GM_ASSERT_INT(isnan(r->force_by.wheel_speed) != 0, !with_derivatives);
     good &= GM_ASSERT_INT(isnan(c->d_pinion_angle) != 0, !with_derivatives);
     good &= GM_ASSERT_INT(isnan(c->d_wheel_angle) != 0, !with_derivatives);
 
@@ -565,10 +571,18 @@ static void simple_model_is_one_spring_and_damper(void) {
             GM_ASSERT_REL(r.drive_force, drive, 1e-14);
             GM_ASSERT_REL(r.coast_force, coast, 1e-14);
             const double sides = (drive > 0.0) + (coast > 0.0);
-            GM_ASSERT_REL(r.force_by_pinion_angle, k * sides * pair.pinion.base_radius, 1e-14);
-            GM_ASSERT_REL(r.force_by_wheel_angle, -k * sides * pair.wheel.base_radius, 1e-14);
-            GM_ASSERT_REL(r.force_by_pinion_speed, d * sides * pair.pinion.base_radius, 1e-14);
-            GM_ASSERT_REL(r.force_by_wheel_speed, -d * sides * pair.wheel.base_radius, 1e-14);
+            GM_ASSERT_REL(r.force_by.pinion_angle, k * sides * pair.pinion.base_radius, 1e-14);
+            GM_ASSERT_REL(r.force_by.wheel_angle, -k * sides * pair.wheel.base_radius, 1e-14);
+            GM_ASSERT_REL(r.force_by.pinion_speed, d * sides * pair.pinion.base_radius, 1e-14);
+            GM_ASSERT_REL(r.force_by.wheel_speed, -d * sides * pair.wheel.base_radius, 1e-14);
+
+            /* The torques act at the base radii. */
+            GM_ASSERT_REL(r.pinion_torque, r.force * pair.pinion.base_radius, 1e-15);
+            GM_ASSERT_REL(r.wheel_torque, r.force * pair.wheel.base_radius, 1e-15);
+            GM_ASSERT_REL(r.pinion_torque_by.wheel_angle,
+                          r.force_by.wheel_angle * pair.pinion.base_radius, 1e-15);
+            GM_ASSERT_REL(r.wheel_torque_by.pinion_speed,
+                          r.force_by.pinion_speed * pair.wheel.base_radius, 1e-15);
         }
     }
 }

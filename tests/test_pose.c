@@ -304,9 +304,9 @@ static void gradient_between_tilted_axes_is_that_of_differences(void) {
             }
         }
         if (status == GM_OK && at[0].force > 0.0) {
-            const double exact[2] = {-at[0].force_by_wheel_angle / r_bw,
-                                     at[0].force_by_pinion_angle / r_bp +
-                                         at[0].force_by_wheel_angle / r_bw};
+            const double exact[2] = {-at[0].force_by.wheel_angle / r_bw,
+                                     at[0].force_by.pinion_angle / r_bp +
+                                         at[0].force_by.wheel_angle / r_bw};
             for (int k = 0; k < 2; ++k) {
                 const double forward = (at[1 + 2 * k].force - at[0].force) / h;
                 const double backward = (at[0].force - at[2 + 2 * k].force) / h;
@@ -410,7 +410,7 @@ static void only_the_common_face_takes_part(void) {
             }
             GM_ASSERT_INT(status, GM_OK);
             GM_ASSERT_NEAR(c.force, a.force, 1e-9, 1e-6);
-            GM_ASSERT_NEAR(c.force_by_pinion_angle, a.force_by_pinion_angle, 1e-8, 1e-1);
+            GM_ASSERT_NEAR(c.force_by.pinion_angle, a.force_by.pinion_angle, 1e-8, 1e-1);
             GM_ASSERT_INT(c.contact.drive_pairs, a.contact.drive_pairs);
             for (int m = 0; m < 3; ++m) {
                 GM_ASSERT_NEAR(c.wrench.wheel_moment[m], a.wrench.wheel_moment[m], 1e-9, 1e-8);
@@ -461,7 +461,7 @@ static void tables_begin_where_their_own_faces_do(void) {
         GM_ASSERT_INT(evaluate_posed(&wide_pair, wide_pinion, wide_wheel, &drawn, &wide_at, &c),
                       GM_OK);
         GM_ASSERT_NEAR(c.force, a.force, 1e-8, 1e-5);
-        GM_ASSERT_NEAR(c.force_by_pinion_angle, a.force_by_pinion_angle, 1e-7, 1.0);
+        GM_ASSERT_NEAR(c.force_by.pinion_angle, a.force_by.pinion_angle, 1e-7, 1.0);
 
         /* The same force, two widths further along the axis. */
         const double arm = 2.0 * REFERENCE_FACE_WIDTH;

@@ -447,9 +447,9 @@ static force_gradient gradient(const gear_model *model, const gm_mesh_result *me
     const double r_bp = pair->pinion.base_radius;
     const double r_bw = pair->wheel.base_radius;
     const force_gradient result = {
-        .by_offset = -mesh->force_by_wheel_angle / r_bw,
-        .by_offset_rate = -mesh->force_by_wheel_speed / r_bw,
-        .by_arc = mesh->force_by_pinion_angle / r_bp + mesh->force_by_wheel_angle / r_bw,
+        .by_offset = -mesh->force_by.wheel_angle / r_bw,
+        .by_offset_rate = -mesh->force_by.wheel_speed / r_bw,
+        .by_arc = mesh->force_by.pinion_angle / r_bp + mesh->force_by.wheel_angle / r_bw,
     };
     return result;
 }

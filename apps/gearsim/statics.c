@@ -64,8 +64,8 @@ static int write_position(const config *conf, const gear_mesh *gears, double ang
     before->angle = angle;
     before->offset = position.offset;
     before->slope = pair->pinion.base_radius + pair->wheel.base_radius *
-                                                   position.mesh.force_by_pinion_angle /
-                                                   position.mesh.force_by_wheel_angle;
+                                                   position.mesh.force_by.pinion_angle /
+                                                   position.mesh.force_by.wheel_angle;
 
     double values[COLUMNS_MAX];
     for (int i = 0; i < static_column_count; ++i) {

@@ -59,8 +59,8 @@ static int jacobian(sunrealtype time, N_Vector state, N_Vector derivative, SUNMa
 
     /* At a given pinion angle, x changes with the wheel angle alone: dx = -r_bw dphi_w. */
     const double r_bw = gm_mesh_pair(mesh)->wheel.base_radius;
-    const double torque_by_x = -exact.force_by_wheel_angle / r_bw * r_bw;
-    const double torque_by_rate = -exact.force_by_wheel_speed / r_bw * r_bw;
+    const double torque_by_x = -exact.force_by.wheel_angle / r_bw * r_bw;
+    const double torque_by_rate = -exact.force_by.wheel_speed / r_bw * r_bw;
     SM_ELEMENT_D(result, OFFSET, OFFSET_RATE) = 1.0;
     SM_ELEMENT_D(result, OFFSET_RATE, OFFSET) = -torque_by_x * r_bw / inertia;
     SM_ELEMENT_D(result, OFFSET_RATE, OFFSET_RATE) = -torque_by_rate * r_bw / inertia;

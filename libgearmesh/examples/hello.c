@@ -42,6 +42,6 @@ int main(void) {
     }
 
     printf("force %.2f N, by pinion angle %.4g N/rad, %d pairs\n", result.force,
-           result.force_by_pinion_angle, result.contact.drive_pairs);
+           result.force_by.pinion_angle, result.contact.drive_pairs);
     return 0;
 }

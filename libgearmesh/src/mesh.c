@@ -162,11 +162,17 @@ int gm_mesh_use_cache(gm_mesh *mesh, gm_cache *cache) {
  * Evaluating
  * ------------------------------------------------------------------------------------------- */
 
+static inline void set_gradients_nan(gm_mesh_result *result) {
+    const double nan = gmi_nan();
+    const gm_gradient none = {nan, nan, nan, nan};
+    result->force_by = result->pinion_torque_by = result->wheel_torque_by = none;
+}
+
 void gmi_mesh_result_set_nan(gm_mesh_result *result) {
     const double nan = gmi_nan();
     result->force = result->drive_force = result->coast_force = nan;
-    result->force_by_pinion_angle = result->force_by_wheel_angle = nan;
-    result->force_by_pinion_speed = result->force_by_wheel_speed = nan;
+    result->pinion_torque = result->wheel_torque = nan;
+    set_gradients_nan(result);
     result->contact = gmi_penetration_nan();
     gmi_wrench_set(&result->wrench, nan);
 }
@@ -182,6 +188,12 @@ static inline int accumulated(const gm_mesh *mesh, double offset_rate, int wante
     return mask;
 }
 
+static inline gm_gradient scaled(const gm_gradient *gradient, double factor) {
+    const gm_gradient result = {factor * gradient->pinion_angle, factor * gradient->wheel_angle,
+                                factor * gradient->pinion_speed, factor * gradient->wheel_speed};
+    return result;
+}
+
 /* From the forces of both sides to derivatives by angles and speeds; for the signs see gmi_penetration_set(). */
 static inline void set_force_derivatives(const gm_pair *pair, const gmi_side_force *drive,
                                          const gmi_side_force *coast, gm_mesh_result *result) {
@@ -190,10 +202,14 @@ static inline void set_force_derivatives(const gm_pair *pair, const gmi_side_for
     const double by_offset = drive->by_delta + coast->by_delta;
     const double by_origin = drive->by_origin + coast->by_origin;
     const double by_rate = drive->by_speed + coast->by_speed;
-    result->force_by_pinion_angle = r_bp * (by_offset + by_origin);
-    result->force_by_wheel_angle = -r_bw * by_offset;
-    result->force_by_pinion_speed = r_bp * by_rate;
-    result->force_by_wheel_speed = -r_bw * by_rate;
+    result->force_by.pinion_angle = r_bp * (by_offset + by_origin);
+    result->force_by.wheel_angle = -r_bw * by_offset;
+    result->force_by.pinion_speed = r_bp * by_rate;
+    result->force_by.wheel_speed = -r_bw * by_rate;
+
+    /* The torques follow the force. */
+    result->pinion_torque_by = scaled(&result->force_by, r_bp);
+    result->wheel_torque_by = scaled(&result->force_by, r_bw);
 }
 
 /* Of a side whose flanks are clear of each other. */
@@ -222,13 +238,14 @@ SPECIALIZED void set_result(const gm_mesh *mesh, const gmi_side_sum *drive,
     result->drive_force = drive_force->force;
     result->coast_force = coast_force->force;
     result->force = drive_force->force - coast_force->force;
+    result->pinion_torque = result->force * mesh->pair->pinion.base_radius;
+    result->wheel_torque = result->force * mesh->pair->wheel.base_radius;
 
     /* What was asked for; NaN in place of the rest. */
     if (wanted & GM_WANT_DERIVATIVES) {
         set_force_derivatives(mesh->pair, drive_force, coast_force, result);
     } else {
-        result->force_by_pinion_angle = result->force_by_wheel_angle = gmi_nan();
-        result->force_by_pinion_speed = result->force_by_wheel_speed = gmi_nan();
+        set_gradients_nan(result);
     }
     if (wanted & GM_WANT_WRENCH) {
         gmi_wrench_set(&result->wrench, 0.0);

@@ -91,8 +91,8 @@ static void run_curve(const bench *b, long count) {
                                     k % POSITIONS == 0 ? (double)NAN : guess, NULL, &offset,
                                     &result);
         guess = offset + step * (g->pair.pinion.base_radius + g->pair.wheel.base_radius *
-                                                                  result.force_by_pinion_angle /
-                                                                  result.force_by_wheel_angle);
+                                                                  result.force_by.pinion_angle /
+                                                                  result.force_by.wheel_angle);
         sum += offset;
     }
     sink = sum;

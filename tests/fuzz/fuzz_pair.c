@@ -206,12 +206,14 @@ static void claim_penetration(int status, const gm_penetration *result) {
 
 static void claim_result(int status, const gm_mesh_result *result) {
     const double numbers[] = {result->force,
+                              result->pinion_torque,
+                              result->wheel_torque,
                               result->drive_force,
                               result->coast_force,
-                              result->force_by_pinion_angle,
-                              result->force_by_wheel_angle,
-                              result->force_by_pinion_speed,
-                              result->force_by_wheel_speed};
+                              result->force_by.pinion_angle,
+                              result->force_by.wheel_angle,
+                              result->force_by.pinion_speed,
+                              result->force_by.wheel_speed};
     claim_numbers(status, numbers, sizeof numbers / sizeof *numbers);
     claim_penetration(status, &result->contact);
     claim_numbers(status, result->wrench.pinion_force, 3);

@@ -809,17 +809,30 @@ enum gm_wanted {
     GM_WANT_PAIRS = 4 /**< numbers of pairs also where a cache answers, which does not count them */
 };
 
+/** Partial derivatives of one quantity by what a solver knows, all else fixed. */
+typedef struct gm_gradient {
+    double pinion_angle; /**< by phi_p (1/rad) */
+    double wheel_angle;  /**< by phi_w (1/rad) */
+    double pinion_speed; /**< by d phi_p / dt (s/rad) */
+    double wheel_speed;  /**< by d phi_w / dt (s/rad) */
+} gm_gradient;
+
 /** Result of an evaluation of a mesh. What was not asked for is NaN. */
 typedef struct gm_mesh_result {
-    double force; /**< F along the transverse line of action, > 0 drives the wheel forward (N):
-                             I_p phi_p'' = M_p - F r_bp, I_w phi_w'' = -M_w + F r_bw [Paper, Eqs. 1-2, base radii] */
+    double force;       /**< F along the transverse line of action, > 0 drives the wheel forward (N)
+                             [Paper, Eqs. 1-2, base radii] */
     double drive_force; /**< of the drive flanks alone, >= 0; F = drive_force - coast_force (N) */
     double coast_force; /**< of the coast flanks alone, >= 0 (N) */
 
-    double force_by_pinion_angle; /**< partial derivative of F by phi_p, all else fixed (N/rad) */
-    double force_by_wheel_angle;  /**< by phi_w (N/rad) */
-    double force_by_pinion_speed; /**< by d phi_p / dt (N s/rad) */
-    double force_by_wheel_speed;  /**< by d phi_w / dt (N s/rad) */
+    double
+        pinion_torque; /**< that the mesh takes from the pinion: I_p phi_p'' = M_p - pinion_torque; F r_bp
+                             unless the law says otherwise (N m) */
+    double
+        wheel_torque; /**< that it gives to the wheel: I_w phi_w'' = -M_w + wheel_torque; likewise (N m) */
+
+    gm_gradient force_by;         /**< derivatives of F */
+    gm_gradient pinion_torque_by; /**< of the torques */
+    gm_gradient wheel_torque_by;
 
     gm_penetration contact; /**< overlap and contact of the flanks, as gm_penetration_3d() */
     gm_wrench
@@ -868,7 +881,7 @@ GM_API double gm_mesh_touching_stiffness(const gm_mesh *mesh, const gm_mesh_resu
  * @param[in]     wheel_torque  load on the wheel, > 0 resists +phi_w and loads the drive flanks (N m)
  * @param[in]     guess         x to begin with, NaN = none (m). Costs or saves evaluations, and changes x by no more than
  *                              its accuracy. From one pinion angle to the next, in first order, x changes by
- *                              (r_bp + r_bw force_by_pinion_angle / force_by_wheel_angle) times the change of the angle
+ *                              (r_bp + r_bw force_by.pinion_angle / force_by.wheel_angle) times the change of the angle
  * @param[in,out] workspace     as gm_mesh_evaluate()
  * @param[out]    offset        x; the transmission error is -x (m)
  * @param[out]    result        there, with GM_WANT_DERIVATIVES; may be NULL
