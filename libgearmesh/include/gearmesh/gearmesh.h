@@ -811,10 +811,10 @@ enum gm_wanted {
 
 /** Partial derivatives of one quantity by what a solver knows, all else fixed. */
 typedef struct gm_gradient {
-    double pinion_angle; /**< by phi_p (1/rad) */
-    double wheel_angle;  /**< by phi_w (1/rad) */
-    double pinion_speed; /**< by d phi_p / dt (s/rad) */
-    double wheel_speed;  /**< by d phi_w / dt (s/rad) */
+    double pinion_angle; /**< by phi_p (per rad) */
+    double wheel_angle;  /**< by phi_w (per rad) */
+    double pinion_speed; /**< by d phi_p / dt (per rad/s) */
+    double wheel_speed;  /**< by d phi_w / dt (per rad/s) */
 } gm_gradient;
 
 /** Result of an evaluation of a mesh. What was not asked for is NaN. */
@@ -830,9 +830,9 @@ typedef struct gm_mesh_result {
     double
         wheel_torque; /**< that it gives to the wheel: I_w phi_w'' = -M_w + wheel_torque; likewise (N m) */
 
-    gm_gradient force_by;         /**< derivatives of F */
-    gm_gradient pinion_torque_by; /**< of the torques */
-    gm_gradient wheel_torque_by;
+    gm_gradient force_by;         /**< derivatives of F (N/rad, N s/rad) */
+    gm_gradient pinion_torque_by; /**< of pinion_torque (N m/rad, N m s/rad) */
+    gm_gradient wheel_torque_by;  /**< of wheel_torque, likewise */
 
     gm_penetration contact; /**< overlap and contact of the flanks, as gm_penetration_3d() */
     gm_wrench
