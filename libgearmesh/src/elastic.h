@@ -1,0 +1,395 @@
+/* SPDX-FileCopyrightText: The gearmesh authors */
+/* SPDX-License-Identifier: BSD-3-Clause */
+
+/*
+ * Elastic teeth: force, stiffness, energy and load distribution of one flank side of an external pair. The model, its
+ * sources and its validation: libgearmesh/docs/elastic.md.
+ *
+ * One evaluation has three steps, all in the workspace of the caller:
+ *
+ *     gmi_elastic_place(&law, &lines, work)    where the lines of contact are, and the points at which they are evaluated
+ *     work->deviation[p] = ...                 the caller says how much material both flanks have there
+ *     gmi_elastic_solve(&law, work, x, &result)
+ *
+ * and then, if wanted, gmi_elastic_adjoint() for derivatives by anything that moves or changes the flanks.
+ *
+ * Points: a line of contact is cut at the stations; each part of it is a slot and has two points. Point 0 of slot s has the
+ * number s, point 1 the number s + work->slots. All arrays over points have both halves one after the other:
+ *
+ *     for (int k = 0; k < work->count; ++k) {          // lines
+ *         const gmi_elastic_line *line = &work->line[k];
+ *         for (int half = 0; half < 2; ++half) {
+ *             for (int s = line->slot; s < line->slot + line->elements; ++s) {
+ *                 const int p = s + half * work->slots;
+ *                 work->deviation[p] = f(line->index, work->z[p], work->roll[p]);
+ *             }
+ *         }
+ *     }
+ *
+ * Signs: x > 0 presses the flanks together, deviations > 0 are material added, both along the transverse line of action.
+ * Line loads are normal force per length of the contact line; their integral over z is the transverse force.
+ * Nothing here calls libm beyond sqrt after gmi_elastic_init(): the same inputs give the same bits everywhere.
+ */
+#ifndef GEARMESH_ELASTIC_H
+#define GEARMESH_ELASTIC_H
+
+#include "tooth_compliance.h"
+
+#include <stddef.h>
+
+enum {
+    GMI_ELASTIC_STATIONS_MAX = 97,
+    GMI_ELASTIC_LINES_MAX = 12, /* on one flank side at once */
+    GMI_ELASTIC_CELLS = 64,     /* of the tables of a tooth */
+    GMI_ELASTIC_ITERATIONS = 20
+};
+
+/* Statuses beside those of gearmesh.h: positive, a smaller step may help. */
+enum { GMI_ELASTIC_NO_CONVERGENCE = 5 };
+
+/* Constants of the model, fitted to finite elements; elastic.md says how. */
+#define GMI_ELASTIC_HERTZ_OFFSET 0.06 /* kappa_H */
+#define GMI_ELASTIC_TOOTH_LENGTH                                                                   \
+    1.45 /* l, decay of a tooth's deflection along the face, in modules */
+#define GMI_ELASTIC_RIM_LENGTH    2.9  /* l_rim, of the rim's, in modules */
+#define GMI_ELASTIC_RIM_SHARE     0.37 /* chi, compliance that neighbouring teeth share, in 1/E */
+#define GMI_ELASTIC_END_SOFTENING 0.7  /* of l^2 at the ends of the face ... */
+#define GMI_ELASTIC_END_LENGTH    0.8  /* ... decaying over this length, in modules */
+
+/* ---------------------------------------------------------------------------------------------
+ * The law of a pair
+ * ------------------------------------------------------------------------------------------- */
+
+typedef struct gmi_elastic_gear_params {
+    double teeth;         /* z, a real number: virtual gears of a normal section have fractions */
+    double profile_shift; /* x (1) */
+    double normal_thickness;   /* s_n at the reference circle (m) */
+    double rack_dedendum;      /* h_fP in modules */
+    double rack_fillet_radius; /* rho_fP in modules */
+    double youngs_modulus;     /* E (N/m2) */
+    double poisson_ratio;      /* nu */
+    double start_roll_length;  /* active profile, on which the tables are made (m); */
+    double tip_roll_length;    /* beyond it the compliance is that at its end */
+} gmi_elastic_gear_params;
+
+typedef struct gmi_elastic_params {
+    double normal_module;         /* (m) */
+    double normal_pressure_angle; /* (rad) */
+    double helix_angle;           /* (rad), either sign */
+    double base_helix_angle;      /* (rad) */
+    double face_width;            /* on which the teeth stand together (m) */
+    double line_of_action;        /* T (m) */
+    int stations;                 /* 2 .. GMI_ELASTIC_STATIONS_MAX */
+    int lines; /* lines at once, 1 .. GMI_ELASTIC_LINES_MAX, see gmi_elastic_lines() */
+    gmi_elastic_gear_params gear[2]; /* pinion, wheel */
+} gmi_elastic_params;
+
+/*
+ * A cell of a table: cubics in the place 0 .. 1 within it, lowest power first, and their slopes by the roll length. Columns:
+ * compliance c_n / cos(beta_b), and curvature factor.
+ */
+typedef struct gmi_elastic_cell {
+    double value[4][2];
+    double slope[3][2];
+} gmi_elastic_cell;
+
+/*
+ * What a tooth contributes at the roll length rho: its compliance in the transverse measure (m per N/m), and the
+ * curvature factor h = rho / (2 t e^kappa_H)^(B_i / B_m). Those of both gears give the rate of the contact law:
+ * 1 / (B e^L) = 4 h_p h_w / T, which needs no logarithm.
+ */
+typedef struct gmi_elastic_gear {
+    double start, per_cell; /* (m, 1/m) */
+    gmi_elastic_cell
+        cell[GMI_ELASTIC_CELLS + 2]; /* the first and the last hold the values beyond the ends */
+} gmi_elastic_gear;
+
+/*
+ * A layer along the face: a tridiagonal matrix of mass and coupling. left[k] and right[k] are the diagonals after all
+ * nodes before k, or behind k, are eliminated: a layer that is loaded from node a to node b alone needs no others.
+ */
+typedef struct gmi_elastic_layer {
+    double diagonal[GMI_ELASTIC_STATIONS_MAX];
+    double beside[GMI_ELASTIC_STATIONS_MAX]; /* between k and k + 1 */
+    double left[GMI_ELASTIC_STATIONS_MAX];
+    double right[GMI_ELASTIC_STATIONS_MAX];
+} gmi_elastic_layer;
+
+/* Plain data, 28 kB; read-only after gmi_elastic_init(). */
+typedef struct gmi_elastic {
+    int stations;
+    int lines_max;
+    double face_width;
+    double spacing, per_spacing; /* of the stations (m, 1/m) */
+    double hertz_compliance;     /* B (m per N/m) */
+    double rim_compliance;       /* r^2 (m per N/m) */
+    double line_of_action;       /* T of the drawing (m) */
+    double least_compliance[2];  /* of the teeth on their profiles, pinion, wheel (m per N/m) */
+    gmi_elastic_gear gear[2];
+    gmi_elastic_gear
+        pair; /* both whole teeth on the line of action of the drawing: s and 1 / (B e^L) by rho_p */
+    gmi_elastic_layer tooth;
+    gmi_elastic_layer rim; /* divided by r^2: the rim's unknown is its own deflection */
+} gmi_elastic;
+
+/* How many lines can touch at once with this total contact ratio; may exceed GMI_ELASTIC_LINES_MAX. */
+int gmi_elastic_lines(double total_contact_ratio);
+
+/*
+ * Prepares the law. GM_OK; GM_ERR_PARAMETER for sizes or materials out of range; GM_ERR_GEOMETRY with
+ * *fault (enum gmi_tooth_fault) and *wheel (0, 1) telling what is wrong with which tooth. contact_start: least roll length
+ * of each gear at which the mate touches (m), to find out contact below the end of the fillet.
+ */
+int gmi_elastic_init(gmi_elastic *law, const gmi_elastic_params *params,
+                     const double contact_start[2], int *fault, int *wheel);
+
+/* ---------------------------------------------------------------------------------------------
+ * One evaluation
+ * ------------------------------------------------------------------------------------------- */
+
+/*
+ * Where the lines of contact are. Line k has rho_p = origin + k pitch + climb z on the pinion and rho_w = line_of_action -
+ * rho_p on the wheel, and touches where lower <= rho_p <= upper.
+ */
+typedef struct gmi_elastic_lines_at {
+    double origin, pitch, climb;
+    double lower, upper;
+    double line_of_action;
+    int first, last; /* lines that can touch; others in between are left out by themselves */
+    int slopes;      /* derivatives wanted: 0 none, 1 all but by the line of action, 2 all */
+
+    /*
+     * Which pair is which, so that the workspace follows its teeth: line `first` belongs to tooth `tooth` and line k + 1 to the
+     * next tooth in direction `step` (+1, -1) of `teeth`.
+     */
+    int tooth, step, teeth;
+
+    /* Softness of each line's teeth, [last - first + 1], 1 = whole, 2 = twice the compliance; NULL = all whole. */
+    const double *pinion_softness, *wheel_softness;
+} gmi_elastic_lines_at;
+
+/* Parts of the matrix of an element: tooth with tooth, tooth with rim, rim with rim; station left with left, ... */
+enum {
+    GMI_TOOTH_LEFT,
+    GMI_TOOTH_CROSS,
+    GMI_TOOTH_RIGHT,
+    GMI_MIXED_LEFT,
+    GMI_MIXED_CROSS,
+    GMI_MIXED_RIGHT,
+    GMI_RIM_LEFT,
+    GMI_RIM_CROSS,
+    GMI_RIM_RIGHT,
+    GMI_ELASTIC_MATRICES
+};
+
+/* One line of contact as placed. */
+typedef struct gmi_elastic_line {
+    int index;    /* k of gmi_elastic_lines_at */
+    int slot;     /* its first slot */
+    int element;  /* element of the face that slot lies in: from station `element` on */
+    int elements; /* how many */
+    int limited
+        [2]; /* whether its begin and end along z are those of the path: -1 lower, +1 upper, 0: of the face */
+} gmi_elastic_line;
+
+/* Memory of the solver. Points into the memory of the caller; one for each flank side and thread. */
+typedef struct gmi_elastic_work {
+    int stations, lines_max;
+
+    /* Of the last gmi_elastic_place(). */
+    int count; /* lines */
+    int slots;
+    gmi_elastic_lines_at at;
+    gmi_elastic_line line[GMI_ELASTIC_LINES_MAX];
+
+    /* Of the last gmi_elastic_solve(). */
+    int touching;      /* whether anything does: else loads and derivatives are 0 */
+    int warm;          /* solutions to begin from: 0, 1, 2 with a rate by the roll */
+    int warm_tooth;    /* tooth of row 0 */
+    double warm_place; /* roll of that tooth at z = 0 (m) */
+    double approach;   /* x (m) */
+    double rolled;     /* since the solution before (m) */
+    double energy;     /* U (J) */
+    int straight;      /* whether a point is on the straight part of the contact law */
+
+    /* Over points, [2][slots]. What the caller reads and writes: */
+    double *z;         /* (m) */
+    double *roll;      /* rho_p (m) */
+    double *weight;    /* W, integral over z (m) */
+    double *deviation; /* w, of both flanks: the caller's (m) */
+    double
+        *deviation_by_roll; /* its slope along rho_p at fixed z, the caller's for derivatives (1) */
+    double *deviation_by_z; /* its slope along z at fixed rho_p, likewise (1) */
+    double *load;           /* q (N/m) */
+    double *approach_at;    /* gamma, local approach of the surfaces (m) */
+    double *force;          /* W q (N) */
+    double *stiffness;      /* W dq/d gamma (N/m) */
+    double *by_deviation;   /* derivative of the force by the deviation of each point (N/m) */
+
+    /* Own: */
+    double *place;           /* t, between the two stations of the element, 0 .. 1 */
+    double *tooth;           /* s */
+    double *tooth_by_roll;   /* its slope along rho_p (1/m), */
+    double *tooth_by_action; /* and by the line of action at fixed rho_p */
+    double *rate;            /* 1 / (B e^L) (1/m) */
+    double *rate_by_roll;    /* d ln(rate) likewise (1/m) */
+    double *rate_by_action;
+    double *deflection; /* of the tooth layer, before s */
+    double *slope;      /* B dq/d gamma */
+    double *change_at;  /* of gamma in the last step (m) */
+    double *expected;   /* W q after the step, in first order (N) */
+    double *scratch;    /* forces, ... */
+    double
+        *table[4]; /* [2 slots][2]: values and slopes of pinion and wheel, while they are placed */
+    double *pull;  /* m - J lambda */
+    double *tooth_adjoint; /* lambda of the tooth layer */
+
+    /* Over slots: the element's part of the Newton matrix, and forces of its two stations. */
+    double *matrix;   /* [GMI_ELASTIC_MATRICES][slots] */
+    double *parts[4]; /* tooth left, tooth right, rim left, rim right */
+
+    /* Over stations: [lines_max + 1][stations], the last row is the rim's. */
+    double *state;    /* deflections of the layers */
+    double *change;   /* of a step: residual, then change */
+    double *adjoint;  /* of the force; also the derivative of the state by x */
+    double *last;     /* state of the solution before */
+    double *by_place; /* derivative of the state by the roll, from both */
+    double *last_step;
+    double *other; /* adjoint of another functional */
+
+    double *carry;      /* scratch of the elimination, ... */
+    double *front;      /* ... and for unusual numbers of lines */
+    double *factor;     /* its records */
+    double *end_record; /* those of the ends of each line, [lines_max][2][4] */
+    int *factor_at;     /* [stations] where the records of each begin */
+    int *low, *high;    /* [stations] rows of the lines in each element; none if low > high */
+    int *traffic;       /* [stations] what they do there, see elastic_front.c */
+    int begin, end;     /* elements in which any line touches: begin .. end - 1 */
+} gmi_elastic_work;
+
+/* Bytes of memory for one flank side; 0 if the sizes are out of range. */
+size_t gmi_elastic_work_size(int stations, int lines);
+
+/* Lays the arrays into memory of gmi_elastic_work_size() bytes, aligned for double. */
+void gmi_elastic_work_init(gmi_elastic_work *work, int stations, int lines, void *memory);
+
+/* Forgets the last solution: the next one begins from undeformed teeth. */
+void gmi_elastic_work_reset(gmi_elastic_work *work);
+
+/*
+ * Finds the lines and their points: line, z, roll, weight. GM_OK; GM_STATE_OUT_OF_RANGE for more lines than the
+ * workspace holds; GM_ERR_PARAMETER where a softness leaves no compliance.
+ */
+int gmi_elastic_place(const gmi_elastic *law, const gmi_elastic_lines_at *at,
+                      gmi_elastic_work *work);
+
+typedef struct gmi_elastic_result {
+    double force;       /* F, transverse (N) */
+    double energy;      /* U, of teeth and contacts (J) */
+    double by_approach; /* dF/dx (N/m); by the deviation of each point: work->by_deviation */
+    int iterations;
+    double line_force[GMI_ELASTIC_LINES_MAX]; /* [work->count] */
+} gmi_elastic_result;
+
+/*
+ * Deflections of all teeth at the approach x, all lines together. GM_OK or GMI_ELASTIC_NO_CONVERGENCE (results NaN).
+ * Fills load, approach_at and stiffness over the points.
+ */
+int gmi_elastic_solve(const gmi_elastic *law, gmi_elastic_work *work, double approach,
+                      gmi_elastic_result *result);
+
+/* ---------------------------------------------------------------------------------------------
+ * Derivatives
+ * ------------------------------------------------------------------------------------------- */
+
+/*
+ * What is to be differentiated: G = sum of factor W q over the points. NULL = 1, the force itself, and slopes 0. With
+ * factor = z it is the tilting moment, with the friction of each point over its line load the friction force, ...
+ */
+typedef struct gmi_elastic_functional {
+    const double *factor;         /* over the points */
+    const double *factor_by_roll; /* its slope along rho_p at fixed z */
+    const double *factor_by_z;    /* its slope along z at fixed rho_p */
+} gmi_elastic_functional;
+
+/* Total derivatives: teeth and contacts stay in balance. */
+typedef struct gmi_elastic_gradient {
+    double value;       /* G */
+    double by_approach; /* by x, and by a common deviation of all points */
+    double
+        by_roll; /* by the origin of the lines, which move through the path and past the stations */
+    double by_lower; /* by the ends of the path ... */
+    double by_upper;
+    double by_action; /* ... and by the line of action, at fixed rho_p; 0 unless slopes were 2 */
+} gmi_elastic_gradient;
+
+/*
+ * Derivatives of the force and of the energy at the last solution. Needs slopes of gmi_elastic_lines_at, deviation_by_roll,
+ * and deviation_by_z where lines are cut. Those of the energy leave the balance out, which is its minimum. The torques that
+ * keep the energy balance exactly are r_bp (F + energy.by_roll) on the pinion and r_bw F on the wheel.
+ */
+void gmi_elastic_differentiate(const gmi_elastic *law, gmi_elastic_work *work,
+                               gmi_elastic_gradient *force, gmi_elastic_gradient *energy);
+
+/*
+ * Derivatives of another functional, by one adjoint solution more. by_deviation: over the points, by the deviation of each;
+ * anything that acts through deviations follows from it by the chain rule.
+ */
+void gmi_elastic_differentiate_functional(const gmi_elastic *law, gmi_elastic_work *work,
+                                          const gmi_elastic_functional *functional,
+                                          double *by_deviation, gmi_elastic_gradient *gradient);
+
+/* ---------------------------------------------------------------------------------------------
+ * Shared between the sources
+ * ------------------------------------------------------------------------------------------- */
+
+/* The rim's row of an array over stations. */
+static inline double *gmi_elastic_rim(const gmi_elastic_work *work, double *rows) {
+    return rows + work->lines_max * work->stations;
+}
+
+/* First and one behind the last station of a row; row = work->count: the rim, whose row in arrays is lines_max. */
+typedef struct gmi_elastic_span {
+    int begin, end;
+    int at; /* of the row in an array over stations */
+} gmi_elastic_span;
+
+static inline gmi_elastic_span gmi_elastic_span_of(const gmi_elastic_work *work, int row) {
+    const gmi_elastic_span rim = {work->begin, work->end + 1, work->lines_max * work->stations};
+    if (row == work->count) {
+        return rim;
+    }
+    const gmi_elastic_line *line = &work->line[row];
+    const gmi_elastic_span span = {line->element, line->element + line->elements + 1,
+                                   row * work->stations};
+    return span;
+}
+
+/* elastic_points.c: approach of all points, from the deflections of work->state. */
+void gmi_elastic_approach(gmi_elastic_work *work, double x);
+
+/* Loads, forces, stiffness from the approach; work->scratch: how much the forces exceed work->expected. */
+void gmi_elastic_load(const gmi_elastic *law, gmi_elastic_work *work);
+
+/* Approach and expected forces after the step work->change. */
+void gmi_elastic_follow(gmi_elastic_work *work);
+
+/* Adds forces at the points to those of the stations, as the deflections there see them. */
+void gmi_elastic_gather(gmi_elastic_work *work, const double *force, double *rows);
+
+/* work->matrix from the stiffness at the points. */
+void gmi_elastic_stiffen(gmi_elastic_work *work);
+
+/* What is left of a functional's factor after the adjoint: work->pull, work->tooth_adjoint. factor NULL: 1. */
+void gmi_elastic_pull(gmi_elastic_work *work, const double *factor, const double *rows);
+
+/*
+ * elastic_front.c: eliminates the Newton matrix of work->matrix and the layers, and solves for a right-hand side, in place,
+ * within the nodes that lines touch. Returns the product of it with its solution.
+ */
+double gmi_elastic_factor(const gmi_elastic *law, gmi_elastic_work *work, double *rows);
+
+/* Solves for another one. */
+void gmi_elastic_substitute(const gmi_elastic_work *work, double *rows);
+
+#endif

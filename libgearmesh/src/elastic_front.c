@@ -1,0 +1,341 @@
+/* SPDX-FileCopyrightText: The gearmesh authors */
+/* SPDX-License-Identifier: BSD-3-Clause */
+
+/*
+ * The linear equations of elastic teeth: symmetric, positive definite, and coupled from one station to the next alone. They
+ * are eliminated station by station along the face, each with the lines that touch on both sides of it, one unknown each, and
+ * the rim: one to four unknowns with usual gears, whatever the total contact ratio. The first and the last station of a
+ * line belong to one element alone and are eliminated with it, before its stations. What a line leaves unloaded of its
+ * tooth is eliminated beforehand (gmi_elastic_layer). So the result is that of the whole face.
+ *
+ * Eliminating an unknown leaves the inverse of its pivot, and its row of the upper factor (with ones on the diagonal) over
+ * the unknowns that are still there and that it meets.
+ */
+#include "elastic.h"
+
+#include "internal.h"
+
+/* The elimination is compiled once for each usual number of lines. */
+#if defined(__GNUC__)
+#define SPECIALIZED static inline __attribute__((always_inline))
+#define SPECIAL     static __attribute__((noinline)) /* unrolled completely, each by itself */
+#else
+#define SPECIALIZED static inline
+#define SPECIAL     static
+#endif
+
+enum { UNKNOWNS_MAX = GMI_ELASTIC_LINES_MAX + 1 };
+
+/* ---------------------------------------------------------------------------------------------
+ * Lines within one element
+ * ------------------------------------------------------------------------------------------- */
+
+/*
+ * The lines of an element. Rows are sorted along the face: the first ones end in it, the next ones go through it, the last
+ * ones begin in it. One that both begins and ends in it has no station of its own and stands before those that begin.
+ */
+typedef struct traffic {
+    int ending, through, beginning;
+} traffic;
+
+/* The equations of one line in one element: its left and right station, and what they have with the rim's. */
+typedef struct part {
+    double left, cross, right; /* tooth with tooth */
+    double left_left,
+        left_right; /* left station of the tooth with left and right station of the rim */
+    double right_left, right_right; /* right station of the tooth likewise */
+} part;
+
+/* The rim within one element. */
+typedef struct rim_part {
+    double left, cross, right;
+} rim_part;
+
+/* The stiffness of the slots of a line, by their elements. */
+static inline const double *slots_of(const gmi_elastic_work *work, int row) {
+    const gmi_elastic_line *line = &work->line[row];
+    return work->matrix + line->slot - line->element;
+}
+
+/* Takes the stiffness of a slot; the diagonals of the layer are still to be added. size: from matrix to matrix. */
+static inline part part_of(const double *matrix, ptrdiff_t size, double beside, rim_part *rim) {
+    const double *mixed = matrix + GMI_MIXED_LEFT * size;
+    const double *of_rim = matrix + GMI_RIM_LEFT * size;
+    rim->left += of_rim[0];
+    rim->cross += of_rim[size];
+    rim->right += of_rim[2 * size];
+    const part p = {matrix[0],   beside + matrix[size], matrix[2 * size], mixed[0],
+                    mixed[size], mixed[size],           mixed[2 * size]};
+    return p;
+}
+
+/* The record of the end of a line: inverse pivot; row over the other end, the left and the right station of the rim. */
+typedef struct end_row {
+    double inverse, other, left, right;
+} end_row;
+
+static inline end_row *begin_row(const gmi_elastic_work *work, int row) {
+    return (end_row *)(void *)work->end_record + 2 * row;
+}
+
+static inline end_row *end_row_of(const gmi_elastic_work *work, int row) {
+    return begin_row(work, row) + 1;
+}
+
+/* Eliminates the station at which a line begins. */
+static inline void take_begin(part *p, rim_part *rim, end_row *r) {
+    r->inverse = 1.0 / p->left;
+    r->other = p->cross * r->inverse;
+    r->left = p->left_left * r->inverse;
+    r->right = p->left_right * r->inverse;
+    p->right -= r->other * p->cross;
+    p->right_left -= r->other * p->left_left;
+    p->right_right -= r->other * p->left_right;
+    rim->left -= r->left * p->left_left;
+    rim->cross -= r->left * p->left_right;
+    rim->right -= r->right * p->left_right;
+}
+
+/* The station at which it ends. */
+static inline void take_end(part *p, rim_part *rim, end_row *r) {
+    r->inverse = 1.0 / p->right;
+    r->other = p->cross * r->inverse;
+    r->left = p->right_left * r->inverse;
+    r->right = p->right_right * r->inverse;
+    p->left -= r->other * p->cross;
+    p->left_left -= r->other * p->right_left;
+    p->left_right -= r->other * p->right_right;
+    rim->left -= r->left * p->right_left;
+    rim->cross -= r->left * p->right_right;
+    rim->right -= r->right * p->right_right;
+}
+
+/*
+ * A line within one element, which begins and ends there. at: its first right-hand side, of which *fall grows by what
+ * comes of it.
+ */
+static void take_both(const gmi_elastic *law, const gmi_elastic_work *work, int element, int row,
+                      rim_part *rim, const double *at, double *fall) {
+    part p = part_of(slots_of(work, row) + element, work->slots, law->tooth.beside[element], rim);
+    end_row *first = begin_row(work, row), *second = end_row_of(work, row);
+    p.left += law->tooth.left[element];
+    p.right += law->tooth.right[element + 1];
+    take_begin(&p, rim, first);
+    p.cross = 0.0;
+    take_end(&p, rim, second);
+    const double rest = at[1] - first->other * at[0];
+    *fall += at[0] * at[0] * first->inverse + rest * rest * second->inverse;
+}
+
+/*
+ * Right-hand side: what hangs on the end of a line goes over to its other end and to the rim, of which the left station
+ * may be elsewhere.
+ */
+static inline void forward_end(const end_row *r, double *value, double *other, double *rim,
+                               double *rim_left) {
+    const double taken = *value;
+    *value = taken * r->inverse;
+    *other -= r->other * taken;
+    *rim_left -= r->left * taken;
+    rim[1] -= r->right * taken;
+}
+
+static inline void back_end(const end_row *r, double *value, double other, const double *rim) {
+    *value -= r->other * other + r->left * rim[0] + r->right * rim[1];
+}
+
+/* ---------------------------------------------------------------------------------------------
+ * One element
+ * ------------------------------------------------------------------------------------------- */
+
+/* Unknowns: lines of the left station, its rim, lines of the right station, its rim. */
+SPECIALIZED int left_lines(traffic t) {
+    return t.ending + t.through;
+}
+
+SPECIALIZED int right_lines(traffic t) {
+    return t.through + t.beginning;
+}
+
+/* Whether the row of an unknown on the left has nothing in a column: a line meets those on the right that go on before it. */
+SPECIALIZED int is_empty(traffic t, int row, int column) {
+    const int first = left_lines(t) + 1;
+    const int is_line = row < left_lines(t) && column >= first && column < first + right_lines(t);
+    return is_line && column - first > row - t.ending;
+}
+
+/* What goes from element to element. */
+typedef struct front_state {
+    const gmi_elastic *law;
+    gmi_elastic_work *work;
+    double *rows;   /* right-hand side, becomes that of back() */
+    double *record; /* behind the records so far */
+    double fall;    /* product of the right-hand side with its solution, so far */
+} front_state;
+
+#define ELASTIC_NAME(name) usual_##name
+#if defined(__GNUC__)
+#define UNROLLED _Pragma("GCC unroll 16")
+#else
+#define UNROLLED
+#endif
+#include "elastic_step.h"
+
+#define ELASTIC_NAME(name) any_##name
+#define UNROLLED
+#include "elastic_step.h"
+
+/* ---------------------------------------------------------------------------------------------
+ * The usual elements, and any
+ * ------------------------------------------------------------------------------------------- */
+
+/* Ending, through, beginning. */
+#define USUAL_TRAFFIC(X)                                                                           \
+    X(0, 0, 0)                                                                                     \
+    X(0, 0, 1)                                                                                     \
+    X(0, 0, 2)                                                                                     \
+    X(0, 0, 3)                                                                                     \
+    X(1, 0, 0)                                                                                     \
+    X(2, 0, 0)                                                                                     \
+    X(3, 0, 0)                                                                                     \
+    X(1, 0, 1)                                                                                     \
+    X(0, 1, 0)                                                                                     \
+    X(0, 1, 1) X(1, 1, 0) X(1, 1, 1) X(0, 2, 0) X(0, 2, 1) X(1, 2, 0) X(1, 2, 1) X(0, 3, 0)
+
+/* From element to element, as long as they are alike. Fronts of usual size are on the stack. */
+#define SPECIAL_FUNCTIONS(e, g, b)                                                                 \
+    SPECIAL void step_##e##g##b(front_state *f, int first, int last) {                             \
+        const traffic t = {e, g, b};                                                               \
+        double front[((e) + 2 * (g) + (b) + 2) * ((e) + 2 * (g) + (b) + 3)];                       \
+        usual_step(t, f, first, last, front);                                                      \
+    }                                                                                              \
+    SPECIAL void forward_##e##g##b(const gmi_elastic_work *work, int first, int last,              \
+                                   double *rows) {                                                 \
+        const traffic t = {e, g, b};                                                               \
+        usual_forward(t, work, first, last, rows);                                                 \
+    }                                                                                              \
+    SPECIAL void back_##e##g##b(const gmi_elastic_work *work, int first, int last, double *rows) { \
+        const traffic t = {e, g, b};                                                               \
+        usual_back(t, work, first, last, rows);                                                    \
+    }
+USUAL_TRAFFIC(SPECIAL_FUNCTIONS)
+
+/* work->traffic: 256, 16, 1 for each line that ends, goes through, begins. */
+static traffic traffic_of(int code) {
+    const traffic t = {code >> 8, (code >> 4) & 15, code & 15};
+    return t;
+}
+
+/* The same as a small number for what may be usual. */
+#define KIND(e, g, b) (16 * (e) + 4 * (g) + (b))
+
+static int kind_of(int code) {
+    return (code & ~0x333) != 0 ? 64 : ((code >> 4) & 0x30) + ((code >> 2) & 0xC) + (code & 3);
+}
+
+/* Elements first .. last are alike. */
+static void step_alike(front_state *f, int first, int last) {
+    const int code = f->work->traffic[first];
+    switch (kind_of(code)) {
+#define CASE(e, g, b)                                                                              \
+    case KIND(e, g, b):                                                                            \
+        step_##e##g##b(f, first, last);                                                            \
+        return;
+        USUAL_TRAFFIC(CASE)
+#undef CASE
+    default:
+        any_step(traffic_of(code), f, first, last, f->work->front);
+    }
+}
+
+static void forward_alike(const gmi_elastic_work *work, int first, int last, double *rows) {
+    const int code = work->traffic[first];
+    switch (kind_of(code)) {
+#define CASE(e, g, b)                                                                              \
+    case KIND(e, g, b):                                                                            \
+        forward_##e##g##b(work, first, last, rows);                                                \
+        return;
+        USUAL_TRAFFIC(CASE)
+#undef CASE
+    default:
+        any_forward(traffic_of(code), work, first, last, rows);
+    }
+}
+
+static void back_alike(const gmi_elastic_work *work, int first, int last, double *rows) {
+    const int code = work->traffic[first];
+    switch (kind_of(code)) {
+#define CASE(e, g, b)                                                                              \
+    case KIND(e, g, b):                                                                            \
+        back_##e##g##b(work, first, last, rows);                                                   \
+        return;
+        USUAL_TRAFFIC(CASE)
+#undef CASE
+    default:
+        any_back(traffic_of(code), work, first, last, rows);
+    }
+}
+
+/* ---------------------------------------------------------------------------------------------
+ * The whole face
+ * ------------------------------------------------------------------------------------------- */
+
+/* Whether two elements have the same lines, all of which go through them. */
+static int are_alike(const gmi_elastic_work *work, int element, int other) {
+    const int code = work->traffic[element];
+    return work->traffic[other] == code && (code & ~0xF0) == 0 &&
+           work->low[other] == work->low[element] && work->high[other] == work->high[element];
+}
+
+/* Last element of those that are like this one and follow it; first one of those before it. */
+static int last_alike(const gmi_elastic_work *work, int element) {
+    while (element + 1 < work->end && are_alike(work, element, element + 1)) {
+        ++element;
+    }
+    return element;
+}
+
+static int first_alike(const gmi_elastic_work *work, int element) {
+    while (element > work->begin && are_alike(work, element, element - 1)) {
+        --element;
+    }
+    return element;
+}
+
+static void back_all(const gmi_elastic_work *work, double *rows) {
+    for (int last = work->end - 1; last >= work->begin;) {
+        const int first = first_alike(work, last);
+        back_alike(work, first, last, rows);
+        last = first - 1;
+    }
+}
+
+double gmi_elastic_factor(const gmi_elastic *law, gmi_elastic_work *work, double *rows) {
+    double *rim = rows + work->lines_max * work->stations;
+    front_state f = {law, work, rows, work->factor, 0.0};
+    work->carry[0] = law->rim.left[work->begin];
+    work->carry[1] = rim[work->begin];
+    for (int first = work->begin; first < work->end;) {
+        const int last = last_alike(work, first);
+        step_alike(&f, first, last);
+        first = last + 1;
+    }
+
+    /* The last station has the rim alone. */
+    work->factor_at[work->end] = (int)(f.record - work->factor);
+    f.record[0] = 1.0 / work->carry[0];
+    rim[work->end] = work->carry[1] * f.record[0];
+    f.fall += work->carry[1] * rim[work->end];
+    back_all(work, rows);
+    return f.fall;
+}
+
+void gmi_elastic_substitute(const gmi_elastic_work *work, double *rows) {
+    for (int first = work->begin; first < work->end;) {
+        const int last = last_alike(work, first);
+        forward_alike(work, first, last, rows);
+        first = last + 1;
+    }
+    rows[work->lines_max * work->stations + work->end] *= work->factor[work->factor_at[work->end]];
+    back_all(work, rows);
+}

@@ -1,0 +1,491 @@
+/* SPDX-FileCopyrightText: The gearmesh authors */
+/* SPDX-License-Identifier: BSD-3-Clause */
+
+/*
+ * The workspace of elastic teeth, and where its lines of contact and points are. Each line is cut at the stations and at
+ * the ends of the path; every part has two Gauss points. At each point the compliance of both teeth and the rate of the
+ * contact law come from the tables of the law.
+ */
+#include "elastic.h"
+
+#include "internal.h"
+
+#include <math.h>
+#include <stdint.h>
+#include <string.h>
+
+#if defined(__GNUC__)
+#define APART                                                                                      \
+    static __attribute__((noinline)) /* inlined, gcc forgets that the arrays do not overlap */
+#else
+#define APART static
+#endif
+
+#define LEAST_FACTOR 1e-300
+
+/* Gauss points of a part, as shares of it: (1 -+ 1/sqrt(3)) / 2. */
+static const double gauss[2] = {0.21132486540518711775, 0.78867513459481288225};
+
+/* Sizes of the arrays of a workspace, in doubles. */
+typedef struct work_sizes {
+    size_t points, slots, nodes, front, factor, ends, carry;
+} work_sizes;
+
+static work_sizes find_sizes(int stations, int lines) {
+    const size_t n = (size_t)stations, rows = (size_t)lines + 1;
+    const work_sizes sizes = {2 * (size_t)lines * (n - 1),
+                              (size_t)lines * (n - 1),
+                              rows * n,
+                              2 * rows * (2 * rows + 2),
+                              2 * n * rows * rows,
+                              8 * (size_t)lines,
+                              rows * (rows + 2)};
+    return sizes;
+}
+
+enum { POINT_ARRAYS = 25, TABLE_ARRAYS = 4, PART_ARRAYS = 4, NODE_ARRAYS = 7, INDEX_ARRAYS = 4 };
+
+static int sizes_fit(int stations, int lines) {
+    return stations >= 2 && stations <= GMI_ELASTIC_STATIONS_MAX && lines >= 1 &&
+           lines <= GMI_ELASTIC_LINES_MAX;
+}
+
+size_t gmi_elastic_work_size(int stations, int lines) {
+    if (!sizes_fit(stations, lines)) {
+        return 0;
+    }
+    const work_sizes sizes = find_sizes(stations, lines);
+    return sizeof(double) *
+               ((POINT_ARRAYS + 2 * TABLE_ARRAYS) * sizes.points +
+                (GMI_ELASTIC_MATRICES + PART_ARRAYS) * sizes.slots + NODE_ARRAYS * sizes.nodes +
+                sizes.front + sizes.factor + sizes.ends + sizes.carry) +
+           sizeof(int) * INDEX_ARRAYS * (size_t)stations;
+}
+
+static double *take(double **memory, size_t count) {
+    double *array = *memory;
+    *memory += count;
+    return array;
+}
+
+void gmi_elastic_work_init(gmi_elastic_work *work, int stations, int lines, void *memory) {
+    const work_sizes sizes = find_sizes(stations, lines);
+    double *next = memory;
+    memset(work, 0, sizeof *work);
+    memset(memory, 0, gmi_elastic_work_size(stations, lines));
+    work->stations = stations;
+    work->lines_max = lines;
+
+    double **const points[POINT_ARRAYS] = {&work->z,
+                                           &work->roll,
+                                           &work->weight,
+                                           &work->deviation,
+                                           &work->deviation_by_roll,
+                                           &work->deviation_by_z,
+                                           &work->load,
+                                           &work->approach_at,
+                                           &work->force,
+                                           &work->stiffness,
+                                           &work->by_deviation,
+                                           &work->place,
+                                           &work->tooth,
+                                           &work->tooth_by_roll,
+                                           &work->tooth_by_action,
+                                           &work->rate,
+                                           &work->rate_by_roll,
+                                           &work->rate_by_action,
+                                           &work->deflection,
+                                           &work->slope,
+                                           &work->change_at,
+                                           &work->expected,
+                                           &work->scratch,
+                                           &work->pull,
+                                           &work->tooth_adjoint};
+    for (int k = 0; k < POINT_ARRAYS; ++k) {
+        *points[k] = take(&next, sizes.points);
+    }
+    for (int k = 0; k < TABLE_ARRAYS; ++k) {
+        work->table[k] = take(&next, 2 * sizes.points);
+    }
+    work->matrix = take(&next, GMI_ELASTIC_MATRICES * sizes.slots);
+    for (int k = 0; k < PART_ARRAYS; ++k) {
+        work->parts[k] = take(&next, sizes.slots);
+    }
+
+    double **const nodes[NODE_ARRAYS] = {&work->state, &work->change,   &work->adjoint,
+                                         &work->last,  &work->by_place, &work->last_step,
+                                         &work->other};
+    for (int k = 0; k < NODE_ARRAYS; ++k) {
+        *nodes[k] = take(&next, sizes.nodes);
+    }
+    work->front = take(&next, sizes.front);
+    work->factor = take(&next, sizes.factor);
+    work->carry = take(&next, sizes.carry);
+    work->end_record = take(&next, sizes.ends);
+
+    /* Behind the doubles, so that all are aligned. */
+    int *indices = (int *)(void *)next;
+    work->factor_at = indices;
+    work->low = indices + stations;
+    work->high = work->low + stations;
+    work->traffic = work->high + stations;
+}
+
+void gmi_elastic_work_reset(gmi_elastic_work *work) {
+    memset(work->state, 0, sizeof(double) * (size_t)(work->lines_max + 1) * (size_t)work->stations);
+    work->warm = 0;
+    work->touching = 0;
+}
+
+/* ---------------------------------------------------------------------------------------------
+ * Lines
+ * ------------------------------------------------------------------------------------------- */
+
+/* Part of the face on which one line lies within the path. */
+typedef struct span {
+    double from, to;
+    int limited[2];
+} span;
+
+static span find_span(const gmi_elastic *law, const gmi_elastic_lines_at *at, double roll) {
+    span part = {0.0, law->face_width, {0, 0}};
+    if (at->climb == 0.0) {
+        if (!(roll >= at->lower && roll <= at->upper)) {
+            part.to = 0.0;
+        }
+        return part;
+    }
+    const double per_climb = 1.0 / at->climb;
+    const double lower = (at->lower - roll) * per_climb;
+    const double upper = (at->upper - roll) * per_climb;
+    const int climbs = at->climb > 0.0;
+    const double from = climbs ? lower : upper;
+    const double to = climbs ? upper : lower;
+    if (from > part.from) {
+        part.from = from;
+        part.limited[0] = climbs ? -1 : 1;
+    }
+    if (to < part.to) {
+        part.to = to;
+        part.limited[1] = climbs ? 1 : -1;
+    }
+    return part;
+}
+
+/* Element that holds z > 0; the one before where z is a station. */
+static int last_element(double z, const gmi_elastic *law) {
+    int element = (int)(z * law->per_spacing);
+    if ((double)element * law->spacing >= z && element > 0) {
+        --element;
+    }
+    return element < law->stations - 2 ? element : law->stations - 2;
+}
+
+static int first_element(double z, const gmi_elastic *law) {
+    const int element = (int)(z * law->per_spacing);
+    return element < law->stations - 2 ? element : law->stations - 2;
+}
+
+/* Weight and places of one part that the ends of a line shorten. */
+static void cut_slot(const gmi_elastic *law, gmi_elastic_work *work, int slot, int element,
+                     const span *part) {
+    const double begin = (double)element * law->spacing;
+    const double from = fmax(part->from, begin);
+    const double to = fmin(part->to, begin + law->spacing);
+    const double length = fmax(to - from, 0.0);
+    for (int half = 0; half < 2; ++half) {
+        const int p = slot + half * work->slots;
+        work->weight[p] = 0.5 * length;
+        work->place[p] = (from - begin + gauss[half] * length) * law->per_spacing;
+    }
+}
+
+static void place_slots(const gmi_elastic *law, gmi_elastic_work *work, const span *parts) {
+    for (int half = 0; half < 2; ++half) {
+        double *restrict weight = work->weight + half * work->slots;
+        double *restrict place = work->place + half * work->slots;
+        for (int s = 0; s < work->slots; ++s) {
+            weight[s] = 0.5 * law->spacing;
+            place[s] = gauss[half];
+        }
+    }
+    for (int row = 0; row < work->count; ++row) {
+        const gmi_elastic_line *line = &work->line[row];
+        const int last = line->elements - 1;
+        cut_slot(law, work, line->slot, line->element, &parts[row]);
+        cut_slot(law, work, line->slot + last, line->element + last, &parts[row]);
+    }
+}
+
+/* Which rows each element has, and what they do there: those of an element follow one another. */
+static void count_lines(gmi_elastic_work *work) {
+    for (int e = 0; e < work->stations; ++e) {
+        work->low[e] = 0;
+        work->high[e] = -1;
+        work->traffic[e] = 0;
+    }
+    work->begin = work->stations;
+    work->end = 0;
+    for (int row = 0; row < work->count; ++row) {
+        const gmi_elastic_line *line = &work->line[row];
+        const int begin = line->element, end = begin + line->elements;
+        for (int e = begin; e < end; ++e) {
+            work->low[e] = work->high[e] < 0 ? row : work->low[e];
+            work->high[e] = row;
+            work->traffic[e] += 16;
+        }
+        if (line->elements > 1) {
+            work->traffic[begin] += 1 - 16;
+            work->traffic[end - 1] += 256 - 16;
+        } else {
+            work->traffic[begin] -= 16;
+        }
+        work->begin = begin < work->begin ? begin : work->begin;
+        work->end = end > work->end ? end : work->end;
+    }
+}
+
+/* ---------------------------------------------------------------------------------------------
+ * Teeth
+ * ------------------------------------------------------------------------------------------- */
+
+/* Compliance and curvature factor of one gear, and their slopes by its own roll length, in two arrays [count][2]. */
+APART void read_table(const gmi_elastic_gear *gear, int count, int slopes,
+                      const double *restrict roll, double *restrict values,
+                      double *restrict slope) {
+    const double last = (double)(GMI_ELASTIC_CELLS + 1);
+    for (int p = 0; p < count; ++p) {
+        /* In cells, the one that holds the value of the begin first. */
+        const double raw = (roll[p] - gear->start) * gear->per_cell + 1.0;
+        const double above = raw > 0.0 ? raw : 0.0;
+        const double u = above < last ? above : last;
+        const int cell = (int)u;
+        const double t = u - (double)cell;
+        const double *restrict c = &gear->cell[cell].value[0][0];
+        const double *restrict d = &gear->cell[cell].slope[0][0];
+        for (int k = 0; k < 2; ++k) {
+            values[2 * p + k] = c[k] + t * (c[2 + k] + t * (c[4 + k] + t * c[6 + k]));
+        }
+        for (int k = 0; k < 2 && slopes; ++k) {
+            slope[2 * p + k] = d[k] + t * (d[2 + k] + t * d[4 + k]);
+        }
+    }
+}
+
+/* Both whole teeth on the line of action of the drawing: s, 1 / (B e^L) and their slopes at once. */
+APART void read_pair(const gmi_elastic_gear *pair, int count, int slopes,
+                     const double *restrict roll, double *restrict tooth, double *restrict rate,
+                     double *restrict tooth_by_roll, double *restrict rate_by_roll) {
+    const double last = (double)(GMI_ELASTIC_CELLS + 1);
+    for (int p = 0; p < count; ++p) {
+        const double raw = (roll[p] - pair->start) * pair->per_cell + 1.0;
+        const double above = raw > 0.0 ? raw : 0.0;
+        const double u = above < last ? above : last;
+        const int cell = (int)u;
+        const double t = u - (double)cell;
+        const gmi_elastic_cell *c = &pair->cell[cell];
+        tooth[p] =
+            c->value[0][0] + t * (c->value[1][0] + t * (c->value[2][0] + t * c->value[3][0]));
+        rate[p] = c->value[0][1] + t * (c->value[1][1] + t * (c->value[2][1] + t * c->value[3][1]));
+        if (slopes) {
+            tooth_by_roll[p] = c->slope[0][0] + t * (c->slope[1][0] + t * c->slope[2][0]);
+            rate_by_roll[p] = c->slope[0][1] + t * (c->slope[1][1] + t * c->slope[2][1]);
+        }
+    }
+    for (int p = 0; p < count && slopes; ++p) {
+        rate_by_roll[p] /= rate[p] + LEAST_FACTOR; /* logarithmic: none at rho = 0 */
+    }
+}
+
+/* Where the points of one half of a line are. */
+APART void place_points(int count, double first, double spacing, double origin, double climb,
+                        double action, const double *restrict place, double *restrict z,
+                        double *restrict roll, double *restrict wheel_roll) {
+    for (int k = 0; k < count; ++k) {
+        const double at = ((double)k + first + place[k]) * spacing;
+        const double rho = origin + climb * at;
+        z[k] = at;
+        roll[k] = rho;
+        wheel_roll[k] = action - rho;
+    }
+}
+
+/* What teeth are made of. */
+typedef struct tooth_pair {
+    double softness[2]; /* of pinion and wheel */
+    double rim;         /* r^2 */
+    double action;      /* T */
+} tooth_pair;
+
+/* s^2 = c_p + c_w - r^2 and 1 / (B e^L) = 4 h_p h_w / T. */
+APART void join_teeth(int count, const tooth_pair *teeth, const double *restrict pinion,
+                      const double *restrict wheel, double *restrict tooth, double *restrict rate) {
+    const double per_action = 4.0 / teeth->action;
+    for (int k = 0; k < count; ++k) {
+        tooth[k] = sqrt(teeth->softness[0] * pinion[2 * k] + teeth->softness[1] * wheel[2 * k] -
+                        teeth->rim);
+        rate[k] = per_action * (pinion[2 * k + 1] * wheel[2 * k + 1]);
+    }
+}
+
+/* Slopes along rho_p, and by the line of action. That of the rate is logarithmic: none at rho = 0. */
+APART void join_slopes(int count, const tooth_pair *teeth, const double *restrict pinion,
+                       const double *restrict wheel, const double *restrict pinion_slope,
+                       const double *restrict wheel_slope, const double *restrict tooth,
+                       double *restrict tooth_by_roll, double *restrict tooth_by_action,
+                       double *restrict rate_by_roll, double *restrict rate_by_action) {
+    const double per_action = 1.0 / teeth->action;
+    for (int k = 0; k < count; ++k) {
+        const double per_tooth = 0.5 / tooth[k];
+        const double by_pinion = teeth->softness[0] * pinion_slope[2 * k] * per_tooth;
+        const double by_wheel = teeth->softness[1] * wheel_slope[2 * k] * per_tooth;
+        const double factor = pinion[2 * k + 1] * wheel[2 * k + 1] + LEAST_FACTOR;
+        const double per_factor = 1.0 / factor;
+        const double of_pinion = pinion_slope[2 * k + 1] * wheel[2 * k + 1] * per_factor;
+        const double of_wheel = wheel_slope[2 * k + 1] * pinion[2 * k + 1] * per_factor;
+        tooth_by_roll[k] = by_pinion - by_wheel;
+        tooth_by_action[k] = by_wheel;
+        rate_by_roll[k] = of_pinion - of_wheel;
+        rate_by_action[k] = of_wheel - per_action;
+    }
+}
+
+/* Points of all lines, and their teeth. Returns whether all have a compliance. */
+static int place_teeth(const gmi_elastic *law, gmi_elastic_work *work) {
+    const gmi_elastic_lines_at *at = &work->at;
+    const int slots = work->slots, count = 2 * slots;
+    double *wheel_roll = work->scratch;
+    for (int row = 0; row < work->count; ++row) {
+        const gmi_elastic_line *line = &work->line[row];
+        const double origin = at->origin + (double)line->index * at->pitch;
+        for (int half = 0; half < 2; ++half) {
+            const int p = line->slot + half * slots;
+            place_points(line->elements, (double)line->element, law->spacing, origin, at->climb,
+                         at->line_of_action, work->place + p, work->z + p, work->roll + p,
+                         wheel_roll + p);
+        }
+    }
+    if (at->pinion_softness == NULL && at->wheel_softness == NULL && at->slopes < 2 &&
+        at->line_of_action == law->line_of_action) {
+        read_pair(&law->pair, count, at->slopes, work->roll, work->tooth, work->rate,
+                  work->tooth_by_roll, work->rate_by_roll);
+        return 1;
+    }
+    read_table(&law->gear[0], count, at->slopes, work->roll, work->table[0], work->table[2]);
+    read_table(&law->gear[1], count, at->slopes, wheel_roll, work->table[1], work->table[3]);
+
+    /* Lines of whole teeth are the same to all that follows. */
+    tooth_pair teeth = {{1.0, 1.0}, law->rim_compliance, at->line_of_action};
+    const int whole = at->pinion_softness == NULL && at->wheel_softness == NULL;
+    const int groups = whole ? 2 : 2 * work->count;
+    int good = 1;
+    for (int g = 0; g < groups; ++g) {
+        const gmi_elastic_line *line = &work->line[g / 2];
+        const int p = (whole ? 0 : line->slot) + g % 2 * slots;
+        const int n = whole ? slots : line->elements;
+        if (!whole) {
+            const int number = line->index - at->first;
+            teeth.softness[0] = at->pinion_softness != NULL ? at->pinion_softness[number] : 1.0;
+            teeth.softness[1] = at->wheel_softness != NULL ? at->wheel_softness[number] : 1.0;
+            good = good && teeth.softness[0] * law->least_compliance[0] +
+                                   teeth.softness[1] * law->least_compliance[1] >
+                               law->rim_compliance;
+        }
+        join_teeth(n, &teeth, work->table[0] + 2 * p, work->table[1] + 2 * p, work->tooth + p,
+                   work->rate + p);
+        if (at->slopes) {
+            join_slopes(n, &teeth, work->table[0] + 2 * p, work->table[1] + 2 * p,
+                        work->table[2] + 2 * p, work->table[3] + 2 * p, work->tooth + p,
+                        work->tooth_by_roll + p, work->tooth_by_action + p, work->rate_by_roll + p,
+                        work->rate_by_action + p);
+        }
+    }
+    return good;
+}
+
+/* ---------------------------------------------------------------------------------------------
+ * All of it
+ * ------------------------------------------------------------------------------------------- */
+
+/* Row 0 is the line that begins first along the face: the last one if lines climb. */
+static int row_step(const gmi_elastic_lines_at *at) {
+    return at->climb > 0.0 ? -1 : 1;
+}
+
+/* Moves rows of an array over stations up by `shift`, and clears those that come in. */
+static void shift_rows(const gmi_elastic_work *work, int shift, double *rows) {
+    const size_t row = (size_t)work->stations;
+    const size_t moved = (size_t)(shift > 0 ? shift : -shift) * row;
+    const size_t kept = (size_t)work->lines_max * row - moved;
+    memmove(shift > 0 ? rows : rows + moved, shift > 0 ? rows + moved : rows, kept * sizeof *rows);
+    memset(shift > 0 ? rows + kept : rows, 0, moved * sizeof *rows);
+}
+
+/* Moves the last solutions to the rows of the teeth they belong to. */
+static void follow_teeth(gmi_elastic_work *work) {
+    const gmi_elastic_lines_at *at = &work->at;
+    if (work->count == 0) {
+        return;
+    }
+    const int direction = at->step * row_step(at);
+    const int tooth = (at->tooth + at->step * (work->line[0].index - at->first)) % at->teeth;
+    int shift = direction * (tooth - work->warm_tooth) % at->teeth;
+    if (2 * shift > at->teeth) {
+        shift -= at->teeth;
+    } else if (2 * shift < -at->teeth) {
+        shift += at->teeth;
+    }
+    work->warm_tooth = tooth;
+    if (shift == 0 || work->warm == 0) {
+        return;
+    }
+    if (shift >= work->lines_max || -shift >= work->lines_max) {
+        gmi_elastic_work_reset(work);
+        return;
+    }
+    work->warm_place += (double)(row_step(at) * shift) * at->pitch;
+    shift_rows(work, shift, work->state);
+    shift_rows(work, shift, work->adjoint);
+    shift_rows(work, shift, work->by_place);
+}
+
+/* Line k and its part of the face, if there is any. */
+static void add_line(const gmi_elastic *law, gmi_elastic_work *work, int k, const span *part) {
+    if (!(part->from < part->to)) {
+        return;
+    }
+    gmi_elastic_line *line = &work->line[work->count++];
+    const int element = first_element(part->from, law);
+    const int last = last_element(part->to, law);
+    line->index = k;
+    line->slot = work->slots;
+    line->element = element;
+    line->elements = last >= element ? last - element + 1 : 1;
+    line->limited[0] = part->limited[0];
+    line->limited[1] = part->limited[1];
+    work->slots += line->elements;
+}
+
+int gmi_elastic_place(const gmi_elastic *law, const gmi_elastic_lines_at *at,
+                      gmi_elastic_work *work) {
+    span parts[GMI_ELASTIC_LINES_MAX + 1];
+    work->at = *at;
+    work->count = 0;
+    work->slots = 0;
+    const int lines = at->last - at->first + 1;
+    for (int i = 0; i < lines; ++i) {
+        const int k = row_step(at) > 0 ? at->first + i : at->last - i;
+        const span part = find_span(law, at, at->origin + (double)k * at->pitch);
+        if (part.from < part.to && work->count == work->lines_max) {
+            work->count = 0;
+            return GM_STATE_OUT_OF_RANGE;
+        }
+        parts[work->count] = part;
+        add_line(law, work, k, &part);
+    }
+    place_slots(law, work, parts);
+    const int good = place_teeth(law, work);
+    count_lines(work);
+    follow_teeth(work);
+    return good ? GM_OK : GM_ERR_PARAMETER;
+}

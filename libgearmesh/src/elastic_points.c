@@ -1,0 +1,250 @@
+/* SPDX-FileCopyrightText: The gearmesh authors */
+/* SPDX-License-Identifier: BSD-3-Clause */
+
+/*
+ * From deflections of the stations to loads at the points, and from there back to forces and stiffness of the stations.
+ * The loops run over many slots, written so that a compiler does two at once: arrays as arguments that do not overlap. Only
+ * the contact law looks up one at a time.
+ */
+#include "elastic.h"
+
+#include "hertz.h"
+#include "internal.h"
+
+#include <string.h>
+
+#if defined(__GNUC__)
+#define APART                                                                                      \
+    static __attribute__((noinline)) /* inlined, gcc forgets that the arrays do not overlap */
+#else
+#define APART static
+#endif
+
+/* Both points of each slot of one line, the second one `other` places behind the first. */
+APART void approach_line(int count, int other, double x, const double *restrict place,
+                         const double *restrict tooth, const double *restrict deviation,
+                         const double *restrict tooth_row, const double *restrict rim_row,
+                         double *restrict deflection, double *restrict approach) {
+    for (int k = 0; k < count; ++k) {
+        const double tooth_rise = tooth_row[k + 1] - tooth_row[k];
+        const double rim_rise = rim_row[k + 1] - rim_row[k];
+        const double phi = tooth_row[k] + place[k] * tooth_rise;
+        const double psi = rim_row[k] + place[k] * rim_rise;
+        deflection[k] = phi;
+        approach[k] = (x + deviation[k]) - tooth[k] * phi - psi;
+    }
+    for (int k = 0; k < count; ++k) {
+        const int p = k + other;
+        const double phi = tooth_row[k] + place[p] * (tooth_row[k + 1] - tooth_row[k]);
+        const double psi = rim_row[k] + place[p] * (rim_row[k + 1] - rim_row[k]);
+        deflection[p] = phi;
+        approach[p] = (x + deviation[p]) - tooth[p] * phi - psi;
+    }
+}
+
+void gmi_elastic_approach(gmi_elastic_work *work, double x) {
+    const double *rim = work->state + work->lines_max * work->stations;
+    for (int k = 0; k < work->count; ++k) {
+        const gmi_elastic_line *line = &work->line[k];
+        const int s = line->slot;
+        approach_line(line->elements, work->slots, x, work->place + s, work->tooth + s,
+                      work->deviation + s, work->state + k * work->stations + line->element,
+                      rim + line->element, work->deflection + s, work->approach_at + s);
+    }
+}
+
+/* Line loads, forces and stiffnesses from y of the contact law, which becomes B dq/d gamma. */
+APART void load_points(int count, double per_compliance, const double *restrict approach,
+                       const double *restrict weight, const double *restrict expected,
+                       double *restrict slope, double *restrict load, double *restrict force,
+                       double *restrict stiffness, double *restrict excess) {
+    for (int k = 0; k < count; ++k) {
+        /* y = 0 without contact; on the straight part of the law y > 1/2, and the slope is 1. */
+        const double y = slope[k];
+        const double steep = y / (1.0 - y);
+        const double p = steep < 1.0 ? steep : 1.0;
+        const double scaled = weight[k] * per_compliance;
+        const double q = approach[k] * y;
+        const double pushed = q * scaled;
+        slope[k] = p;
+        load[k] = q * per_compliance;
+        force[k] = pushed;
+        stiffness[k] = p * scaled;
+        excess[k] = pushed - expected[k];
+    }
+}
+
+void gmi_elastic_load(const gmi_elastic *law, gmi_elastic_work *work) {
+    const int count = 2 * work->slots;
+    const double *approach = work->approach_at, *rate = work->rate;
+    double *slope = work->slope;
+    for (int p = 0; p < count; ++p) {
+        slope[p] = gmi_hertz_reciprocal(approach[p] * rate[p]);
+    }
+    load_points(count, 1.0 / law->hertz_compliance, approach, work->weight, work->expected, slope,
+                work->load, work->force, work->stiffness, work->scratch);
+}
+
+APART void follow_line(int count, int other, const double *restrict place,
+                       const double *restrict tooth, const double *restrict force,
+                       const double *restrict stiffness, const double *restrict tooth_row,
+                       const double *restrict rim_row, double *restrict deflection,
+                       double *restrict approach, double *restrict change,
+                       double *restrict expected) {
+    for (int k = 0; k < count; ++k) {
+        const double phi = tooth_row[k] + place[k] * (tooth_row[k + 1] - tooth_row[k]);
+        const double psi = rim_row[k] + place[k] * (rim_row[k + 1] - rim_row[k]);
+        const double moved = tooth[k] * phi + psi;
+        deflection[k] += phi;
+        approach[k] -= moved;
+        change[k] = -moved;
+        expected[k] = force[k] - stiffness[k] * moved;
+    }
+    for (int k = 0; k < count; ++k) {
+        const int p = k + other;
+        const double phi = tooth_row[k] + place[p] * (tooth_row[k + 1] - tooth_row[k]);
+        const double psi = rim_row[k] + place[p] * (rim_row[k + 1] - rim_row[k]);
+        const double moved = tooth[p] * phi + psi;
+        deflection[p] += phi;
+        approach[p] -= moved;
+        change[p] = -moved;
+        expected[p] = force[p] - stiffness[p] * moved;
+    }
+}
+
+void gmi_elastic_follow(gmi_elastic_work *work) {
+    const double *rim = work->change + work->lines_max * work->stations;
+    for (int k = 0; k < work->count; ++k) {
+        const gmi_elastic_line *line = &work->line[k];
+        const int s = line->slot;
+        follow_line(line->elements, work->slots, work->place + s, work->tooth + s, work->force + s,
+                    work->stiffness + s, work->change + k * work->stations + line->element,
+                    rim + line->element, work->deflection + s, work->approach_at + s,
+                    work->change_at + s, work->expected + s);
+    }
+}
+
+APART void pull_line(int count, int other, const double *restrict place,
+                     const double *restrict tooth, const double *restrict tooth_row,
+                     const double *restrict rim_row, double *restrict pull,
+                     double *restrict tooth_adjoint) {
+    for (int k = 0; k < count; ++k) {
+        const double phi = tooth_row[k] + place[k] * (tooth_row[k + 1] - tooth_row[k]);
+        const double psi = rim_row[k] + place[k] * (rim_row[k + 1] - rim_row[k]);
+        tooth_adjoint[k] = phi;
+        pull[k] -= tooth[k] * phi + psi;
+    }
+    for (int k = 0; k < count; ++k) {
+        const int p = k + other;
+        const double phi = tooth_row[k] + place[p] * (tooth_row[k + 1] - tooth_row[k]);
+        const double psi = rim_row[k] + place[p] * (rim_row[k + 1] - rim_row[k]);
+        tooth_adjoint[p] = phi;
+        pull[p] -= tooth[p] * phi + psi;
+    }
+}
+
+void gmi_elastic_pull(gmi_elastic_work *work, const double *factor, const double *rows) {
+    for (int p = 0; p < 2 * work->slots; ++p) {
+        work->pull[p] = factor != NULL ? factor[p] : 1.0;
+    }
+    const double *rim = rows + work->lines_max * work->stations;
+    for (int k = 0; k < work->count; ++k) {
+        const gmi_elastic_line *line = &work->line[k];
+        const int s = line->slot;
+        pull_line(line->elements, work->slots, work->place + s, work->tooth + s,
+                  rows + k * work->stations + line->element, rim + line->element, work->pull + s,
+                  work->tooth_adjoint + s);
+    }
+}
+
+/* Forces of the two stations of each slot: of both points together. */
+APART void divide(int count, const double *restrict first_force,
+                  const double *restrict second_force, const double *restrict first_place,
+                  const double *restrict second_place, const double *restrict first_tooth,
+                  const double *restrict second_tooth, double *restrict tooth_left,
+                  double *restrict tooth_right, double *restrict rim_left,
+                  double *restrict rim_right) {
+    for (int k = 0; k < count; ++k) {
+        const double first = first_force[k], second = second_force[k];
+        const double first_right = first * first_place[k];
+        const double second_right = second * second_place[k];
+        const double first_left = first - first_right, second_left = second - second_right;
+        tooth_left[k] = first_tooth[k] * first_left + second_tooth[k] * second_left;
+        tooth_right[k] = first_tooth[k] * first_right + second_tooth[k] * second_right;
+        rim_left[k] = first_left + second_left;
+        rim_right[k] = first_right + second_right;
+    }
+}
+
+/* A station takes from the elements on both sides. */
+APART void add_rows(int count, const double *restrict tooth_left,
+                    const double *restrict tooth_right, const double *restrict rim_left,
+                    const double *restrict rim_right, double *restrict tooth_row,
+                    double *restrict rim_row) {
+    tooth_row[0] += tooth_left[0];
+    rim_row[0] += rim_left[0];
+    for (int k = 1; k < count; ++k) {
+        tooth_row[k] += tooth_right[k - 1] + tooth_left[k];
+        rim_row[k] += rim_right[k - 1] + rim_left[k];
+    }
+    tooth_row[count] += tooth_right[count - 1];
+    rim_row[count] += rim_right[count - 1];
+}
+
+void gmi_elastic_gather(gmi_elastic_work *work, const double *force, double *rows) {
+    const int slots = work->slots;
+    divide(slots, force, force + slots, work->place, work->place + slots, work->tooth,
+           work->tooth + slots, work->parts[0], work->parts[1], work->parts[2], work->parts[3]);
+    double *rim = rows + work->lines_max * work->stations;
+    for (int k = 0; k < work->count; ++k) {
+        const gmi_elastic_line *line = &work->line[k];
+        const int s = line->slot;
+        add_rows(line->elements, work->parts[0] + s, work->parts[1] + s, work->parts[2] + s,
+                 work->parts[3] + s, rows + k * work->stations + line->element,
+                 rim + line->element);
+    }
+}
+
+/* Stiffness of the two stations of each slot: left with left, left with right, right with right. */
+APART void stiffen(int count, const double *restrict first_stiffness,
+                   const double *restrict second_stiffness, const double *restrict first_place,
+                   const double *restrict second_place, const double *restrict first_tooth,
+                   const double *restrict second_tooth, double *restrict tooth_left,
+                   double *restrict mixed_left, double *restrict rim_left) {
+    double *tooth_cross = tooth_left + count, *tooth_right = tooth_cross + count;
+    double *mixed_cross = mixed_left + count, *mixed_right = mixed_cross + count;
+    double *rim_cross = rim_left + count, *rim_right = rim_cross + count;
+    for (int k = 0; k < count; ++k) {
+        const double t = first_place[k], u = second_place[k];
+        const double first = first_stiffness[k], second = second_stiffness[k];
+        const double s = first_tooth[k], r = second_tooth[k];
+
+        /* Rim with rim: products of the shares of both stations. */
+        const double first_r = first * t, second_r = second * u;
+        const double first_rr = first_r * t, second_rr = second_r * u;
+        const double first_lr = first_r - first_rr, second_lr = second_r - second_rr;
+        const double first_ll = first - first_r - first_lr;
+        const double second_ll = second - second_r - second_lr;
+        rim_left[k] = first_ll + second_ll;
+        rim_cross[k] = first_lr + second_lr;
+        rim_right[k] = first_rr + second_rr;
+
+        /* Times s: tooth with rim. Times s again: tooth with tooth. */
+        const double mixed_ll = first_ll * s, other_ll = second_ll * r;
+        const double mixed_lr = first_lr * s, other_lr = second_lr * r;
+        const double mixed_rr = first_rr * s, other_rr = second_rr * r;
+        mixed_left[k] = mixed_ll + other_ll;
+        mixed_cross[k] = mixed_lr + other_lr;
+        mixed_right[k] = mixed_rr + other_rr;
+        tooth_left[k] = mixed_ll * s + other_ll * r;
+        tooth_cross[k] = mixed_lr * s + other_lr * r;
+        tooth_right[k] = mixed_rr * s + other_rr * r;
+    }
+}
+
+void gmi_elastic_stiffen(gmi_elastic_work *work) {
+    const int slots = work->slots;
+    stiffen(slots, work->stiffness, work->stiffness + slots, work->place, work->place + slots,
+            work->tooth, work->tooth + slots, work->matrix + GMI_TOOTH_LEFT * slots,
+            work->matrix + GMI_MIXED_LEFT * slots, work->matrix + GMI_RIM_LEFT * slots);
+}

@@ -1,0 +1,293 @@
+/* SPDX-FileCopyrightText: The gearmesh authors */
+/* SPDX-License-Identifier: BSD-3-Clause */
+#include "elastic_model.h"
+
+enum { POINTS = 800, NODES = GMI_ELASTIC_STATIONS_MAX };
+
+typedef struct model_point {
+    int line; /* number in order */
+    int element;
+    long double t;      /* between the stations of the element */
+    long double weight; /* over z */
+    long double s;      /* of the tooth layer */
+    long double w;      /* deviation */
+    long double B, L;   /* delta = B q (L - ln q) */
+} model_point;
+
+typedef struct model {
+    model_point point[POINTS];
+    int points, lines;
+    int index[GMI_ELASTIC_LINES_MAX];
+    long double tooth[NODES][NODES], rim[NODES][NODES]; /* inverses of the layers */
+    long double r2;
+    long double compliance[POINTS][POINTS];
+    long double matrix[POINTS][POINTS + 1];
+    long double load[POINTS];
+} model;
+
+/* Gauss-Jordan on a symmetric positive definite matrix, in place. */
+static void invert(int n, long double a[NODES][NODES]) {
+    for (int k = 0; k < n; ++k) {
+        const long double pivot = a[k][k];
+        a[k][k] = 1.0L;
+        for (int c = 0; c < n; ++c) {
+            a[k][c] /= pivot;
+        }
+        for (int i = 0; i < n; ++i) {
+            if (i != k) {
+                const long double factor = a[i][k];
+                a[i][k] = 0.0L;
+                for (int c = 0; c < n; ++c) {
+                    a[i][c] -= factor * a[k][c];
+                }
+            }
+        }
+    }
+}
+
+static void make_layer(const elastic_gear *g, long double length, long double softening,
+                       long double a[NODES][NODES]) {
+    const int n = g->stations;
+    const long double m = g->normal_module, cosine = cosl(g->helix_angle);
+    const long double h = (long double)g->face_width / (n - 1);
+    for (int i = 0; i < n; ++i) {
+        for (int k = 0; k < n; ++k) {
+            a[i][k] = 0.0L;
+        }
+    }
+    for (int e = 0; e < n - 1; ++e) {
+        const long double middle = h * (e + 0.5L);
+        const long double d = fminl(middle, g->face_width - middle) / cosine;
+        const long double l2 =
+            length * m * cosine * length * m * cosine * (1.0L - softening * expl(-d / (0.8L * m)));
+        a[e][e] += h / 3.0L + l2 / h;
+        a[e + 1][e + 1] += h / 3.0L + l2 / h;
+        a[e][e + 1] += h / 6.0L - l2 / h;
+        a[e + 1][e] = a[e][e + 1];
+    }
+    invert(n, a);
+}
+
+/* Teeth of both gears. */
+typedef struct model_teeth {
+    gmi_tooth tooth[2];
+    long double cosine; /* cos(beta_b) */
+} model_teeth;
+
+static void make_teeth(const elastic_gear *g, model_teeth *teeth) {
+    teeth->cosine = cosl(g->base_helix_angle);
+    for (int k = 0; k < 2; ++k) {
+        const gmi_tooth_params params = {
+            (double)(g->teeth[k] / (teeth->cosine * teeth->cosine * cosl(g->helix_angle))),
+            g->normal_module,
+            g->pressure_angle,
+            g->shift[k],
+            g->normal_module * (0.5 * GMI_PI + 2.0 * g->shift[k] * tan(g->pressure_angle)),
+            g->dedendum,
+            g->fillet_radius,
+            g->youngs_modulus[k],
+            g->poisson_ratio[k]};
+        GM_ASSERT_INT(gmi_tooth_init(&teeth->tooth[k], &params), GMI_TOOTH_FINE);
+    }
+}
+
+/* Tooth layer and contact law of a point with this rho_p. */
+static void set_teeth(const elastic_gear *g, const model_teeth *teeth, const long double soft[2],
+                      long double rho, long double r2, model_point *p) {
+    const long double roll[2] = {rho, g->line_of_action - rho};
+    long double c = 0.0L, sum = 0.0L, level = 0.0L, moduli = 0.0L;
+    for (int k = 0; k < 2; ++k) {
+        const long double nu = g->poisson_ratio[k], E = g->youngs_modulus[k];
+        const long double B = 2.0L * (1.0L - nu * nu) / (GMI_PI * E);
+        gmi_tooth_load load;
+        GM_ASSERT_INT(gmi_tooth_load_at(&teeth->tooth[k], (double)(roll[k] / teeth->cosine), &load),
+                      GMI_TOOTH_FINE);
+        c += soft[k] * ((long double)load.bending + load.foundation);
+        sum += B;
+        moduli += (1.0L - nu * nu) / E;
+        level += B * (logl(2.0L * load.depth) + 0.06L);
+    }
+    const long double rho_red = roll[0] * roll[1] / (g->line_of_action * teeth->cosine);
+    const long double a_1 = sqrtl(4.0L * rho_red / GMI_PI * moduli);
+    p->s = sqrtl(c / teeth->cosine - r2);
+    p->B = sum / (2.0L * teeth->cosine);
+    p->L = (level - sum * logl(a_1)) / (0.5L * sum);
+}
+
+static void add_line(model *m, const elastic_gear *g, const elastic_deviation *d,
+                     const model_teeth *teeth, const double softness[2][3], int k,
+                     long double rho_0) {
+    const long double climb = tanl(g->base_helix_angle), b = g->face_width;
+    const long double h = b / (g->stations - 1);
+    long double from = 0.0L, to = b;
+    if (climb == 0.0L) {
+        to = rho_0 >= g->path_start && rho_0 <= g->path_end ? b : 0.0L;
+    } else {
+        const long double ends[2] = {(g->path_start - rho_0) / climb,
+                                     (g->path_end - rho_0) / climb};
+        from = fmaxl(from, fminl(ends[0], ends[1]));
+        to = fminl(to, fmaxl(ends[0], ends[1]));
+    }
+    if (from >= to) {
+        return;
+    }
+    const long double soft[2] = {softness != NULL ? softness[0][((k % 3) + 3) % 3] : 1.0L,
+                                 softness != NULL ? softness[1][((k % 3) + 3) % 3] : 1.0L};
+    for (int e = 0; e < g->stations - 1; ++e) {
+        const long double low = fmaxl(from, e * h), high = fminl(to, (e + 1) * h);
+        for (int half = 0; half < 2 && high > low; ++half) {
+            model_point *p = &m->point[m->points++];
+            const long double xi = 0.5L + (half == 0 ? -0.5L : 0.5L) / sqrtl(3.0L);
+            const long double z = low + xi * (high - low), rho = rho_0 + climb * z;
+            double ignored[2];
+            p->line = m->lines;
+            p->element = e;
+            p->t = z / h - e;
+            p->weight = 0.5L * (high - low);
+            p->w = deviation_at(g, d, k, (double)rho, (double)z, &ignored[0], &ignored[1]);
+            set_teeth(g, teeth, soft, rho, m->r2, p);
+        }
+    }
+    m->index[m->lines++] = k;
+}
+
+static long double between(int n, long double a[NODES][NODES], const model_point *p,
+                           const model_point *q) {
+    (void)n;
+    const int i = p->element, k = q->element;
+    const long double low = (1.0L - q->t) * a[i][k] + q->t * a[i][k + 1];
+    const long double high = (1.0L - q->t) * a[i + 1][k] + q->t * a[i + 1][k + 1];
+    return (1.0L - p->t) * low + p->t * high;
+}
+
+/* Deflection at point i under a unit force at point k. */
+static void make_compliance(model *m, int n) {
+    for (int i = 0; i < m->points; ++i) {
+        for (int k = 0; k < m->points; ++k) {
+            const model_point *p = &m->point[i], *q = &m->point[k];
+            long double c = m->r2 * between(n, m->rim, p, q);
+            if (p->line == q->line) {
+                c += p->s * q->s * between(n, m->tooth, p, q);
+            }
+            m->compliance[i][k] = c;
+        }
+    }
+}
+
+/* Gap that is left at point i with the loads as they are: x + w less all deflections. */
+static long double approach_of(const model *m, int i, long double x) {
+    long double gamma = x + m->point[i].w;
+    for (int k = 0; k < m->points; ++k) {
+        gamma -= m->compliance[i][k] * m->point[k].weight * m->load[k];
+    }
+    return gamma;
+}
+
+/* One step of Newton's method for the loads of the active points; returns the largest relative change. */
+static long double step(model *m, long double x, const int *active, int count) {
+    for (int i = 0; i < count; ++i) {
+        const model_point *p = &m->point[active[i]];
+        const long double q = m->load[active[i]];
+        for (int k = 0; k < count; ++k) {
+            m->matrix[i][k] = m->compliance[active[i]][active[k]] * m->point[active[k]].weight;
+        }
+        m->matrix[i][i] += p->B * (p->L - 1.0L - logl(q));
+        m->matrix[i][count] = approach_of(m, active[i], x) - p->B * q * (p->L - logl(q));
+    }
+    for (int k = 0; k < count; ++k) {
+        int best = k;
+        for (int i = k + 1; i < count; ++i) {
+            best = fabsl(m->matrix[i][k]) > fabsl(m->matrix[best][k]) ? i : best;
+        }
+        for (int c = 0; c <= count; ++c) {
+            const long double swap = m->matrix[k][c];
+            m->matrix[k][c] = m->matrix[best][c];
+            m->matrix[best][c] = swap;
+        }
+        for (int i = k + 1; i < count; ++i) {
+            const long double factor = m->matrix[i][k] / m->matrix[k][k];
+            for (int c = k; c <= count && factor != 0.0L; ++c) {
+                m->matrix[i][c] -= factor * m->matrix[k][c];
+            }
+        }
+    }
+    for (int k = count - 1; k >= 0; --k) {
+        for (int c = k + 1; c < count; ++c) {
+            m->matrix[k][count] -= m->matrix[k][c] * m->matrix[c][count];
+        }
+        m->matrix[k][count] /= m->matrix[k][k];
+    }
+    long double largest = 0.0L;
+    for (int i = 0; i < count; ++i) {
+        const long double before = m->load[active[i]];
+        const long double after = fmaxl(before + m->matrix[i][count], 0.01L * before);
+        largest = fmaxl(largest, fabsl(after - before) / before);
+        m->load[active[i]] = after;
+    }
+    return largest;
+}
+
+/* Active set: points with a load so small that it is none go, points that are pressed come. */
+static int solve(model *m, long double x) {
+    int active[POINTS], count = 0;
+    for (int i = 0; i < m->points; ++i) {
+        const long double gamma = x + m->point[i].w;
+        m->load[i] = gamma > 0.0L ? 0.1L * gamma / (m->point[i].B * m->point[i].L) : 0.0L;
+    }
+    for (int iteration = 0; iteration < 300; ++iteration) {
+        int changed = 0;
+        count = 0;
+        for (int i = 0; i < m->points; ++i) {
+            if (m->load[i] == 0.0L && approach_of(m, i, x) > 0.0L) {
+                m->load[i] = 1e-3L * approach_of(m, i, x) / (m->point[i].B * m->point[i].L);
+                changed = 1;
+            } else if (m->load[i] > 0.0L && m->load[i] < 1e-15L * expl(m->point[i].L)) {
+                m->load[i] = 0.0L;
+                changed = 1;
+            }
+            if (m->load[i] > 0.0L) {
+                active[count++] = i;
+            }
+        }
+        if (step(m, x, active, count) < 1e-13L && !changed) {
+            return 1;
+        }
+    }
+    return 0;
+}
+
+int elastic_model_solve(const elastic_gear *g, const elastic_deviation *d,
+                        const double softness[2][3], double o, double x, elastic_answer *answer) {
+    static model m;
+    model_teeth teeth;
+    make_teeth(g, &teeth);
+    m.points = m.lines = 0;
+    m.r2 = 0.37L * (1.0L / g->youngs_modulus[0] + 1.0L / g->youngs_modulus[1]) / teeth.cosine;
+    make_layer(g, 1.45L, 0.7L, m.tooth);
+    make_layer(g, 2.9L, 0.0L, m.rim);
+    for (int k = -40; k <= 40; ++k) {
+        add_line(&m, g, d, &teeth, softness, k, o + k * (long double)g->pitch);
+    }
+    make_compliance(&m, g->stations);
+    const int converged = solve(&m, x);
+
+    memset(answer, 0, sizeof *answer);
+    answer->lines = m.lines;
+    answer->points = m.points;
+    for (int k = 0; k < m.lines; ++k) {
+        answer->index[k] = m.index[k];
+    }
+    for (int i = 0; i < m.points; ++i) {
+        /* Half the work of the loads on the teeth, and the integral of q d delta in the contact. */
+        const model_point *p = &m.point[i];
+        const long double q = m.load[i], gamma = approach_of(&m, i, x);
+        answer->line_force[p->line] += p->weight * q;
+        answer->force += p->weight * q;
+        answer->energy += p->weight * 0.5L * q * (x + p->w - gamma);
+        if (q > 0.0L) {
+            answer->energy +=
+                p->weight * (gamma * q - 0.5L * p->B * q * q * (p->L - logl(q) + 0.5L));
+        }
+    }
+    return converged;
+}
