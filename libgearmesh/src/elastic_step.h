@@ -26,8 +26,8 @@ SPECIALIZED void ELASTIC_NAME(step)(traffic t, front_state *f, int from, int to,
     /* Where the numbers of each line are, by element or station: lines that end, go through, begin. */
     const ptrdiff_t n = work->stations, size = work->slots;
     const int low = work->low[from], begin = work->high[from] + 1 - t.beginning;
-    const double *slots[2 * UNKNOWNS_MAX];
-    double *sides[2 * UNKNOWNS_MAX];
+    const double *slots[2 * UNKNOWNS_MAX] = {NULL};
+    double *sides[2 * UNKNOWNS_MAX] = {NULL};
     UNROLLED for (int i = 0; i < left; ++i) {
         slots[i] = slots_of(work, low + i);
         sides[i] = f->rows + (low + i) * n;
@@ -169,7 +169,7 @@ SPECIALIZED void ELASTIC_NAME(forward)(traffic t, const gmi_elastic_work *work, 
     const int left = left_lines(t), first = left + 1, all = left + right_lines(t) + 2;
     const int low = work->low[from], begin = work->high[from] + 1 - t.beginning;
     double *rim = rows + work->lines_max * work->stations;
-    double *row[2 * UNKNOWNS_MAX], values[2 * UNKNOWNS_MAX];
+    double *row[2 * UNKNOWNS_MAX] = {NULL}, values[2 * UNKNOWNS_MAX];
     ELASTIC_NAME(find_rows)(t, work, from, rows, row);
     const double *record = work->factor + work->factor_at[from];
     for (ptrdiff_t e = from; e <= to; ++e) {
@@ -220,7 +220,7 @@ SPECIALIZED void ELASTIC_NAME(back)(traffic t, const gmi_elastic_work *work, int
     const int left = left_lines(t), first = left + 1, all = left + right_lines(t) + 2;
     const int low = work->low[from], begin = work->high[from] + 1 - t.beginning;
     double *rim = rows + work->lines_max * work->stations;
-    double *row[2 * UNKNOWNS_MAX], values[2 * UNKNOWNS_MAX];
+    double *row[2 * UNKNOWNS_MAX] = {NULL}, values[2 * UNKNOWNS_MAX];
     ELASTIC_NAME(find_rows)(t, work, from, rows, row);
     const double *record = work->factor + work->factor_at[to + 1];
     for (ptrdiff_t e = to; e >= from; --e) {
