@@ -15,6 +15,7 @@
  */
 #include "cache.h"
 #include "internal.h"
+#include "penetration.h"
 
 #include <math.h>
 #include <stdint.h>

@@ -310,11 +310,11 @@ void gmi_grid_init(gmi_grid *grid, const gmi_tables *tables, double climb, doubl
                    double face_origin, double face_scale);
 
 /*
- * One line: t1 from `from` to `to`, with f = gap + 2 half_slope s + curvature s^2 + tables of both flanks, s = t1 - from.
+ * One line: t1 from `from` to `to`, with f = overlap + 2 half_slope s + curvature s^2 + tables of both flanks, s = t1 - from.
  */
 typedef struct gmi_line {
     double from, to;
-    double gap;           /* delta, both pitch deviations, and ramps (m) */
+    double overlap;       /* delta, both pitch deviations, and ramps (m) */
     double half_slope;    /* half of what ramps and tilt make of d f / d t1 there (m) */
     double curvature;     /* half of what the tilt makes of d2 f / d t1^2 (m) */
     const double *pinion; /* table, NULL = none */
@@ -403,54 +403,6 @@ void gmi_side_sum_tables(const gm_pair *pair, const gmi_engagement *at, const gm
                          int side, const gm_position *position, int wanted, gmi_side_sum *total);
 void gmi_side_sum_simple(const gm_pair *pair, const gmi_engagement *at, int side, double offset,
                          gmi_side_sum *total);
-
-/* Nothing reaches across the gap: the usual state of one of both sides. */
-static inline int gmi_side_is_clear(const gmi_engagement *at, const gmi_side *prepared, int side,
-                                    double offset) {
-    return gmi_ideal_penetration(at, side, offset) + prepared->peak <= 0.0;
-}
-
-/* The sum of a side that is not clear; wanted: mask of enum gmi_wanted. */
-static inline void gmi_side_sum_3d(const gm_pair *pair, const gmi_engagement *at,
-                                   const gmi_side *prepared, int side, const gm_position *position,
-                                   int wanted, gmi_side_sum *total) {
-    *total = gmi_no_contact();
-    if (prepared->pinion == NULL && prepared->wheel == NULL && !at->is_tilted) {
-        gmi_side_sum_ideal(pair, at, side, position, wanted, total);
-    } else {
-        gmi_side_sum_tables(pair, at, prepared, side, position, wanted, total);
-    }
-}
-
-/*
- * What both sides together are for the user; derivatives NaN where they were not wanted. These go from line origin and
- * delta to angles. Drive: origin grows with r_bp phi_p, delta with x; coast: both with the opposite sign, and it counts
- * negatively in the net sum, so that the signs are the same again.
- */
-static inline void gmi_penetration_set(const gm_pair *pair, const gmi_side_sum *drive,
-                                       const gmi_side_sum *coast, double offset_rate, int wanted,
-                                       gm_penetration *result) {
-    result->drive = drive->sum;
-    result->coast = coast->sum;
-    result->penetration = drive->sum - coast->sum;
-
-    result->drive_contact = drive->contact;
-    result->coast_contact = coast->contact;
-    result->drive_pairs = drive->pairs;
-    result->coast_pairs = coast->pairs;
-
-    result->drive_rate = offset_rate * drive->contact;
-    result->coast_rate = -offset_rate * coast->contact;
-    result->rate = result->drive_rate - result->coast_rate;
-
-    result->d_pinion_angle = result->d_wheel_angle = gmi_nan();
-    if (wanted & GMI_DERIVATIVES) {
-        const double by_offset = drive->by_delta + coast->by_delta;
-        const double by_origin = drive->by_origin + coast->by_origin;
-        result->d_pinion_angle = pair->pinion.base_radius * (by_offset + by_origin);
-        result->d_wheel_angle = -pair->wheel.base_radius * by_offset;
-    }
-}
 
 gm_penetration gmi_penetration_nan(void);
 

@@ -421,17 +421,17 @@ SPECIALIZED void walk(walk_state at, const gmi_grid *first, const gmi_grid *seco
 /* No table on either flank: f is the same all along, or straight where there are ramps. */
 static void integrate_ideal(const gmi_line *line, int wanted, gmi_line_sum *result) {
     const double length = line->to - line->from;
-    result->at_from = line->gap;
-    result->at_to = line->gap + length * (2.0 * line->half_slope + length * line->curvature);
+    result->at_from = line->overlap;
+    result->at_to = line->overlap + length * (2.0 * line->half_slope + length * line->curvature);
     if (line->half_slope != 0.0 || line->curvature != 0.0) {
-        const quadratic f = {line->gap, line->half_slope, line->curvature};
+        const quadratic f = {line->overlap, line->half_slope, line->curvature};
         const piece part = {line->from, length, f, 0.0, 0.0, 0.0, 0.0};
         add_split(&part, wanted, result);
-    } else if (line->gap > 0.0) {
-        result->sum = line->gap * length;
+    } else if (line->overlap > 0.0) {
+        result->sum = line->overlap * length;
         result->contact = length;
         result->contact_t1 = 0.5 * length * (line->from + line->to);
-        result->sum_t1 = line->gap * result->contact_t1;
+        result->sum_t1 = line->overlap * result->contact_t1;
     }
 }
 
@@ -450,7 +450,7 @@ static void integrate_tables(const gmi_line *line, const gmi_grid *first, const 
     walk_state at; /* every field is set below; zeroing all first costs as much as ten pieces */
     at.s = s;
     at.faces = (double)face;
-    at.f = (quadratic){line->gap, line->half_slope / first->face_rate,
+    at.f = (quadratic){line->overlap, line->half_slope / first->face_rate,
                        line->curvature / (first->face_rate * first->face_rate)};
     at.three_sums = at.contact = at.two_first = at.two_second = 0.0;
 

@@ -7,6 +7,7 @@
  */
 #include "cache.h"
 #include "internal.h"
+#include "penetration.h"
 
 #include <math.h>
 #include <string.h>

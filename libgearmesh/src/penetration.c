@@ -8,6 +8,7 @@
  * times the clipped length; with tables line.c integrates along each line, ramp.c where there are linear reliefs. No
  * slices, no quadrature error.
  */
+#include "penetration.h"
 #include "internal.h"
 
 #include <math.h>
@@ -201,7 +202,7 @@ static int tilt_line(side_view *view, double rho_origin, gmi_line *line) {
                   tilted);
     line->from = part->from;
     line->to = part->to;
-    line->gap += (tilted->gain - 1.0) * view->lines.delta + tilted->shift;
+    line->overlap += (tilted->gain - 1.0) * view->lines.delta + tilted->shift;
     line->half_slope = tilted->half_slope;
     line->curvature = tilted->curvature;
     return 1;

@@ -82,7 +82,7 @@ static double take_off(gmi_line *part, const traces *ramps, int first, int last,
         if (!(height(ramp, middle) > 0.0)) {
             continue;
         }
-        part->gap -= height(ramp, part->from);
+        part->overlap -= height(ramp, part->from);
         part->half_slope -= 0.5 * ramp->per_t1;
         if (wanted & GMI_DERIVATIVES) {
             per_profile += per_profile_of(&tables->ramps[ramps->of[k]], grid);
@@ -122,7 +122,7 @@ void gmi_ramps_integrate(const gmi_line *line, const gmi_grid *pinion, const gmi
         gmi_line_sum sum;
         part.from = from;
         const double gone = from - line->from; /* the parabola as seen from here */
-        part.gap += gone * (2.0 * line->half_slope + gone * line->curvature);
+        part.overlap += gone * (2.0 * line->half_slope + gone * line->curvature);
         part.half_slope += gone * line->curvature;
         part.to = next_edge(&ramps, from, line->to);
         const double by_pinion =

@@ -1,0 +1,61 @@
+/* SPDX-FileCopyrightText: The gearmesh authors */
+/* SPDX-License-Identifier: BSD-3-Clause */
+
+/*
+ * The sum of a side by what its flanks are, and what both sides together are for the user: inlined where the library
+ * evaluates. Apart from internal.h, as it calls contact.c and penetration.c, which need that.
+ */
+#ifndef GEARMESH_PENETRATION_H
+#define GEARMESH_PENETRATION_H
+
+#include "internal.h"
+
+/* Nothing reaches across the gap: the usual state of one of both sides. */
+static inline int gmi_side_is_clear(const gmi_engagement *at, const gmi_side *prepared, int side,
+                                    double offset) {
+    return gmi_ideal_penetration(at, side, offset) + prepared->peak <= 0.0;
+}
+
+/* The sum of a side that is not clear; wanted: mask of enum gmi_wanted. */
+static inline void gmi_side_sum_3d(const gm_pair *pair, const gmi_engagement *at,
+                                   const gmi_side *prepared, int side, const gm_position *position,
+                                   int wanted, gmi_side_sum *total) {
+    *total = gmi_no_contact();
+    if (prepared->pinion == NULL && prepared->wheel == NULL && !at->is_tilted) {
+        gmi_side_sum_ideal(pair, at, side, position, wanted, total);
+    } else {
+        gmi_side_sum_tables(pair, at, prepared, side, position, wanted, total);
+    }
+}
+
+/*
+ * What both sides together are for the user; derivatives NaN where they were not wanted. These go from line origin and
+ * delta to angles. Drive: origin grows with r_bp phi_p, delta with x; coast: both with the opposite sign, and it counts
+ * negatively in the net sum, so that the signs are the same again.
+ */
+static inline void gmi_penetration_set(const gm_pair *pair, const gmi_side_sum *drive,
+                                       const gmi_side_sum *coast, double offset_rate, int wanted,
+                                       gm_penetration *result) {
+    result->drive = drive->sum;
+    result->coast = coast->sum;
+    result->penetration = drive->sum - coast->sum;
+
+    result->drive_contact = drive->contact;
+    result->coast_contact = coast->contact;
+    result->drive_pairs = drive->pairs;
+    result->coast_pairs = coast->pairs;
+
+    result->drive_rate = offset_rate * drive->contact;
+    result->coast_rate = -offset_rate * coast->contact;
+    result->rate = result->drive_rate - result->coast_rate;
+
+    result->d_pinion_angle = result->d_wheel_angle = gmi_nan();
+    if (wanted & GMI_DERIVATIVES) {
+        const double by_offset = drive->by_delta + coast->by_delta;
+        const double by_origin = drive->by_origin + coast->by_origin;
+        result->d_pinion_angle = pair->pinion.base_radius * (by_offset + by_origin);
+        result->d_wheel_angle = -pair->wheel.base_radius * by_offset;
+    }
+}
+
+#endif
