@@ -73,6 +73,26 @@ static void bodies_obey_newton(void) {
     }
 }
 
+/* 2 zeta sqrt(K_mean m) of all pairs, m the mass of the bodies against each other along the line of action. */
+static void damping_ratio_is_a_share_of_critical_damping(void) {
+    const double zeta = 0.07;
+
+    for (int i = 0; i < 8; ++i) {
+        config conf = case_config(meshes[i & 1], drives[i >> 1 & 1]);
+        conf.law = i >> 2 ? LAW_ISO6336 : LAW_CONSTANT;
+        conf.damping = (double)NAN;
+        conf.damping_ratio = zeta;
+        const gear_mesh gears = case_mesh(&conf);
+
+        const double r_bp = gears.pair.pinion.base_radius, r_bw = gears.pair.wheel.base_radius;
+        const double pinion = conf.drive == DRIVE_TORQUE ? r_bp * r_bp / case_pinion_inertia : 0.0;
+        const double mass = 1.0 / (pinion + r_bw * r_bw / case_wheel_inertia);
+        const double k = gm_mesh_mean_stiffness(gears.prepared);
+        gm_test_context("case %d", i);
+        GM_ASSERT_REL(gm_mesh_mean_damping(gears.prepared), 2.0 * zeta * sqrt(k * mass), 1e-14);
+    }
+}
+
 /* Derivative row by central differences along one state. */
 static void difference(const gear_model *model, const double state[STATES_MAX], int column,
                        double step, double result[STATES_MAX]) {
@@ -339,6 +359,7 @@ static void flight_ends_at_the_touch(void) {
 int main(int argc, char **argv) {
     static const gm_test tests[] = {
         GM_TEST(bodies_obey_newton),
+        GM_TEST(damping_ratio_is_a_share_of_critical_damping),
         GM_TEST(jacobian_is_that_of_differences),
         GM_TEST(jacobian_knows_when_flanks_would_pull),
         GM_TEST(start_is_an_equilibrium),

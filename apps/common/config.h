@@ -16,6 +16,7 @@
 #include <stdio.h>
 
 enum mesh_model { MODEL_SIMPLE, MODEL_3D };
+enum mesh_law { LAW_CONSTANT, LAW_ISO6336 };
 enum drive_kind { DRIVE_SPEED, DRIVE_TORQUE };
 enum analysis_type { ANALYSIS_DYNAMIC, ANALYSIS_STATIC };
 enum static_period { PERIOD_MESH, PERIOD_PINION, PERIOD_HUNTING };
@@ -69,8 +70,11 @@ typedef struct config {
     double modification_tolerance; /* m */
 
     enum mesh_model model;
+    enum mesh_law law;
     double stiffness;        /* K of one tooth pair, N/m */
-    double damping;          /* D of one tooth pair, N s/m */
+    double iso_blank_factor; /* C_R of ISO 6336-1 */
+    double damping;          /* D of one tooth pair, N s/m; NaN: not given */
+    double damping_ratio;    /* zeta of both bodies on the mean mesh, NaN: not given */
     double simple_stiffness; /* of the simple model, N/m; NaN: stiffness * eps_alpha */
 
     gm_pose pose; /* of the wheel against the drawing */

@@ -116,6 +116,14 @@ static int check_tables(const config *conf) {
 static int check_dynamic(const config *conf) {
     int faults = check_tables(conf);
 
+    if (config_text(conf, "mesh.damping_ratio") != NULL &&
+        config_text(conf, "mesh.damping_Ns_per_m") != NULL) {
+        config_complain(conf, "mesh.damping_ratio",
+                        "must not stand beside mesh.damping_Ns_per_m, which says the same (got %s)",
+                        config_text(conf, "mesh.damping_ratio"));
+        ++faults;
+    }
+
     if (!(conf->duration * conf->output_rate <= row_limit)) {
         config_complain(conf, "output.rate_Hz",
                         "must give at most %.9g rows (got %.9g in %.9g s): lower it or "

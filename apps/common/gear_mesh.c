@@ -47,17 +47,87 @@ static int refuse_pose(const config *conf, const gm_pair *pair) {
     return EXIT_BAD_INPUT;
 }
 
-/* Pair, flanks and law as one object; none without a stiffness, which only a run requires. */
-static int prepare(gear_mesh *mesh, const config *conf) {
+static gm_mesh_params params_of(const config *conf) {
     gm_mesh_params params;
 
     gm_mesh_params_default(&params);
     params.model = conf->model == MODEL_SIMPLE ? GM_MODEL_SIMPLE : GM_MODEL_3D;
+    params.law = conf->law == LAW_ISO6336 ? GM_LAW_ISO6336 : GM_LAW_CONSTANT;
     params.stiffness = conf->stiffness;
-    params.damping = conf->damping;
+    params.iso_blank_factor = conf->iso_blank_factor;
+    params.damping = isnan(conf->damping) ? 0.0 : conf->damping;
     params.simple_stiffness = conf->simple_stiffness;
     params.pose = conf->pose;
+    return params;
+}
 
+/* Gears to which ISO 6336-1 gives a stiffness, but not with the accuracy that it states. */
+static void warn_of_iso6336(const config *conf, const gm_pair *pair) {
+    const int warnings = gm_iso6336_warnings(pair);
+    const double x_p = pair->pinion.profile_shift, x_w = pair->wheel.profile_shift;
+
+    if (warnings & GM_WARN_ISO6336_SHIFT_ORDER) {
+        config_warn(conf, "mesh.law",
+                    "the gear with fewer teeth has the smaller profile shift (%.6g of the pinion, "
+                    "%.6g of the wheel), for which ISO 6336-1 does not give its stiffness",
+                    x_p, x_w);
+    }
+    if (warnings & GM_WARN_ISO6336_SHIFT_SUM) {
+        config_warn(conf, "mesh.law",
+                    "the sum of the profile shifts is %.6g, outside the -0.5 to 2 for which ISO "
+                    "6336-1 gives its stiffness",
+                    x_p + x_w);
+    }
+    if (warnings & GM_WARN_ISO6336_HELIX) {
+        config_warn(conf, "mesh.law",
+                    "the helix angle is beyond the 45 degrees for which ISO 6336-1 gives its "
+                    "stiffness");
+    }
+}
+
+/* The standard's stiffness is that of teeth under a good load: F_t / b at the reference circle. */
+static void warn_of_light_load(const config *conf, const gm_pair *pair) {
+    const double least = 100e3, most = 1600e3; /* N/m */
+    const double line_load =
+        fabs(conf->mean_load) / (pair->wheel.reference_radius * pair->face_width);
+
+    if (line_load > 0 && line_load < least) {
+        config_warn(conf, "mesh.law",
+                    "the mean load is %.3g N per mm of face width; below 100 ISO 6336-1 has softer "
+                    "teeth, here by the factor %.3f",
+                    1e-3 * line_load, pow(line_load / least, 0.25));
+    }
+    if (line_load > most) {
+        config_warn(conf, "mesh.law",
+                    "the mean load is %.4g N per mm of face width, beyond the 1600 for which ISO "
+                    "6336-1 gives its stiffness",
+                    1e-3 * line_load);
+    }
+}
+
+static int refuse_iso6336(const config *conf) {
+    config_complain(conf, "mesh.law",
+                    "must be constant for these gears, to which ISO 6336-1 gives no stiffness: "
+                    "numbers of teeth, profile shifts or racks are too far off (got iso6336)");
+    return EXIT_BAD_INPUT;
+}
+
+/* D of a pair of teeth that gives both bodies on the mean mesh the damping ratio: 2 zeta K_mean / w0 for all pairs. */
+static double damping_of_ratio(const gear_mesh *mesh, const config *conf) {
+    const double w0 = 2 * 3.14159265358979323846 * gear_mesh_eigenfrequency(mesh, conf);
+    const double damping = 2 * conf->damping_ratio * gm_mesh_mean_stiffness(mesh->prepared) / w0;
+
+    return isfinite(damping) ? damping / mesh->pair.transverse_contact_ratio : 0.0;
+}
+
+/* Pair, flanks and law as one object; none without a stiffness, which only a run requires. */
+static int prepare(gear_mesh *mesh, const config *conf) {
+    gm_mesh_params params = params_of(conf);
+
+    if (gm_mesh_params_check(&params, NULL, NULL) == GM_OK &&
+        gm_mesh_size(&params, &mesh->pair) == 0) {
+        return refuse_iso6336(conf);
+    }
     const size_t size = gm_mesh_size(&params, &mesh->pair);
     if (size == 0) {
         return 0;
@@ -66,9 +136,15 @@ static int prepare(gear_mesh *mesh, const config *conf) {
     if (memory == NULL) {
         return message_no_memory(conf->messages);
     }
-    const int status =
-        gm_mesh_init(&mesh->prepared, &params, &mesh->pair, mesh->flanks[GM_PINION].prepared,
-                     mesh->flanks[GM_WHEEL].prepared, memory, size);
+    const gm_flanks *pinion = mesh->flanks[GM_PINION].prepared;
+    const gm_flanks *wheel = mesh->flanks[GM_WHEEL].prepared;
+    int status = gm_mesh_init(&mesh->prepared, &params, &mesh->pair, pinion, wheel, memory, size);
+
+    /* What a damping ratio means is known once there is a mesh without damping. */
+    if (status == GM_OK && !isnan(conf->damping_ratio)) {
+        params.damping = damping_of_ratio(mesh, conf);
+        status = gm_mesh_init(&mesh->prepared, &params, &mesh->pair, pinion, wheel, memory, size);
+    }
     if (status == GM_OK) {
         return 0;
     }
@@ -85,6 +161,10 @@ int gear_mesh_open(gear_mesh *mesh, const config *conf) {
     }
     if (conf->purpose != CONFIG_FOR_FLANKS) {
         drawing_warn(conf, &mesh->pair);
+        if (conf->law == LAW_ISO6336) {
+            warn_of_iso6336(conf, &mesh->pair);
+            warn_of_light_load(conf, &mesh->pair);
+        }
     }
 
     if (conf->model == MODEL_3D && conf->purpose == CONFIG_FOR_RUN) {

@@ -71,9 +71,21 @@ static void print_teeth(const gm_pair *pair, FILE *stream) {
     print_value(stream, "face_width_mm", millimetres(pair->face_width));
 }
 
+/* What the law derived from the gears; 1 N/(mm um) is 1e9 N/m2. */
+static void print_law(const gm_pair *pair, const config *conf, FILE *stream) {
+    if (conf->law == LAW_ISO6336) {
+        const double factor = conf->iso_blank_factor;
+        print_value(stream, "iso_single_stiffness_N_per_mm_um",
+                    1e-9 * gm_iso6336_single_stiffness(pair, factor));
+        print_value(stream, "iso_mesh_stiffness_N_per_mm_um",
+                    1e-9 * gm_iso6336_mesh_stiffness(pair, factor));
+    }
+}
+
 void geometry_print(const gear_mesh *mesh, const config *conf, FILE *stream) {
     print_pair(&mesh->pair, stream);
     print_teeth(&mesh->pair, stream);
+    print_law(&mesh->pair, conf, stream);
     print_value(stream, "mean_mesh_stiffness_N_per_um",
                 1e-6 * gm_mesh_mean_stiffness(mesh->prepared));
     print_value(stream, "eigenfrequency_Hz", gear_mesh_eigenfrequency(mesh, conf));

@@ -47,7 +47,9 @@ enum key_situation {
     FOR_DYNAMIC = 1 << 4,
     FOR_STATIC = 1 << 5,
     FOR_RUN = 1 << 6, /* only in `required`: not for --geometry */
-    FOR_ALL = 1 << 7  /* only in `required`: for --geometry as well */
+    FOR_ALL = 1 << 7, /* only in `required`: for --geometry as well */
+    FOR_CONSTANT = 1 << 8,
+    FOR_ISO6336 = 1 << 9
 };
 
 typedef struct key_spec {

@@ -109,10 +109,17 @@ static const key_spec keys[] = {
 
     {NAME("mesh", "model"), CHOICE("simple 3d"), INTO(model), .standard = "3d",
      .help = "simple: a spring with backlash"},
-    {NAME("mesh", "stiffness_N_per_m"), NUMBER(UNIT_SI, STIFFNESS), INTO(stiffness),
-     .required = FOR_RUN, .help = "of one tooth pair in contact over the full face width"},
+    {NAME("mesh", "law"), CHOICE("constant iso6336"), INTO(law), .standard = "constant",
+     .help = "iso6336: the stiffness of ISO 6336-1, method B, from the gear data"},
+    {NAME("mesh", "stiffness_N_per_m"), NUMBER(UNIT_SI, STIFFNESS), INTO(stiffness), .used = FOR_CONSTANT,
+     .required = FOR_RUN | FOR_CONSTANT, .help = "of one tooth pair in contact over the full face width"},
+    {NAME("mesh", "iso_blank_factor"), NUMBER(UNIT_SI, BETWEEN(0.01, 2)), INTO(iso_blank_factor), .standard = "1",
+     .used = FOR_ISO6336, .help = "C_R of ISO 6336-1, below 1 for thin rims and webs"},
     {NAME("mesh", "damping_Ns_per_m"), NUMBER(UNIT_SI, BETWEEN(0, 1e15)), INTO(damping),
-     .standard = "0", .used = FOR_DYNAMIC, .help = "of one tooth pair"},
+     .derived = "0 without damping_ratio", .used = FOR_DYNAMIC, .help = "of one tooth pair"},
+    {NAME("mesh", "damping_ratio"), NUMBER(UNIT_SHARE, BETWEEN(0, 1)), INTO(damping_ratio),
+     .derived = "as damping_Ns_per_m", .used = FOR_DYNAMIC,
+     .help = "in place of it: share of critical damping, of both bodies on the mean stiffness of the mesh"},
     {NAME("mesh", "simple_stiffness_N_per_m"), NUMBER(UNIT_SI, STIFFNESS), INTO(simple_stiffness),
      .derived = "stiffness_N_per_m * eps_alpha", .used = FOR_SIMPLE,
      .help = "of the simple model"},
@@ -225,6 +232,7 @@ const key_table gearsim_keys = {"gearsim", keys, (int)(sizeof keys / sizeof keys
 
 static unsigned situation_of(const config *conf) {
     return (unsigned)(conf->model == MODEL_3D ? FOR_3D : FOR_SIMPLE) |
+           (unsigned)(conf->law == LAW_CONSTANT ? FOR_CONSTANT : FOR_ISO6336) |
            (unsigned)(conf->drive == DRIVE_SPEED ? FOR_SPEED : FOR_TORQUE) |
            (unsigned)(conf->analysis == ANALYSIS_DYNAMIC ? FOR_DYNAMIC : FOR_STATIC);
 }
@@ -237,6 +245,8 @@ int key_is_used(const key_spec *key, const config *conf, const char **reason) {
                                                      : "analysis.type = static";
     } else if (lacking & (FOR_SPEED | FOR_TORQUE)) {
         *reason = conf->drive == DRIVE_SPEED ? "drive.kind = speed" : "drive.kind = torque";
+    } else if (lacking & (FOR_CONSTANT | FOR_ISO6336)) {
+        *reason = conf->law == LAW_CONSTANT ? "mesh.law = constant" : "mesh.law = iso6336";
     } else if (lacking) {
         *reason = conf->model == MODEL_3D ? "mesh.model = 3d" : "mesh.model = simple";
     }

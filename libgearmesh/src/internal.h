@@ -3,8 +3,8 @@
 
 /*
  * What the sources of the core share and users never see. Dependencies run one way:
- * gear -> meshing -> pair -> position -> contact -> flank -> line -> ramp, tilt -> penetration -> law -> wrench -> mesh ->
- * equilibrium, cache.
+ * gear -> meshing -> pair -> iso6336, position -> contact -> flank -> line -> ramp, tilt -> penetration -> law -> wrench
+ * -> mesh -> equilibrium, cache.
  */
 #ifndef GEARMESH_INTERNAL_H
 #define GEARMESH_INTERNAL_H

@@ -12,7 +12,11 @@
 /* Both models share eigenfrequency and damping ratio unless the simple one has a spring of its own. */
 gmi_law gmi_law_of(const gm_mesh_params *params, const gm_pair *pair) {
     const double contact_ratio = pair->transverse_contact_ratio;
-    gmi_law law = {params->stiffness, params->damping, params->stiffness * contact_ratio};
+    const double stiffness =
+        params->law == GM_LAW_ISO6336
+            ? pair->face_width * gm_iso6336_single_stiffness(pair, params->iso_blank_factor)
+            : params->stiffness;
+    gmi_law law = {stiffness, params->damping, stiffness * contact_ratio};
     if (params->model == GM_MODEL_SIMPLE) {
         law.damping = params->damping * contact_ratio;
         law.stiffness =

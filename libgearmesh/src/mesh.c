@@ -24,6 +24,7 @@ void gm_mesh_params_default(gm_mesh_params *params) {
         .model = GM_MODEL_3D,
         .law = GM_LAW_CONSTANT,
         .stiffness = gmi_nan(),
+        .iso_blank_factor = 1.0,
         .damping = 0.0,
         .simple_stiffness = gmi_nan(),
         .pose = {0.0, 0.0, 0.0, 0.0, 0.0},
@@ -47,12 +48,15 @@ int gm_mesh_params_check(const gm_mesh_params *params, const char **field,
     } else if (params->model != GM_MODEL_3D && params->model != GM_MODEL_SIMPLE) {
         at_fault = "model";
         wanted = "GM_MODEL_3D or GM_MODEL_SIMPLE";
-    } else if (params->law != GM_LAW_CONSTANT) {
+    } else if (params->law != GM_LAW_CONSTANT && params->law != GM_LAW_ISO6336) {
         at_fault = "law";
-        wanted = "GM_LAW_CONSTANT";
-    } else if (!is_stiffness(params->stiffness)) {
+        wanted = "GM_LAW_CONSTANT or GM_LAW_ISO6336";
+    } else if (params->law == GM_LAW_CONSTANT && !is_stiffness(params->stiffness)) {
         at_fault = "stiffness";
         wanted = stiffness;
+    } else if (!(params->iso_blank_factor >= 0.01 && params->iso_blank_factor <= 2.0)) {
+        at_fault = "iso_blank_factor";
+        wanted = "a factor from 0.01 to 2";
     } else if (!(params->damping >= 0.0 && params->damping <= GMI_LARGEST_STIFFNESS)) {
         at_fault = "damping";
         wanted = "a damping from 0 to 1e30 N s/m";
@@ -83,7 +87,13 @@ static int check(const gm_mesh_params *params, const gm_pair *pair) {
     if (status != GM_OK) {
         return status;
     }
-    return is_pair(pair) ? GM_OK : GM_ERR_GEOMETRY;
+    if (!is_pair(pair)) {
+        return GM_ERR_GEOMETRY;
+    }
+
+    /* Gears may be too far off for the stiffness of a law that has its own. */
+    const int is_given = params->law == GM_LAW_CONSTANT;
+    return is_given || is_stiffness(gmi_law_of(params, pair).stiffness) ? GM_OK : GM_ERR_GEOMETRY;
 }
 
 size_t gm_mesh_size(const gm_mesh_params *params, const gm_pair *pair) {
