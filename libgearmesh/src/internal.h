@@ -110,6 +110,7 @@ typedef struct gmi_engagement {
     double backlash;                      /* (m) */
     double phase_origin[2];               /* [side] as in gm_pair (m) */
     double start_roll_length[2];          /* [enum gm_role] where the active profile begins (m) */
+    int start_follows[2];                 /* 1 where that follows the mate's tip as T changes */
     double face_from, face_to;            /* t1 between which both gears have a face */
     double face_origin[2], face_scale[2]; /* [enum gm_role] own t1 = face_origin + face_scale t1 */
 
@@ -119,10 +120,10 @@ typedef struct gmi_engagement {
     double
         axis_direction; /* of the wheel's axis, seen from the pinion's, counter-clockwise from +x (rad) */
 
-    /* The wheel's rotation vector about the middle of its own face, in the frame in which its axis is on +x. */
+    /* The wheel's rotation vector about the middle of its own face, along the line of action and across it. */
     int is_tilted;
-    double tilt[2];     /* about x and y (rad) */
-    double tilt_center; /* z of that middle (m) */
+    double along[2], across[2]; /* [side] -+theta.e, -+theta.t, upper signs drive (rad) */
+    double face_center;         /* z of that middle (m) */
 } gmi_engagement;
 
 /* NULL = no pose. Returns GM_OK, GM_STATE_NOT_FINITE or GM_POSE_OUT_OF_MESH. */
@@ -351,29 +352,36 @@ void gmi_ramps_integrate(const gmi_line *line, const gmi_grid *pinion, const gmi
 
 /* tilt.c: lines of contact between tilted axes. */
 
-/* f along a line is gain delta + shift + 2 half_slope (t1 - from) + curvature (t1 - from)^2. */
+/* What moves the lines of one side and what is on them: its coordinates. */
+enum gmi_coordinate {
+    GMI_BY_ORIGIN, /* of the lines (m) */
+    GMI_BY_DELTA,  /* ideal penetration (m) */
+    GMI_BY_LENGTH, /* of the line of action (m) */
+    GMI_BY_ALONG,  /* the tilt along the line of action, gmi_engagement.along (rad) */
+    GMI_BY_ACROSS, /* and across it (rad) */
+    GMI_BY_AXIAL,  /* the wheel's face (m) */
+    GMI_COORDINATES
+};
+
+/* The part of a line on both flanks, none where not from < to, and how its ends move. */
+typedef struct gmi_line_part {
+    double from, to; /* t1 */
+    double from_by[GMI_COORDINATES], to_by[GMI_COORDINATES];
+} gmi_line_part;
+
+/* tables: 1 = the pinion's, 2 = the wheel's, 3 = both end the line too. */
+void gmi_tilt_clip(const gm_pair *pair, const gmi_engagement *at, int side, double rho_origin,
+                   double delta, int tables, gmi_line_part *part);
+
+/* f along a line is gain delta + shift, a polynomial in t1, and d f / d rho another. */
 typedef struct gmi_tilted_line {
-    double gain;       /* (1) */
-    double shift;      /* (m) */
-    double half_slope; /* (m) */
-    double curvature;  /* (m) */
-    double by_rho,
-        by_rho_slope; /* d f / d rho at fixed t1 is by_rho + by_rho_slope (t1 - from) (1) */
+    double gain;         /* (1) */
+    double shift[3];     /* (m) */
+    double by_origin[2]; /* (1) */
 } gmi_tilted_line;
 
-/* Where line of this origin exists, by each gear's own flank; sets what the ends move with. Empty if from >= to. */
-/* The part of a line on both flanks, none where not from < to; and d end / d line origin and / d delta (1/m). */
-typedef struct gmi_tilted_part {
-    double from, to; /* t1 */
-    double from_by_origin, from_by_delta;
-    double to_by_origin, to_by_delta;
-} gmi_tilted_part;
-
-gmi_tilted_part gmi_tilt_clip(const gm_pair *pair, const gmi_engagement *at, int side,
-                              const gmi_lines *lines, double rho_origin);
-
 void gmi_tilt_line(const gm_pair *pair, const gmi_engagement *at, int side, double rho_origin,
-                   double advance, double from, double to, gmi_tilted_line *line);
+                   gmi_tilted_line *line);
 
 /* d f / d delta of a side (1). */
 double gmi_tilt_gain(const gm_pair *pair, const gmi_engagement *at, int side);

@@ -92,11 +92,14 @@ static gmi_engagement drawn(const gm_pair *pair) {
         .backlash = pair->backlash,
         .phase_origin = {pair->phase_origin[GM_DRIVE], pair->phase_origin[GM_COAST]},
         .start_roll_length = {pinion->start_roll_length, wheel->start_roll_length},
+        .start_follows = {!pinion->start_is_given && pinion->start_roll_length > 0.0,
+                          !wheel->start_is_given && wheel->start_roll_length > 0.0},
         .face_from = 0.0,
         .face_to = 1.0,
         .face_origin = {(pair->face_start - pinion->face_start) / pinion->face_width,
                         (pair->face_start - wheel->face_start) / wheel->face_width},
         .face_scale = {pair->face_width / pinion->face_width, pair->face_width / wheel->face_width},
+        .face_center = wheel->face_start + 0.5 * wheel->face_width,
     };
     return at;
 }
@@ -121,9 +124,11 @@ static int move_axes(const gm_pair *pair, double along_x, double along_y, gmi_en
     at->working_pressure_angle = moved.working_pressure_angle;
     at->line_of_action = moved.line_of_action;
     at->backlash = moved.backlash;
+    const gm_gear *gears[2] = {&pair->pinion, &pair->wheel};
     for (int k = 0; k < 2; ++k) {
         at->phase_origin[k] = moved.phase_origin[k];
         at->start_roll_length[k] = moved.start_roll_length[k];
+        at->start_follows[k] = !gears[k]->start_is_given && moved.start_roll_length[k] > 0.0;
     }
 
     /* Both gears have turned back by the direction of the axes: phi_p - psi, phi_w + psi. */
@@ -150,6 +155,7 @@ static int move_face(const gm_pair *pair, double shift, gmi_engagement *at) {
     at->face_from = (from - pair->face_start) / pair->face_width;
     at->face_to = (to - pair->face_start) / pair->face_width;
     at->face_origin[GM_WHEEL] = (pair->face_start - wheel_start) / pair->wheel.face_width;
+    at->face_center += shift;
     at->offset_shift += shift * (pair->face_advance / pair->face_width);
     return GM_OK;
 }
@@ -161,12 +167,21 @@ static int tilt_axis(const gm_pair *pair, const gm_pose *pose, gmi_engagement *a
         return GM_POSE_OUT_OF_MESH;
     }
 
+    /* In the frame in which the wheel's axis is on the x axis. */
     const double cosine = cos(at->axis_direction);
     const double sine = sin(at->axis_direction);
+    const double about_x = cosine * pose->skew + sine * pose->inclination;
+    const double about_y = cosine * pose->inclination - sine * pose->skew;
+
+    /* e = (sin(alpha), +-cos(alpha)), t = (cos(alpha), -+sin(alpha)). */
+    const double sin_alpha = sin(at->working_pressure_angle);
+    const double cos_alpha = cos(at->working_pressure_angle);
+    for (int side = GM_DRIVE; side <= GM_COAST; ++side) {
+        const double sign = gmi_side_sign(side);
+        at->along[side] = -sign * (about_x * sin_alpha + sign * about_y * cos_alpha);
+        at->across[side] = -sign * (about_x * cos_alpha - sign * about_y * sin_alpha);
+    }
     at->is_tilted = 1;
-    at->tilt[0] = cosine * pose->skew + sine * pose->inclination;
-    at->tilt[1] = cosine * pose->inclination - sine * pose->skew;
-    at->tilt_center = pair->wheel.face_start + 0.5 * pair->wheel.face_width + pose->axial_shift;
     return GM_OK;
 }
 

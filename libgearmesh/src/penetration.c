@@ -63,7 +63,7 @@ typedef struct side_view {
     const gmi_side *prepared;
     gmi_lines lines;
     gmi_line_ends ends;
-    gmi_tilted_part tilted_part; /* of the line at hand, if the axes are tilted */
+    gmi_line_part tilted_part; /* of the line at hand, if the axes are tilted */
     gmi_tilted_line tilted;
     double wheel_reach; /* rho_w - start of the wheel's flank = wheel_reach - rho_p (m) */
 } side_view;
@@ -117,30 +117,30 @@ static void add_contact_derivatives(const side_view *view, gmi_interval part,
 }
 
 /* Between tilted axes f follows delta by the gain, and the line's origin also by where the point is; and the ends move. */
-static void add_tilt_derivatives(const gmi_tilted_line *tilted, const gmi_tilted_part *part,
+static void add_tilt_derivatives(const gmi_tilted_line *tilted, const gmi_line_part *part,
                                  const gmi_line_sum *line, gmi_side_sum *side) {
-    const double from_part = line->contact_t1 - part->from * line->contact;
     const double f_from = fmax(0.0, line->at_from);
     const double f_to = fmax(0.0, line->at_to);
-    side->by_delta += (tilted->gain - 1.0) * line->contact + f_to * part->to_by_delta -
-                      f_from * part->from_by_delta;
-    side->by_origin += tilted->by_rho * line->contact + tilted->by_rho_slope * from_part +
-                       f_to * part->to_by_origin - f_from * part->from_by_origin;
+    side->by_delta += (tilted->gain - 1.0) * line->contact + f_to * part->to_by[GMI_BY_DELTA] -
+                      f_from * part->from_by[GMI_BY_DELTA];
+    side->by_origin += tilted->by_origin[0] * line->contact +
+                       tilted->by_origin[1] * line->contact_t1 + f_to * part->to_by[GMI_BY_ORIGIN] -
+                       f_from * part->from_by[GMI_BY_ORIGIN];
 }
 
 /* The touching part, likewise; at its roots the change by the origin is taken as it is in the middle of the line. */
-static void add_tilt_contact_derivatives(const gmi_tilted_line *tilted, const gmi_tilted_part *part,
+static void add_tilt_contact_derivatives(const gmi_tilted_line *tilted, const gmi_line_part *part,
                                          const gmi_line_sum *line, gmi_side_sum *side) {
-    const double middle = tilted->by_rho + 0.5 * tilted->by_rho_slope * (part->to - part->from);
+    const double middle = 0.5 * (part->from + part->to);
     side->contact_by_delta += (tilted->gain - 1.0) * line->roots;
-    side->contact_by_origin += middle * line->roots;
+    side->contact_by_origin += (tilted->by_origin[0] + tilted->by_origin[1] * middle) * line->roots;
     if (line->at_from > 0.0) {
-        side->contact_by_delta -= part->from_by_delta;
-        side->contact_by_origin -= part->from_by_origin;
+        side->contact_by_delta -= part->from_by[GMI_BY_DELTA];
+        side->contact_by_origin -= part->from_by[GMI_BY_ORIGIN];
     }
     if (line->at_to > 0.0) {
-        side->contact_by_delta += part->to_by_delta;
-        side->contact_by_origin += part->to_by_origin;
+        side->contact_by_delta += part->to_by[GMI_BY_DELTA];
+        side->contact_by_origin += part->to_by[GMI_BY_ORIGIN];
     }
 }
 
@@ -152,59 +152,30 @@ static inline void add_moments(const gmi_lines *lines, double rho_origin, const 
     side->contact_rho += rho_origin * line->contact + lines->advance * line->contact_t1;
 }
 
-/* The tables are read where parallel axes would have them touch: a line ends where that leaves one of them. */
-static void clip_to_table(const gm_gear *gear, int is_wheel, const gmi_lines *lines, double reach,
-                          double rho_origin, gmi_tilted_part *part) {
-    const double per_advance = 1.0 / lines->advance;
-    const double by_delta = is_wheel ? per_advance : 0.0;
-    const double start = is_wheel ? reach - gear->tip_roll_length : gear->start_roll_length;
-    const double tip = is_wheel ? reach - gear->start_roll_length : gear->tip_roll_length;
-
-    /* A line that climbs enters at the lower end of the table, one that falls at the upper one. */
-    const int climbs = lines->advance > 0.0;
-    const double enter = ((climbs ? start : tip) - rho_origin) * per_advance;
-    const double leave = ((climbs ? tip : start) - rho_origin) * per_advance;
-
-    /* An end set here moves with the line's origin, and on the wheel with delta. */
-    if (enter > part->from) {
-        part->from = enter;
-        part->from_by_origin = -per_advance;
-        part->from_by_delta = by_delta;
-    }
-    if (leave < part->to) {
-        part->to = leave;
-        part->to_by_origin = -per_advance;
-        part->to_by_delta = by_delta;
-    }
-}
-
 /*
  * Between tilted axes the line has ends of its own, and the overlap is a parabola along it. False where none of it is on
- * both flanks.
+ * both flanks. Tables are read where parallel axes would have them touch: a line ends where that leaves one of them.
  */
 static int tilt_line(side_view *view, double rho_origin, gmi_line *line) {
-    gmi_tilted_part *part = &view->tilted_part;
-    gmi_tilted_line *tilted = &view->tilted;
-    const gm_pair *pair = view->pair;
-    const double reach = view->at->line_of_action + view->lines.delta;
-    *part = gmi_tilt_clip(pair, view->at, view->side, &view->lines, rho_origin);
-    if (view->prepared->pinion != NULL && view->lines.advance != 0.0) {
-        clip_to_table(&pair->pinion, 0, &view->lines, reach, rho_origin, part);
-    }
-    if (view->prepared->wheel != NULL && view->lines.advance != 0.0) {
-        clip_to_table(&pair->wheel, 1, &view->lines, reach, rho_origin, part);
-    }
+    const gmi_side *prepared = view->prepared;
+    const int is_helical = view->lines.advance != 0.0;
+    const int tables = is_helical ? (prepared->pinion != NULL) + 2 * (prepared->wheel != NULL) : 0;
+    gmi_line_part *part = &view->tilted_part;
+    gmi_tilt_clip(view->pair, view->at, view->side, rho_origin, view->lines.delta, tables, part);
     if (!(part->from < part->to)) {
         return 0;
     }
 
-    gmi_tilt_line(pair, view->at, view->side, rho_origin, view->lines.advance, part->from, part->to,
-                  tilted);
+    /* The parabola as seen from the line's beginning. */
+    gmi_tilted_line *tilted = &view->tilted;
+    gmi_tilt_line(view->pair, view->at, view->side, rho_origin, tilted);
+    const double *shift = tilted->shift;
     line->from = part->from;
     line->to = part->to;
-    line->overlap += (tilted->gain - 1.0) * view->lines.delta + tilted->shift;
-    line->half_slope = tilted->half_slope;
-    line->curvature = tilted->curvature;
+    line->overlap += (tilted->gain - 1.0) * view->lines.delta + shift[0] +
+                     part->from * (shift[1] + part->from * shift[2]);
+    line->half_slope = 0.5 * shift[1] + part->from * shift[2];
+    line->curvature = shift[2];
     return 1;
 }
 
