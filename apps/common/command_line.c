@@ -49,11 +49,14 @@ static int take_option(const command_line *line, int count, char *const texts[],
     if (given->right == NULL && value != NULL) {
         return command_line_refuse(line, "no value expected: ", texts[*index]);
     }
-    if (given->right != NULL && value == NULL && *index + 1 >= count) {
+    const int needs_next = given->right != NULL && value == NULL && *given->right != '[';
+    if (needs_next && *index + 1 >= count) {
         return command_line_refuse(line, "a value is missing behind ", given->name);
     }
-    if (given->right != NULL) {
-        value = value != NULL ? value + 1 : texts[++*index];
+    if (value != NULL) {
+        ++value;
+    } else if (needs_next) {
+        value = texts[++*index];
     }
 
     const enum option_result result = line->take(line->user, which, value);

@@ -11,8 +11,9 @@
 #include "messages.h"
 
 typedef struct option_spec {
-    const char *name;  /* such as "--output" */
-    const char *right; /* what its value must be, in words; NULL = it takes none */
+    const char *name; /* such as "--output" */
+    const char *
+        right; /* what its value must be, in words; NULL = it takes none; in brackets: it may lack, and stands behind a `=` */
 } option_spec;
 
 enum option_result {
@@ -26,7 +27,7 @@ typedef struct command_line {
     int count;                               /* options that there are */
     const option_spec *(*option)(int which); /* the one at a place, 0 .. count - 1 */
     enum option_result (*take)(void *user, int which,
-                               const char *value); /* value NULL: it takes none */
+                               const char *value); /* value NULL: none is there */
     void *user;
     const char *usage; /* told with every fault, without a line end */
     message_sink *messages;

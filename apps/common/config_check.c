@@ -8,6 +8,7 @@
 #include "result_file.h"
 
 #include <math.h>
+#include <string.h>
 
 /* More rows than anybody can read, and noise values beyond which a double cannot count them. */
 static const double row_limit = 1e9;
@@ -151,8 +152,11 @@ static int check_not_input(const config *conf, const char *input, const char *na
     return 1;
 }
 
-/* Neither the result nor the file that it grows in may be one that is read. */
+/* A stream is no file. Neither the result nor the file that it grows in may be one that is read. */
 static int check_output_is_no_input(const config *conf) {
+    if (strcmp(conf->output_file, "-") == 0) {
+        return 0;
+    }
     return check_not_input(conf, conf->path, "the INI file") +
            check_not_input(conf, conf->pinion_flanks.deviations, "flanks.pinion") +
            check_not_input(conf, conf->wheel_flanks.deviations, "flanks.wheel") +

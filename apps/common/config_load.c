@@ -87,8 +87,12 @@ static void read_command_line(key_reader *reader, const config_request *request)
  * The whole
  * ------------------------------------------------------------------------------------------- */
 
-/* "folder/run.ini" gives "run.csv". NULL: no memory. */
+/* "folder/run.ini" gives "run.csv", standard input standard output. NULL: no memory. */
 static char *default_output_file(const char *path) {
+    if (strcmp(path, "-") == 0) {
+        return copy_text(path);
+    }
+
     const char *slash = strrchr(path, '/');
     const char *name = slash == NULL ? path : slash + 1;
     const char *dot = strrchr(name, '.');

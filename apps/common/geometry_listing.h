@@ -1,7 +1,7 @@
 /* SPDX-FileCopyrightText: The gearmesh authors */
 /* SPDX-License-Identifier: BSD-3-Clause */
 
-/* The `--geometry` listing: `name = value` lines of what follows from the drawing and the force law. */
+/* The `--geometry` listing of what follows from the drawing and the force law: `name = value` lines, or JSON. */
 #ifndef APPS_GEOMETRY_LISTING_H
 #define APPS_GEOMETRY_LISTING_H
 
@@ -9,7 +9,7 @@
 
 #include <stdio.h>
 
-/* Lines whose inputs are missing are left out. */
-void geometry_print(const gear_mesh *mesh, const config *conf, FILE *stream);
+/* Names whose inputs are missing are left out. */
+void geometry_print(const gear_mesh *mesh, const config *conf, int as_json, FILE *stream);
 
 #endif

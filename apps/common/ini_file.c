@@ -190,7 +190,8 @@ enum ini_result ini_file_read(const char *path, const ini_events *events) {
     enum ini_result result = INI_READ;
     struct stat status;
 
-    source.file = fopen(path, "r");
+    const int is_stdin = strcmp(path, "-") == 0;
+    source.file = is_stdin ? stdin : fopen(path, "r");
     if (source.file == NULL) {
         stop_unreadable(&source);
         return result;
@@ -200,6 +201,8 @@ enum ini_result ini_file_read(const char *path, const ini_events *events) {
     } else {
         result = read_stream(&source);
     }
-    fclose(source.file);
+    if (!is_stdin) {
+        fclose(source.file);
+    }
     return result;
 }

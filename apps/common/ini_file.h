@@ -16,7 +16,7 @@ typedef struct ini_events {
     void (*fault)(void *user, int line, const char *text); /* line 0: the file as a whole */
 } ini_events;
 
-/* What is wrong with the file is told by events->fault. */
+/* The path "-" is standard input. What is wrong with the file is told by events->fault. */
 enum ini_result { INI_READ, INI_NO_MEMORY };
 enum ini_result ini_file_read(const char *path, const ini_events *events);
 

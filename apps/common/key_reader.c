@@ -109,8 +109,8 @@ static enum key_result assign(const key_reader *reader, const key_spec *key, con
         return key_assign(key, reader->filled, value, fault);
     }
 
-    /* Names in the file are relative to its folder. */
-    char *path = path_beside(reader->path, value);
+    /* Names in the file are relative to its folder, but for "-", a stream. */
+    char *path = strcmp(value, "-") == 0 ? copy_text(value) : path_beside(reader->path, value);
     if (path == NULL) {
         return KEY_NO_MEMORY;
     }

@@ -268,8 +268,7 @@ static int assign_seed(uint64_t *target, const char *text, char *fault) {
     return 1;
 }
 
-/* Position of a name in a list separated by blanks, or -1. */
-static int position_in(const char *names, const char *name) {
+int key_choice_find(const char *names, const char *name) {
     const size_t length = strlen(name);
 
     for (int position = 0;; ++position) {
@@ -284,8 +283,7 @@ static int position_in(const char *names, const char *name) {
     }
 }
 
-/* "iso | paper" from "iso paper" */
-static void print_choices(const char *names, char *text, size_t size) {
+void key_choices_print(const char *names, char *text, size_t size) {
     size_t length = 0;
 
     for (; *names != '\0' && length + 4 < size; ++names) {
@@ -301,14 +299,14 @@ static void print_choices(const char *names, char *text, size_t size) {
 
 /* Enumerations of config are as wide as an int on every platform with POSIX. */
 static int assign_choice(const key_spec *key, void *target, const char *text, char *fault) {
-    const int position = position_in(key->choices, text);
+    const int position = key_choice_find(key->choices, text);
     char choices[80];
 
     if (position >= 0) {
         memcpy(target, &position, sizeof position);
         return 0;
     }
-    print_choices(key->choices, choices, sizeof choices);
+    key_choices_print(key->choices, choices, sizeof choices);
     snprintf(fault, KEY_FAULT_SIZE, "must be %s (got %.80s)", choices, text);
     return 1;
 }
@@ -393,7 +391,7 @@ enum key_result key_assign_defaults(const key_table *table, void *filled) {
 static void describe_values(const key_spec *key, char *text, size_t size) {
     *text = '\0';
     if (key->kind == KEY_CHOICE) {
-        print_choices(key->choices, text, size);
+        key_choices_print(key->choices, text, size);
     } else if (key->kind == KEY_SEED) {
         snprintf(text, size, "whole number");
     } else if (key->kind == KEY_COUNT || (key->kind == KEY_NUMBER && isfinite(key->range.low))) {
@@ -416,6 +414,20 @@ static const char *describe_need(const key_spec *key) {
         return "required for a run";
     }
     return key->required ? "required" : NULL;
+}
+
+/* The choice that makes a key count, where it is not the usual one; or NULL. */
+static const char *describe_use(const key_spec *key) {
+    if (key->used & FOR_STATIC) {
+        return "type = static";
+    }
+    if (key->used & FOR_TORQUE) {
+        return "kind = torque";
+    }
+    if (key->used & FOR_ISO6336) {
+        return "law = iso6336";
+    }
+    return key->used & FOR_SIMPLE ? "model = simple" : NULL;
 }
 
 static void print_key(const key_spec *key, FILE *stream) {
@@ -450,4 +462,43 @@ void key_table_print(const key_table *table, FILE *stream) {
             print_key(&table->keys[i], stream);
         }
     }
+}
+
+/* A default that is told in words but is a value. */
+static int is_value(const key_spec *key, const char *text) {
+    return text != NULL && (key->kind == KEY_CHOICE || key_plain_number(text));
+}
+
+void key_print_line(const key_spec *key, const char *value, FILE *stream) {
+    const char *standard = key->standard != NULL ? key->standard : key->derived;
+    const char *shown = value != NULL ? value : key->example != NULL ? key->example : key->standard;
+    if (shown == NULL && is_value(key, standard)) {
+        shown = standard;
+    }
+
+    /* The comments stand below each other. */
+    char line[160];
+    snprintf(line, sizeof line, "%s%s =%s%s", value == NULL ? "; " : "", key->name,
+             shown != NULL ? " " : "", shown != NULL ? shown : "");
+    fprintf(stream, "%-40s ; ", line);
+
+    /* Where it counts, what it may be, and what it means. */
+    if (value == NULL && describe_use(key) != NULL) {
+        fprintf(stream, "%s: ", describe_use(key));
+    }
+    if (key->kind == KEY_CHOICE) {
+        char choices[80];
+        key_choices_print(key->choices, choices, sizeof choices);
+        fprintf(stream, "%s: ", choices);
+    }
+    if (key->family != NULL) {
+        fprintf(stream, "%s: ", key->family);
+    }
+    fputs(key->help, stream);
+
+    /* What happens without it, if that does not stand there. */
+    if (standard != NULL && standard != shown) {
+        fprintf(stream, "; without: %s", standard);
+    }
+    fputc('\n', stream);
 }

@@ -67,8 +67,9 @@ typedef struct key_spec {
     unsigned used;        /* situations that use the key, 0 = all */
     unsigned required;    /* situations that require it, 0 = none */
     const char *help;
-    const char *family; /* how --help names a key that exists in many places; NULL = by its name */
-    int family_member;  /* 0 = the one that --help shows */
+    const char *example; /* value in a template, NULL = the key is commented out there */
+    const char *family;  /* how --help names a key that exists in many places; NULL = by its name */
+    int family_member;   /* 0 = the one that --help shows */
 } key_spec;
 
 typedef struct key_table {
@@ -115,5 +116,12 @@ enum key_result key_assign_defaults(const key_table *table, void *filled);
 
 /* The part of --help that lists all keys. */
 void key_table_print(const key_table *table, FILE *stream);
+
+/* A key as a line of a parameter file with what it means behind it. `value` NULL: commented out, with its example or default. */
+void key_print_line(const key_spec *key, const char *value, FILE *stream);
+
+/* Position of a name in a list separated by blanks such as key_spec.choices, or -1; and the list as "iso | paper". */
+int key_choice_find(const char *choices, const char *name);
+void key_choices_print(const char *choices, char *text, size_t size);
 
 #endif

@@ -11,7 +11,8 @@
 
 static const char usage[] =
     "usage: gearsim PARAMS.ini [--set section.key=value]... [--output FILE] [--quiet]\n"
-    "       gearsim PARAMS.ini --check | --geometry\n"
+    "       gearsim PARAMS.ini --check | --geometry [--json]\n"
+    "       gearsim --template [KIND]\n"
     "       gearsim --help | --version";
 
 static const char options_help[] =
@@ -25,8 +26,13 @@ static const char options_help[] =
     "counts\n"
     "  --output FILE            the result, in place of output.file\n"
     "  --quiet                  no progress, notes and warnings on stderr; errors stay\n"
-    "  --check                  reads and checks everything, runs and writes nothing\n"
+    "  --check                  reads and checks everything, says what a run would do, runs and "
+    "writes nothing\n"
     "  --geometry               derived quantities as `name = value` lines on stdout, no run\n"
+    "  --json                   prints what --check or --geometry says as a JSON object\n"
+    "  --template [KIND]        prints a parameter file with comments that runs as it stands: all "
+    "keys, or those\n"
+    "                           of a KIND: dynamic, static, speed, torque, simple, 3d, constant, iso6336\n"
     "  --help                   this text\n"
     "  --version                the version\n"
     "  --                       all that follows is no option\n"
@@ -39,6 +45,13 @@ static const char options_help[] =
     "replaced. A run that is interrupted, by Ctrl-C or the signals TERM, HUP, XCPU, ALRM, USR1 "
     "and\n"
     "USR2, leaves FILE.part with the rows so far; the same signal again kills it.\n"
+    "\n"
+    "`-` in place of PARAMS.ini reads standard input; its result goes to standard output if "
+    "nothing else is "
+    "said.\n"
+    "`--output -` writes the result to standard output, as CSV, with `# incomplete: why` as the "
+    "last line of a\n"
+    "run that ends early.\n"
     "\n"
     "Paths in PARAMS.ini are relative to its folder, those on the command line (--output, --set)\n"
     "and the default result to the working folder.\n"
@@ -81,7 +94,8 @@ static enum option_result take_quiet(parsing *state, const char *value) {
 
 static enum option_result take_task(parsing *state, enum task task) {
     if (state->args->task != TASK_RUN && state->args->task != task) {
-        (void)command_line_refuse(&state->line, "--check and --geometry exclude each other", "");
+        (void)command_line_refuse(&state->line,
+                                  "--check, --geometry and --template exclude each other", "");
         return OPTION_FAULT;
     }
     state->args->task = task;
@@ -96,6 +110,17 @@ static enum option_result take_check(parsing *state, const char *value) {
 static enum option_result take_geometry(parsing *state, const char *value) {
     (void)value;
     return take_task(state, TASK_GEOMETRY);
+}
+
+static enum option_result take_template(parsing *state, const char *value) {
+    state->args->template_kind = value;
+    return take_task(state, TASK_TEMPLATE);
+}
+
+static enum option_result take_json(parsing *state, const char *value) {
+    (void)value;
+    state->args->as_json = 1;
+    return OPTION_TAKEN;
 }
 
 static enum option_result take_help(parsing *state, const char *value) {
@@ -119,6 +144,8 @@ static const struct {
     {{"--quiet", NULL}, take_quiet},
     {{"--check", NULL}, take_check},
     {{"--geometry", NULL}, take_geometry},
+    {{"--json", NULL}, take_json},
+    {{"--template", "[a kind of analysis]"}, take_template},
     {{"--help", NULL}, take_help},
     {{"--version", NULL}, take_version},
 };
@@ -137,8 +164,38 @@ static enum option_result take_option(void *user, int which, const char *value) 
  * The whole
  * ------------------------------------------------------------------------------------------- */
 
-static int is_informative(enum task task) {
-    return task == TASK_HELP || task == TASK_VERSION;
+/* What goes together, when all of the line is known. */
+static int check_together(parsing *state) {
+    arguments *args = state->args;
+
+    switch (args->task) {
+    case TASK_HELP:
+    case TASK_VERSION:
+        return 0;
+
+    /* The word behind --template was read as the name of a file. */
+    case TASK_TEMPLATE:
+        if (state->line.file != NULL && args->template_kind != NULL) {
+            return command_line_refuse(&state->line,
+                                       "--template reads no file: ", state->line.file);
+        }
+        if (args->request.override_count > 0 || args->request.output_file != NULL ||
+            args->as_json) {
+            return command_line_refuse(&state->line, "--template takes no other options", "");
+        }
+        if (args->template_kind == NULL) {
+            args->template_kind = state->line.file;
+        }
+        return 0;
+
+    default:
+        if (state->line.file == NULL) {
+            return command_line_refuse(&state->line, "no INI file given", "");
+        }
+        return args->as_json && args->task == TASK_RUN
+                   ? command_line_refuse(&state->line, "--json goes with --check or --geometry", "")
+                   : 0;
+    }
 }
 
 int arguments_parse(arguments *args, int count, char *const texts[], message_sink *messages) {
@@ -157,8 +214,8 @@ int arguments_parse(arguments *args, int count, char *const texts[], message_sin
                               .usage = usage,
                               .messages = messages}};
     int status = command_line_read(&state.line, count, texts);
-    if (status == 0 && state.line.file == NULL && !is_informative(args->task)) {
-        status = command_line_refuse(&state.line, "no INI file given", "");
+    if (status == 0) {
+        status = check_together(&state);
     }
 
     args->request.path = state.line.file;

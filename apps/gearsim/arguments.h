@@ -7,10 +7,12 @@
 
 #include "config.h"
 
-enum task { TASK_RUN, TASK_CHECK, TASK_GEOMETRY, TASK_HELP, TASK_VERSION };
+enum task { TASK_RUN, TASK_CHECK, TASK_GEOMETRY, TASK_TEMPLATE, TASK_HELP, TASK_VERSION };
 
 typedef struct arguments {
     enum task task;
+    int as_json;               /* what --check and --geometry print */
+    const char *template_kind; /* NULL = all keys */
     config_request request;
     const char **overrides; /* what request.overrides points to */
 } arguments;

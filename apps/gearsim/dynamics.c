@@ -524,9 +524,12 @@ int dynamics_note(const gear_mesh *gears, config *conf) {
     return config_note_text(conf, "sampling", text) == 0 ? 0 : message_no_memory(conf->messages);
 }
 
+double dynamics_rows(const config *conf) {
+    return floor(conf->duration * conf->output_rate + 1e-9) + 1.0;
+}
+
 int dynamics_run(const config *conf, const gear_mesh *gears) {
-    dynamic_run run = {.conf = conf,
-                       .rows = floor(conf->duration * conf->output_rate + 1e-9) + 1.0};
+    dynamic_run run = {.conf = conf, .rows = dynamics_rows(conf)};
 
     interrupt_watch(SECOND_KILLS);
     progress_start(&run.progress, conf->duration, conf->messages);

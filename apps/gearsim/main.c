@@ -12,8 +12,10 @@
 #include "arguments.h"
 #include "dynamic_columns.h"
 #include "dynamics.h"
+#include "forecast.h"
 #include "gear_mesh.h"
 #include "geometry_listing.h"
+#include "key_template.h"
 #include "mesh_cache.h"
 #include "output.h"
 #include "process.h"
@@ -24,28 +26,31 @@
 #include <errno.h>
 #include <string.h>
 
-static int check_output(const config *conf) {
-    const column_names names =
-        conf->analysis == ANALYSIS_STATIC ? static_column_names(conf) : dynamic_column_names();
-
-    return output_check(conf, names.name, names.count);
+static column_names names_of(const config *conf) {
+    return conf->analysis == ANALYSIS_STATIC ? static_column_names(conf) : dynamic_column_names();
 }
 
 static int run(const config *conf, const gear_mesh *mesh) {
     return conf->analysis == ANALYSIS_STATIC ? statics_run(conf, mesh) : dynamics_run(conf, mesh);
 }
 
-static int perform(enum task task, const config *conf, const gear_mesh *mesh) {
-    if (task == TASK_GEOMETRY) {
-        geometry_print(mesh, conf, stdout);
+static int perform(const arguments *args, const config *conf, const gear_mesh *mesh) {
+    if (args->task == TASK_GEOMETRY) {
+        geometry_print(mesh, conf, args->as_json, stdout);
         return EXIT_DONE;
     }
 
+    /* What can be wrong shows before the run, and then --check has done its work. */
+    const column_names names = names_of(conf);
     int status = mesh_cache_check(conf, mesh);
     if (status == 0) {
-        status = check_output(conf);
+        status = output_check(conf, names.name, names.count);
     }
-    return status != 0 || task == TASK_CHECK ? status : run(conf, mesh);
+    if (status == 0 && args->task == TASK_CHECK) {
+        forecast_print(conf, &names, args->as_json, stdout);
+        return EXIT_DONE;
+    }
+    return status != 0 ? status : run(conf, mesh);
 }
 
 static int load_and_perform(const arguments *args) {
@@ -66,7 +71,7 @@ static int load_and_perform(const arguments *args) {
             status = time_tables_read(&conf);
         }
         if (status == 0) {
-            status = perform(args->task, &conf, &mesh);
+            status = perform(args, &conf, &mesh);
         }
         time_tables_free(&conf);
         gear_mesh_close(&mesh);
@@ -83,6 +88,8 @@ static int do_task(const arguments *args) {
     case TASK_VERSION:
         printf("gearsim %s\n", gm_version());
         return EXIT_DONE;
+    case TASK_TEMPLATE:
+        return key_template_print(args->template_kind, stdout, args->request.messages);
     default:
         return load_and_perform(args);
     }

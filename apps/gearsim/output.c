@@ -2,11 +2,19 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 
 #include "output_format.h"
+#include "progress.h"
 
+#include <errno.h>
+#include <fcntl.h>
 #include <stdlib.h>
 #include <string.h>
+#include <unistd.h>
 
 static const char file_key[] = "output.file";
+
+static int is_stream(const char *path) {
+    return strcmp(path, "-") == 0;
+}
 
 /* ---------------------------------------------------------------------------------------------
  * Formats
@@ -34,7 +42,9 @@ static const output_format *format_of(const config *conf) {
 
 int output_fail(output_file *output, int error) {
     output->error = error;
-    message_of_program(output->messages, "%s: %s", output->result.part, strerror(error));
+    message_of_program(output->messages, "%s: %s",
+                       output->is_stream ? "standard output" : output->result.part,
+                       strerror(error));
     return EXIT_RUN_FAILED;
 }
 
@@ -68,11 +78,13 @@ static output_file *create(const config *conf, const char *const names[], int na
     created->messages = conf->messages;
     created->digits = conf->digits;
     created->format = format_of(conf);
+    created->is_stream = is_stream(conf->output_file);
+    created->started = wall_clock();
     created->result.data = created->result.lock = -1;
     *exit_code = created->format == NULL
                      ? EXIT_BAD_INPUT
                      : columns_select(&created->columns, conf, names, name_count);
-    if (*exit_code == EXIT_DONE) {
+    if (*exit_code == EXIT_DONE && !created->is_stream) {
         *exit_code =
             complain(conf, created, result_file_check(&created->result, conf->output_file));
     }
@@ -93,6 +105,12 @@ int output_check(const config *conf, const char *const names[], int name_count) 
     return exit_code;
 }
 
+/* A descriptor of our own, to be closed as that of a file. */
+static int open_stream(output_file *output) {
+    output->result.data = fcntl(STDOUT_FILENO, F_DUPFD_CLOEXEC, 0);
+    return output->result.data >= 0 ? EXIT_DONE : output_fail(output, errno);
+}
+
 output_file *output_open(const config *conf, const char *const names[], int name_count,
                          int *exit_code) {
     output_file *opened = create(conf, names, name_count, exit_code);
@@ -100,7 +118,8 @@ output_file *output_open(const config *conf, const char *const names[], int name
         return NULL;
     }
 
-    *exit_code = complain(conf, opened, result_file_open(&opened->result));
+    *exit_code = opened->is_stream ? open_stream(opened)
+                                   : complain(conf, opened, result_file_open(&opened->result));
     if (*exit_code != EXIT_DONE) {
         output_free(opened);
         return NULL;
@@ -126,6 +145,7 @@ int output_wants(const output_file *output, int name) {
 }
 
 int output_row(output_file *output, const double values[]) {
+    ++output->rows;
     return output->format->row(output, values);
 }
 
@@ -133,15 +153,25 @@ int output_row(output_file *output, const double values[]) {
  * The end
  * ------------------------------------------------------------------------------------------- */
 
+/* What there is now, where, and how long it took. */
+static void tell(const output_file *output, const char *path, const char *incomplete) {
+    message_note(output->messages, "gearsim: %s: %.0f rows%s in %.3g s",
+                 output->is_stream ? "standard output" : path, output->rows,
+                 incomplete != NULL ? ", incomplete," : "", wall_clock() - output->started);
+}
+
 int output_close(output_file *output, const char *incomplete) {
     int exit_code = output->format->end(output, incomplete);
     const result_file *wrong;
 
-    if (exit_code == EXIT_DONE && incomplete == NULL) {
+    if (exit_code == EXIT_DONE && incomplete == NULL && !output->is_stream) {
         exit_code = result_files_replace(&output->result, 1, &wrong);
         if (exit_code != EXIT_DONE) {
             message_of_program(output->messages, "%s: %s", wrong->wrong_path, wrong->reason);
         }
+    }
+    if (exit_code == EXIT_DONE) {
+        tell(output, incomplete == NULL ? output->result.path : output->result.part, incomplete);
     }
     output_free(output);
     return exit_code;

@@ -4,7 +4,7 @@
 /*
  * The result file: `FILE.part` while it grows, renamed to FILE when it is whole. Its name says the format:
  * HDF5 if it ends in .h5 or .hdf5, else CSV. A run that ends early leaves FILE.part with the rows until
- * then and the reason.
+ * then and the reason. The name "-" is standard output, as CSV.
  */
 #ifndef GEARSIM_OUTPUT_H
 #define GEARSIM_OUTPUT_H
@@ -28,7 +28,7 @@ int output_wants(const output_file *output, int name);
  * after a message. */
 int output_row(output_file *output, const double values[]);
 
-/* Ends the file and frees it: `incomplete` NULL = whole, rename; otherwise keep .part and say why.
+/* Ends the file and frees it: `incomplete` NULL = whole, rename; otherwise keep .part and say why. Notes file, rows and time.
  * Returns 0, or EXIT_RUN_FAILED after a message. */
 int output_close(output_file *output, const char *incomplete);
 

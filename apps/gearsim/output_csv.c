@@ -49,7 +49,7 @@ static size_t whole_lines(const char *text, size_t size) {
 static void cut_to_whole_lines(const output_file *output) {
     const csv_memory *memory = output->memory;
 
-    if (ftruncate(output->result.data, memory->written) == 0) {
+    if (!output->is_stream && ftruncate(output->result.data, memory->written) == 0) {
         (void)lseek(output->result.data, memory->written, SEEK_SET);
     }
 }
@@ -154,7 +154,7 @@ static void mark_incomplete(const output_file *output, const char *why) {
     const int length = snprintf(line, sizeof line, "# incomplete: %s\n", why);
 
     if (length < 0 || (size_t)length >= sizeof line ||
-        write_all(output->result.data, line, (size_t)length, &done) == 0) {
+        write_all(output->result.data, line, (size_t)length, &done) == 0 || output->is_stream) {
         return;
     }
     give_up_rows(output, (size_t)length);

@@ -33,7 +33,10 @@ struct output_file {
     result_file result;
     column_list columns;
     int digits;
-    int error; /* errno of the write that failed, 0 = none: nothing more is written */
+    int is_stream;  /* standard output: no names, and nothing that was written comes back */
+    double rows;    /* written so far */
+    double started; /* by wall_clock() */
+    int error;      /* errno of the write that failed, 0 = none: nothing more is written */
 };
 
 /* Keeps and tells why the file takes no more; returns EXIT_RUN_FAILED. */

@@ -13,7 +13,7 @@ enum { CALLS_PER_LOOK = 256 };
 static const double seconds_between_updates = 0.2;
 static const double rpm = 60.0 / 6.283185307179586; /* of 1 rad/s */
 
-static double now(void) {
+double wall_clock(void) {
     struct timespec time;
 
     clock_gettime(CLOCK_MONOTONIC, &time);
@@ -21,7 +21,7 @@ static double now(void) {
 }
 
 void progress_start(progress *line, double end, message_sink *messages) {
-    const double start = now();
+    const double start = wall_clock();
 
     *line = (progress){
         .messages = messages,
@@ -33,7 +33,7 @@ void progress_start(progress *line, double end, message_sink *messages) {
 }
 
 double progress_elapsed(const progress *line) {
-    return now() - line->started;
+    return wall_clock() - line->started;
 }
 
 int progress_due(progress *line) {
@@ -41,7 +41,7 @@ int progress_due(progress *line) {
         return 0;
     }
     line->calls = 0;
-    return now() - line->updated >= seconds_between_updates;
+    return wall_clock() - line->updated >= seconds_between_updates;
 }
 
 void progress_update(progress *line, const progress_state *state) {
@@ -49,7 +49,7 @@ void progress_update(progress *line, const progress_state *state) {
     const double left = state->time > 0.0 ? elapsed * (line->end / state->time - 1.0) : 0.0;
     char text[160];
 
-    line->updated = now();
+    line->updated = wall_clock();
     snprintf(text, sizeof text, "%.3f of %g s, %.0f rpm, %ld steps, %.0f s left", state->time,
              line->end, state->speed * rpm, state->steps, left);
     message_show(line->messages, text);

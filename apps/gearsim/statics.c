@@ -136,6 +136,10 @@ static int write_all(const config *conf, const gear_mesh *gears, output_file *ou
     return output_close(output, NULL);
 }
 
+double statics_rows(const config *conf) {
+    return (double)conf->loads * conf->positions;
+}
+
 int statics_run(const config *conf, const gear_mesh *gears) {
     const column_names names = static_column_names(conf);
     int exit_code = 0;

@@ -10,4 +10,7 @@
 /* Returns an exit code, after a message if it is not EXIT_DONE. */
 int statics_run(const config *conf, const gear_mesh *gears);
 
+/* How many rows it writes when it is not cut short. */
+double statics_rows(const config *conf);
+
 #endif
