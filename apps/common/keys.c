@@ -155,7 +155,7 @@ static const key_spec keys[] = {
      .example = "2000", .help = "pinion speed at the end, linear in time"},
     {NAME("drive", "torque_Nm"), NUMBER(UNIT_SI, UP_TO(1e12)), INTO(drive_torque),
      .used = FOR_DYNAMIC | FOR_TORQUE, .required = FOR_RUN | FOR_DYNAMIC | FOR_TORQUE,
-     .example = "21.95", .help = "constant torque on the pinion"},
+     .example = "87.8", .help = "constant torque on the pinion"},
     {NAME("drive", "file"), .kind = KEY_PATH, INTO(drive_file), .derived = "no table", .used = FOR_DYNAMIC,
      .help = "table over time in place of start_rpm and end_rpm, or torque_Nm: time_s,speed_rpm or time_s,torque_Nm"},
     {NAME("drive", "interpolation"), CHOICE("linear cubic"), INTO(drive_interpolation), .standard = "linear",
@@ -164,7 +164,7 @@ static const key_spec keys[] = {
      .used = FOR_DYNAMIC, .help = "on: the table begins again at its end"},
 
     {NAME("load", "mean_Nm"), NUMBER(UNIT_SI, ANY), INTO(mean_load),
-     .required = FOR_RUN, .example = "20", .help = "on the wheel, > 0 resists its driven direction"},
+     .required = FOR_RUN, .example = "80", .help = "on the wheel, > 0 resists its driven direction"},
     {NAME("load", "end_Nm"), NUMBER(UNIT_SI, ANY), INTO(end_load), .derived = "as mean_Nm",
      .used = FOR_STATIC, .help = "last of the loads of a static analysis, the first is mean_Nm"},
     {NAME("load", "noise_amplitude_Nm"), NUMBER(UNIT_SI, BETWEEN(0, 1e12)), INTO(noise_amplitude),
