@@ -1,0 +1,58 @@
+/* SPDX-FileCopyrightText: The gearmesh authors */
+/* SPDX-License-Identifier: BSD-3-Clause */
+
+/*
+ * Loops over arrays, included in the extension module: what Python would pay for each call it pays once. A state that
+ * is refused (status > 0) leaves NaN; a call that is at fault (status < 0) ends the loop and is returned.
+ */
+#include <gearmesh/gearmesh.h>
+#include <math.h>
+
+static int evaluate_states(const gm_mesh *mesh, size_t count, const gm_state *states, int wanted,
+                           void *workspace, gm_mesh_result *results) {
+    int status = GM_OK;
+    for (size_t k = 0; k < count && status >= GM_OK; ++k) {
+        status = gm_mesh_evaluate(mesh, &states[k], wanted, workspace, &results[k]);
+    }
+    return status < GM_OK ? status : GM_OK;
+}
+
+/* coordinates: [count][3] pinion angle (rad), x (m), dx/dt (m/s). */
+static int evaluate_offsets(const gm_mesh *mesh, size_t count, const double *coordinates,
+                            int wanted, void *workspace, gm_mesh_result *results) {
+    int status = GM_OK;
+    for (size_t k = 0; k < count && status >= GM_OK; ++k) {
+        const double *given = &coordinates[3 * k];
+        gm_position position;
+        status = gm_position_from_pinion_angle(gm_mesh_pair(mesh), given[0], given[1], given[2],
+                                               &position);
+        if (status >= GM_OK) {
+            /* What is refused as angles is NaN in the position, and refused again. */
+            status = gm_mesh_evaluate_at(mesh, &position, wanted, workspace, &results[k]);
+        }
+    }
+    return status < GM_OK ? status : GM_OK;
+}
+
+/* loads: [count][2] pinion angle (rad), torque on the wheel (N m). */
+static int solve_static(const gm_mesh *mesh, size_t count, const double *loads, void *workspace,
+                        double *offsets, gm_mesh_result *results) {
+    const gm_pair *pair = gm_mesh_pair(mesh);
+    const double r_bp = pair->pinion.base_radius;
+    const double r_bw = pair->wheel.base_radius;
+    int status = GM_OK;
+    for (size_t k = 0; k < count && status >= GM_OK; ++k) {
+        const double *load = &loads[2 * k];
+
+        /* From one position to the next, x goes on in first order. */
+        double guess = NAN;
+        if (k > 0 && load[1] == load[-1]) {
+            const gm_gradient *by = &results[k - 1].force_by;
+            guess = offsets[k - 1] +
+                    (r_bp + r_bw * by->pinion_angle / by->wheel_angle) * (load[0] - load[-2]);
+        }
+        status = gm_static_equilibrium(mesh, load[0], load[1], guess, workspace, &offsets[k],
+                                       &results[k]);
+    }
+    return status < GM_OK ? status : GM_OK;
+}

@@ -1,0 +1,89 @@
+# SPDX-FileCopyrightText: The gearmesh authors
+# SPDX-License-Identifier: BSD-3-Clause
+"""Between Python and C: errors, structs that are filled from keywords, structs as types of numpy."""
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any
+
+import numpy as np
+
+from ._gearmesh import ffi, lib
+from ._records import ENUM_FIELDS, ENUMS
+
+
+class Error(ValueError):
+    """What was asked for is refused; the text says why, and what would be right."""
+
+
+def status_text(status: int) -> str:
+    return text(lib.gm_status_text(status))
+
+
+def text(chars: Any) -> str:
+    return str(ffi.string(chars).decode("utf-8", "replace"))
+
+
+def doubles(size: int) -> Any:
+    """Memory of `size` bytes, aligned for double."""
+    return ffi.new("double[]", (size + 7) // 8)
+
+
+def enum_value(enum: str, value: Any) -> int:
+    """The number of a member that is given by its name, as in gearmesh.h without the common beginning, or by itself."""
+    if not isinstance(value, str):
+        return int(value)
+    if value not in ENUMS[enum]:
+        raise Error(f"must be one of {', '.join(ENUMS[enum])} (got '{value}')")
+    return ENUMS[enum][value]
+
+
+def fill(struct: Any, values: Mapping[str, Any]) -> None:
+    """Sets fields of a struct; a struct within it takes a dict."""
+    kind = ffi.typeof(struct)
+    kind = kind.item if kind.kind == "pointer" else kind
+    fields = dict(kind.fields)
+    enums = ENUM_FIELDS.get(kind.cname.split()[-1], {})
+    for name, value in values.items():
+        if name not in fields:
+            raise Error(f"{name}: no such parameter; there are {', '.join(fields)}")
+        if isinstance(value, Mapping):
+            fill(getattr(struct, name), value)
+            continue
+        try:
+            setattr(struct, name, enum_value(enums[name], value) if name in enums else value)
+        except Error as error:
+            raise Error(f"{name}: {error}") from None
+        except (TypeError, OverflowError) as error:
+            raise Error(f"{name}: must be a number in the range of its type (got {value!r})") from error
+
+
+def refusal(check: Any, struct: Any, status: int) -> Error:
+    """What the library says about parameters that it refuses."""
+    field, requirement = ffi.new("char **"), ffi.new("char **")
+    check(struct, field, requirement)
+    if not field[0]:
+        return Error(status_text(status))
+    name = text(field[0])
+    value = struct
+    for part in name.split("."):
+        value = getattr(value, part)
+    return Error(f"{name}: must be {text(requirement[0])} (got {value})")
+
+
+_PLAIN = {"double": np.float64, "int": np.intc}
+
+
+def dtype_of(kind: Any) -> np.dtype:
+    """A struct of C as a type of numpy that has the same places in memory."""
+    if kind.kind == "array":
+        return np.dtype((dtype_of(kind.item), (kind.length,)))
+    if kind.kind == "primitive":
+        return np.dtype(_PLAIN[kind.cname])
+    names, fields = zip(*kind.fields)
+    return np.dtype({"names": names, "formats": [dtype_of(field.type) for field in fields],
+                     "offsets": [field.offset for field in fields], "itemsize": ffi.sizeof(kind)})
+
+
+STATE = dtype_of(ffi.typeof("gm_state"))
+RESULT = np.dtype((np.record, dtype_of(ffi.typeof("gm_mesh_result"))))

@@ -1,0 +1,154 @@
+# SPDX-FileCopyrightText: The gearmesh authors
+# SPDX-License-Identifier: BSD-3-Clause
+"""The mesh: force, derivatives and wrench for one state or for many."""
+from __future__ import annotations
+
+from collections.abc import Iterable
+from typing import TYPE_CHECKING, Any, Literal, NamedTuple, Union
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from . import _records
+from ._gearmesh import ffi, lib
+from ._memory import RESULT, STATE, Error, doubles, enum_value, fill, refusal, status_text
+from ._records import MeshResult
+from .flanks import Flanks
+from .pair import Pair
+
+if TYPE_CHECKING:
+    from typing_extensions import Unpack
+
+
+class StaticResult(NamedTuple):
+    """Equilibria under load, in the shape of the arguments."""
+
+    offset: NDArray[np.float64]
+    """x (m); the transmission error is -x"""
+
+    result: MeshResult
+    """the mesh there, with derivatives"""
+
+
+class Mesh:
+    """
+    Pair, flanks of both gears and force law, ready for evaluation from any number of threads.
+
+    Flanks that are left out are ideal. Keywords are the fields of gm_mesh_params (documented in
+    `gearmesh._records.MeshParameters`): `stiffness` of a pair of teeth (N/m), `damping` (N s/m), `model` ("3d" or "simple"),
+    `pose` of the wheel as a dict: `pose={"skew": 1e-4}` (m, rad).
+
+    Raises Error, which names the parameter that is at fault.
+    """
+
+    def __init__(self, pair: Pair, pinion_flanks: Flanks | None = None, wheel_flanks: Flanks | None = None,
+                 **parameters: Unpack[_records.MeshParameters]):
+        struct = ffi.new("gm_mesh_params *")
+        lib.gm_mesh_params_default(struct)
+        fill(struct, parameters)
+        if lib.gm_mesh_params_check(struct, ffi.NULL, ffi.NULL) != lib.GM_OK:
+            raise refusal(lib.gm_mesh_params_check, struct, lib.GM_ERR_PARAMETER)
+
+        # The mesh refers to the flanks and lies in memory of ours: both live as long as it does.
+        self.pair = pair
+        self._flanks = (pinion_flanks, wheel_flanks)
+        size = lib.gm_mesh_size(struct, pair._struct)
+        self._memory = doubles(size)
+        mesh = ffi.new("gm_mesh **")
+        flank_structs = (flanks._struct if flanks else ffi.NULL for flanks in self._flanks)
+        status = lib.gm_mesh_init(mesh, struct, pair._struct, *flank_structs, self._memory, size)
+        if status != lib.GM_OK:
+            raise Error(status_text(status))
+        self._struct = mesh[0]
+
+    def evaluate(self, pinion_angle: ArrayLike, wheel_angle: ArrayLike, pinion_speed: ArrayLike = 0.0,
+                 wheel_speed: ArrayLike = 0.0, *, want: str | Iterable[str] = (), **state: ArrayLike) -> MeshResult:
+        """
+        Force, penetration and contact at angles (rad) and speeds (rad/s), numbers or arrays that broadcast together.
+
+        `want`: members of gm_wanted, one or several: "derivatives", "wrench", "pairs". `state`: further fields of gm_state.
+
+        The result has the shape of the arguments and the fields of gm_mesh_result as attributes: `force` (N),
+        `force_by.wheel_angle` (N/rad), `contact.drive_contact`, `wrench.pinion_moment` [..., 3] (N m) ...; what was not asked for
+        is NaN. So is everything where a state is refused: an angle that is no number, or |x| of half a base pitch, where a
+        tooth would be skipped. Solvers that control their step take NaN as a demand for a smaller one.
+        """
+        state.update(pinion_angle=pinion_angle, wheel_angle=wheel_angle, pinion_speed=pinion_speed, wheel_speed=wheel_speed)
+        unknown = set(state) - set(STATE.names or ())
+        if unknown:
+            raise TypeError(f"evaluate() has no argument {', '.join(sorted(unknown))}")
+        states: Any = np.empty(np.broadcast_shapes(*(np.shape(value) for value in state.values())), STATE)
+        for name in STATE.names or ():
+            states[name] = state.get(name, 0.0)
+        return self._evaluate(lib.evaluate_states, "gm_state *", states, states.shape, want)
+
+    def evaluate_offset(self, pinion_angle: ArrayLike, offset: ArrayLike, offset_rate: ArrayLike = 0.0, *,
+                        want: str | Iterable[str] = ()) -> MeshResult:
+        """
+        The same for a solver that integrates x = r_bp phi_p - r_bw phi_w in place of the wheel's angle: pinion angle (rad),
+        x (m) and dx/dt (m/s).
+
+        Derivatives are by the angles all the same; at a fixed pinion angle d/dx = -(d/d phi_w) / r_bw.
+        """
+        coordinates = np.stack(np.broadcast_arrays(*(np.asarray(value, dtype=float) for value in
+                                                     (pinion_angle, offset, offset_rate))), axis=-1)
+        return self._evaluate(lib.evaluate_offsets, "double *", coordinates, coordinates.shape[:-1], want)
+
+    def static(self, pinion_angle: ArrayLike, wheel_torque: ArrayLike) -> StaticResult:
+        """
+        Quasi-static equilibrium at pinion angles (rad) under a torque on the wheel (N m, > 0 loads the drive flanks).
+
+        The transmission error is -offset. Neighbouring angles under the same torque cost half. NaN where there is no
+        equilibrium.
+        """
+        loads = np.stack(np.broadcast_arrays(*(np.asarray(value, dtype=float) for value in (pinion_angle, wheel_torque))),
+                         axis=-1)
+        shape = loads.shape[:-1]
+        offsets = np.empty(shape)
+        results = np.empty(shape, RESULT)
+        status = lib.solve_static(self._struct, offsets.size, _pointer("double *", loads), ffi.NULL,
+                                  _pointer("double *", offsets), _pointer("gm_mesh_result *", results))
+        _check(status)
+        return StaticResult(offsets[()], _shown(results))
+
+    def eigenfrequency(self, pinion_inertia: float, wheel_inertia: float) -> float:
+        """Of two bodies (kg m2; math.inf: its motion is prescribed) on the mean stiffness of the mesh (Hz)."""
+        return float(lib.gm_mesh_eigenfrequency(self._struct, pinion_inertia, wheel_inertia))
+
+    def clearance(self, side: Literal["drive", "coast"]) -> float:
+        """How far x may go before flanks of a side can touch (m)."""
+        return float(lib.gm_mesh_clearance(self._struct, enum_value("gm_flank_side", side)))
+
+    @property
+    def mean_stiffness(self) -> float:
+        """Along the line of action, over all pairs that touch on average (N/m)."""
+        return float(lib.gm_mesh_mean_stiffness(self._struct))
+
+    @property
+    def mean_damping(self) -> float:
+        """Likewise (N s/m)."""
+        return float(lib.gm_mesh_mean_damping(self._struct))
+
+    def _evaluate(self, loop: Any, kind: str, given: NDArray[Any], shape: tuple[int, ...],
+                  want: Union[str, Iterable[str]]) -> MeshResult:
+        wanted = sum({enum_value("gm_wanted", name) for name in ([want] if isinstance(want, str) else want)})
+        results = np.empty(shape, RESULT)
+        status = loop(self._struct, results.size, _pointer(kind, given), wanted, ffi.NULL,
+                      _pointer("gm_mesh_result *", results))
+        _check(status)
+        return _shown(results)
+
+
+def _pointer(kind: str, array: NDArray[Any]) -> Any:
+    return ffi.cast(kind, array.ctypes.data)
+
+
+def _check(status: int) -> None:
+    if status != lib.GM_OK:
+        raise Error(status_text(status))
+
+
+def _shown(results: Any) -> MeshResult:
+    """Fields as attributes; a single result has numbers."""
+    shown: MeshResult = results.view(MeshResult) if results.shape else results[()]
+    return shown

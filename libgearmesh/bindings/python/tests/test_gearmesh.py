@@ -1,0 +1,337 @@
+# SPDX-FileCopyrightText: The gearmesh authors
+# SPDX-License-Identifier: BSD-3-Clause
+"""The Python package against the headers, against gearsim, and against what must hold."""
+import pathlib
+import pickle
+import runpy
+import threading
+
+import numpy as np
+import pytest
+from scipy.integrate import solve_ivp
+
+import gearmesh
+
+ROOT = pathlib.Path(__file__).resolve().parents[4]
+EXAMPLE = ROOT / "data" / "example"
+
+DRAWING = {"pinion_teeth": 45, "wheel_teeth": 41, "normal_module": 1.65e-3, "normal_pressure_angle": 0.279252680,
+           "helix_angle": 0.575958653, "center_distance": 0.085, "face_width": 0.0175, "backlash": 100e-6}
+LAW = {"stiffness": 1.05e8, "damping": 844.0}
+
+
+@pytest.fixture(name="pair")
+def fixture_pair():
+    return gearmesh.Pair(**DRAWING)
+
+
+@pytest.fixture(name="mesh")
+def fixture_mesh(pair):
+    return gearmesh.Mesh(pair, **LAW)
+
+
+def states_about_contact(pair, count, seed=1):
+    """Angles and speeds at random whose drive flanks touch."""
+    random = np.random.default_rng(seed)
+    pinion_angle = random.uniform(-50.0, 50.0, count)
+    offset = random.uniform(51e-6, 60e-6, count)
+    wheel_angle = (pair.pinion.base_radius * pinion_angle - offset) / pair.wheel.base_radius
+    return pinion_angle, wheel_angle, random.uniform(-1.0, 1.0, count), random.uniform(-1.0, 1.0, count)
+
+
+# ----------------------------------------------------------------------------------------------------
+# Pair
+# ----------------------------------------------------------------------------------------------------
+
+
+def test_pair_has_what_follows_from_the_drawing(pair):
+    module = DRAWING["normal_module"] / np.cos(DRAWING["helix_angle"])
+    pressure_angle = np.arctan(np.tan(DRAWING["normal_pressure_angle"]) / np.cos(DRAWING["helix_angle"]))
+    assert pair.wheel.base_radius == pytest.approx(41 * module / 2 * np.cos(pressure_angle), rel=1e-14)
+    assert pair.backlash == pytest.approx(100e-6, rel=1e-10)
+    assert pair.pinion.teeth == 45
+    assert len(pair.phase_origin) == 2
+
+
+def test_pair_names_the_parameter_at_fault():
+    with pytest.raises(gearmesh.Error, match=r"normal_module: must be .*got -1\.0"):
+        gearmesh.Pair(**{**DRAWING, "normal_module": -1.0})
+    with pytest.raises(gearmesh.Error, match="wheel_width: no such parameter"):
+        gearmesh.Pair(**DRAWING, wheel_width=1.0)
+    with pytest.raises(gearmesh.Error, match="pinion_teeth: must be a number"):
+        gearmesh.Pair(**{**DRAWING, "pinion_teeth": 45.5})
+    with pytest.raises(gearmesh.Error, match="base_helix: must be one of iso, paper"):
+        gearmesh.Pair(**DRAWING, base_helix="oblique")
+
+
+def test_pair_cannot_be_changed_after_it_was_derived(pair):
+    with pytest.raises(AttributeError):
+        pair.backlash = 0.0
+
+
+def test_pair_warns_as_the_library_does():
+    assert "pinion_undercut" in gearmesh.Pair(**{**DRAWING, "pinion_teeth": 5, "wheel_teeth": 81}).warnings
+
+
+def test_documentation_of_parameters_comes_from_the_header():
+    text = pathlib.Path(gearmesh._records.__file__).read_text(encoding="utf-8")
+    assert "alpha_n, rad, 0 < alpha_n < 45 deg, required" in text
+
+
+# ----------------------------------------------------------------------------------------------------
+# Mesh
+# ----------------------------------------------------------------------------------------------------
+
+
+def test_force_is_that_of_the_program_in_the_readme(mesh):
+    result = mesh.evaluate(1.25e-3, 0.0, 0.01, want="derivatives")
+    readme = (ROOT / "README.md").read_text(encoding="utf-8")
+    assert f"force {result.force:.2f} N, by pinion angle {result.force_by.pinion_angle:.4g} N/rad, " in readme
+
+
+def test_arrays_give_the_bits_of_single_calls(pair, mesh):
+    states = states_about_contact(pair, 50)
+    together = mesh.evaluate(*states, want=["derivatives", "wrench", "pairs"])
+    for index, state in enumerate(zip(*states)):
+        alone = mesh.evaluate(*state, want=["derivatives", "wrench", "pairs"])
+        assert alone.tobytes() == together[index].tobytes()
+    assert together.wrench.pinion_moment.shape == (50, 3)
+
+
+def test_arguments_broadcast_and_what_is_not_wanted_is_nan(mesh):
+    result = mesh.evaluate(np.zeros((3, 1)), np.linspace(-1e-3, 1e-3, 4))
+    assert result.shape == (3, 4)
+    assert result.force.dtype == float
+    assert np.isnan(result.force_by.pinion_angle).all()
+
+
+def test_derivatives_agree_with_differences(pair, mesh):
+    states = np.array(states_about_contact(pair, 40))
+    result = mesh.evaluate(*states, want="derivatives")
+    step = 1e-9
+    for row, name in enumerate(("pinion_angle", "wheel_angle")):
+        ahead, behind = states.copy(), states.copy()
+        ahead[row] += step
+        behind[row] -= step
+        slope = (mesh.evaluate(*ahead).force - mesh.evaluate(*behind).force) / (2 * step)
+        # 1e-9 rad moves flanks by 4e-11 m; a kink within that is rare, and rounding of 50 rad is worth 1e-5 of the step.
+        assert np.median(np.abs(slope / result.force_by[name] - 1)) < 1e-4
+
+
+def test_offset_is_the_same_state_as_the_angles(pair, mesh):
+    pinion_angle, wheel_angle, pinion_speed, wheel_speed = states_about_contact(pair, 40)
+    r_bp, r_bw = pair.pinion.base_radius, pair.wheel.base_radius
+    direct = mesh.evaluate(pinion_angle, wheel_angle, pinion_speed, wheel_speed)
+    reduced = mesh.evaluate_offset(pinion_angle, r_bp * pinion_angle - r_bw * wheel_angle,
+                                   r_bp * pinion_speed - r_bw * wheel_speed)
+    assert reduced.force == pytest.approx(direct.force, rel=1e-6)
+
+
+def test_static_equilibrium_carries_the_torque(pair, mesh):
+    angle, torque = np.linspace(0, 1, 30)[:, None], np.array([10.0, 40.0])
+    static = mesh.static(angle, torque)
+    assert static.offset.shape == (30, 2)
+    assert static.result.force * pair.wheel.base_radius == pytest.approx(np.broadcast_to(torque, (30, 2)), rel=1e-9)
+    assert mesh.static(0.5, 10.0).offset == pytest.approx(mesh.static([0.4, 0.5], 10.0).offset[1], abs=1e-15)
+
+
+def test_refused_states_are_nan_and_the_others_are_not(mesh):
+    result = mesh.evaluate([1.25e-3, np.nan, 1.25e-3, 1.0], [0.0, 0.0, 0.0, 0.0], want="wrench")
+    assert np.isnan(result.force).tolist() == [False, True, False, True]
+    assert np.isnan(result.wrench.pinion_force[:, 0]).tolist() == [False, True, False, True]
+    assert np.isnan(mesh.evaluate_offset([0.0, 1e12, 0.0], [1e-6, 1e-6, 1.0]).force).tolist() == [False, True, True]
+    assert np.isnan(mesh.static(0.0, [10.0, 0.0, 10.0]).offset).tolist() == [False, True, False]
+
+
+def test_calls_at_fault_are_told(mesh):
+    with pytest.raises(gearmesh.Error, match="must be one of force, derivatives"):
+        mesh.evaluate(0.0, 0.0, want="torque")
+    with pytest.raises(TypeError, match="no argument angle"):
+        mesh.evaluate(0.0, 0.0, angle=1.0)
+
+
+def test_mesh_names_the_parameter_at_fault(pair):
+    with pytest.raises(gearmesh.Error, match="stiffness: must be .*got nan"):
+        gearmesh.Mesh(pair)
+    with pytest.raises(gearmesh.Error, match="they do not mesh"):
+        gearmesh.Mesh(pair, **LAW, pose={"skew": 1.0})
+
+
+def test_pose_of_the_mesh_shifts_the_error_as_an_involute_does(pair):
+    # A wheel that moves by dx along the line of centres opens the drive gap by dx sin(alpha_wt), to first order.
+    change = 1e-6
+    posed = gearmesh.Mesh(pair, **LAW, pose={"center_distance_change": change})
+    plain = gearmesh.Mesh(pair, **LAW)
+    difference = np.mean(posed.static(np.linspace(0, 0.14, 50), 20.0).offset - plain.static(np.linspace(0, 0.14, 50), 20.0).offset)
+    assert difference == pytest.approx(change * np.sin(pair.working_pressure_angle), rel=1e-2)
+
+
+def test_result_outlives_mesh_and_can_be_pickled(pair):
+    result = gearmesh.Mesh(pair, **LAW).evaluate([1.25e-3, 1.3e-3], 0.0)
+    assert pickle.loads(pickle.dumps(result)).force == pytest.approx(result.force, rel=0)
+
+
+def test_threads_share_a_mesh(pair, mesh):
+    states = states_about_contact(pair, 20000)
+    expected = mesh.evaluate(*states).force
+    found = [None] * 4
+
+    def work(index):
+        found[index] = mesh.evaluate(*states).force
+
+    threads = [threading.Thread(target=work, args=(index,)) for index in range(4)]
+    for thread in threads:
+        thread.start()
+    for thread in threads:
+        thread.join()
+    assert all(np.array_equal(expected, forces) for forces in found)
+
+
+# ----------------------------------------------------------------------------------------------------
+# Flanks
+# ----------------------------------------------------------------------------------------------------
+
+
+def test_arrays_of_flanks_are_those_of_a_file(pair, tmp_path):
+    random = np.random.default_rng(3)
+    table = random.uniform(-5e-6, 5e-6, (45, 2, 3, 4))
+    pitch = random.uniform(-5e-6, 5e-6, (45, 2))
+    table[7, 1] = np.nan
+    with open(tmp_path / "flanks.csv", "w", encoding="utf-8") as file:
+        file.write("tooth,flank,t1,t2,deviation_um\n")
+        for (tooth, side, n1, n2), value in np.ndenumerate(table):
+            if not np.isnan(value):
+                file.write(f"{tooth},{('drive', 'coast')[side]},{n1 / 2},{n2 / 3:.17g},{1e6 * value:.17g}\n")
+    with open(tmp_path / "pitch.csv", "w", encoding="utf-8") as file:
+        file.write("tooth,flank,deviation_um\n")
+        for (tooth, side), value in np.ndenumerate(pitch):
+            file.write(f"{tooth},{('drive', 'coast')[side]},{1e6 * value:.17g}\n")
+
+    angle, torque = np.linspace(0, 6.28, 100), 20.0
+    from_file = gearmesh.Flanks(pair, "pinion", tmp_path / "flanks.csv", tmp_path / "pitch.csv")
+    from_array = gearmesh.Flanks(pair, "pinion", table, pitch)
+    offsets = [gearmesh.Mesh(pair, flanks, **LAW).static(angle, torque).offset for flanks in (from_file, from_array)]
+    assert offsets[0] == pytest.approx(offsets[1], abs=1e-14)
+    assert np.ptp(offsets[0]) > 1e-6
+
+
+def test_added_material_moves_the_mesh_by_its_thickness(pair):
+    # 10 um along the normal on all teeth of one gear are 10 um / cos(beta_b) along the line of action. As the path of
+    # contact begins there too, 10 um in 7 mm of it are missing, a thousandth of the 2.5 um by which the teeth press.
+    angle = np.linspace(0, 0.3, 20)
+    ideal = gearmesh.Mesh(pair, **LAW).static(angle, 20.0).offset
+    for shape in ((2, 2), (2, 2, 2), (41, 2, 2, 2)):
+        thick = gearmesh.Flanks(pair, "wheel", np.full(shape, 10e-6))
+        moved = gearmesh.Mesh(pair, wheel_flanks=thick, **LAW).static(angle, 20.0).offset
+        assert ideal - moved == pytest.approx(10e-6 / np.cos(pair.base_helix_angle), abs=4e-9)
+    thick = gearmesh.Flanks(pair, "wheel", np.full((2, 2), 10e-6), in_transverse_section=True)
+    moved = gearmesh.Mesh(pair, wheel_flanks=thick, **LAW).static(angle, 20.0).offset
+    assert ideal - moved == pytest.approx(10e-6, abs=4e-9)
+
+
+def test_modifications_take_material_off(pair):
+    relief = gearmesh.Modification("tip_relief", 10e-6, profile_range=0.3, profile_range_by="share")
+    crowning = gearmesh.Modification("crowning", 4e-6, shape="parabolic")
+    relieved = gearmesh.Flanks(pair, "wheel", drive=[relief, crowning])
+    mesh = gearmesh.Mesh(pair, wheel_flanks=relieved, **LAW)
+    assert (mesh.static(np.linspace(0, 1, 20), 20.0).offset >
+            gearmesh.Mesh(pair, **LAW).static(np.linspace(0, 1, 20), 20.0).offset).all()
+    assert mesh.clearance("coast") == pytest.approx(50e-6, rel=1e-9)
+
+
+def test_flanks_say_what_is_wrong(pair, tmp_path):
+    with pytest.raises(gearmesh.Error, match="nowhere.csv"):
+        gearmesh.Flanks(pair, "pinion", tmp_path / "nowhere.csv")
+    (tmp_path / "bad.csv").write_text("tooth,flank,t1,t2,deviation_um\n0,drive,0,0,much\n", encoding="utf-8")
+    with pytest.raises(gearmesh.Error, match=r"bad\.csv:2: "):
+        gearmesh.Flanks(pair, "pinion", tmp_path / "bad.csv")
+    with pytest.raises(gearmesh.Error, match=r"deviations: must have the shape .*got \(3, 2, 2\)"):
+        gearmesh.Flanks(pair, "pinion", np.zeros((3, 2, 2)))
+    with pytest.raises(gearmesh.Error, match=r"pitch: must have the shape \[45, 2\]"):
+        gearmesh.Flanks(pair, "pinion", pitch=np.zeros(45))
+    with pytest.raises(gearmesh.Error):
+        gearmesh.Flanks(pair, "pinion", np.array([[0.0, np.inf], [0.0, 0.0]]))
+    with pytest.raises(gearmesh.Error, match="modification 0: amount: must be "):
+        gearmesh.Flanks(pair, "pinion", drive=[gearmesh.Modification("tip_relief", -1.0, profile_range=1e-3)])
+    with pytest.raises(gearmesh.Error, match="role"):
+        gearmesh.Flanks(pair, "sun")
+    with pytest.raises(gearmesh.Error, match="kind: must be one of"):
+        gearmesh.Modification("polish", 1e-6)
+
+
+# ----------------------------------------------------------------------------------------------------
+# Solvers and gearsim
+# ----------------------------------------------------------------------------------------------------
+
+
+def test_scipy_finds_the_motion_with_and_without_stiff_methods(pair, mesh):
+    """Explicit, switching and implicit methods with the exact Jacobian come to the same end."""
+    inertia, load, r_bw = 2.1e-3, 20.0, pair.wheel.base_radius
+    speed = 2 * np.pi * 1000 / pair.pinion.teeth
+
+    def motion(time, state):
+        return state[1], (load - mesh.evaluate_offset(speed * time, *state).wheel_torque) * r_bw / inertia
+
+    def jacobian(time, state):
+        by = mesh.evaluate_offset(speed * time, *state, want="derivatives").wheel_torque_by
+        return [[0.0, 1.0], [by.wheel_angle / inertia, by.wheel_speed / inertia]]
+
+    start = (mesh.static(0.0, load).offset, 0.0)
+    ends = {}
+    for method, options in (("DOP853", {}), ("LSODA", {"jac": jacobian}), ("Radau", {"jac": jacobian}), ("BDF", {"jac": jacobian})):
+        run = solve_ivp(motion, (0.0, 3e-3), start, method, rtol=1e-8, atol=1e-13, **options)
+        assert run.success
+        ends[method] = run.y[0, -1]
+    assert np.array(list(ends.values())) == pytest.approx(ends["DOP853"], abs=2e-10), ends
+
+
+@pytest.fixture(name="program")
+def fixture_program(request):
+    program = request.config.getoption("--gearsim")
+    if not program:
+        pytest.skip("needs --gearsim=PROGRAM")
+    return program
+
+
+def test_static_error_is_that_of_gearsim(program):
+    parameters = EXAMPLE / "params.ini"
+    run = gearmesh.gearsim(parameters, {"analysis.type": "static", "analysis.positions": 200, "load.mean_Nm": 25}, program)
+    text = {line.split("=")[0].strip(): line.split("=")[1].split(";")[0].strip()
+            for line in parameters.read_text(encoding="utf-8").splitlines() if "=" in line and line[0] not in ";#"}
+    mm, deg = 1e-3, np.pi / 180
+    pair = gearmesh.Pair(
+        pinion_teeth=int(text["pinion_teeth"]), wheel_teeth=int(text["wheel_teeth"]),
+        normal_module=float(text["normal_module_mm"]) * mm,
+        normal_pressure_angle=float(text["normal_pressure_angle_deg"]) * deg,
+        helix_angle=float(text["helix_angle_deg"]) * deg, center_distance=float(text["center_distance_mm"]) * mm,
+        face_width=float(text["face_width_mm"]) * mm, backlash=float(text["backlash_um"]) * 1e-6,
+        **{f"{gear}_{name}": float(text[f"{gear}_{name}"]) for gear in ("pinion", "wheel")
+           for name in ("rack_addendum", "rack_dedendum")},
+        **{f"{gear}_tip_radius": float(text[f"{gear}_tip_diameter_mm"]) * mm / 2 for gear in ("pinion", "wheel")})
+    assert "flanks.pinion_pitch" in run.parameters and "flanks.wheel_pitch" not in run.parameters
+    mesh = gearmesh.Mesh(pair, gearmesh.Flanks(pair, "pinion", EXAMPLE / "flanks.csv", EXAMPLE / "pitch.csv"),
+                         gearmesh.Flanks(pair, "wheel", EXAMPLE / "flanks.csv"), stiffness=float(text["stiffness_N_per_m"]))
+    te = -mesh.static(run["pinion_angle_rad"], 25.0).offset
+    assert run["te_um"].size == 200
+    assert 1e6 * te == pytest.approx(run["te_um"], abs=1e-5)
+    assert np.ptp(te) > 1e-7
+
+
+def test_gearsim_says_what_is_wrong(program):
+    with pytest.raises(gearmesh.Error, match="load.mean_Nm"):
+        gearmesh.gearsim(EXAMPLE / "params.ini", {"load.mean_Nm": "much"}, program)
+
+
+def test_what_is_no_result_is_refused(tmp_path):
+    (tmp_path / "empty.csv").write_text("# a\n", encoding="utf-8")
+    with pytest.raises(gearmesh.Error, match="empty.csv: must be a result"):
+        gearmesh.read_run(tmp_path / "empty.csv")
+    (tmp_path / "ended.csv").write_text("# a.b = 1\ntime_s,x_um\n0,1\n1,2\n# incomplete: killed\n", encoding="utf-8")
+    run = gearmesh.read_run(tmp_path / "ended.csv")
+    assert (run["x_um"] == [1, 2]).all()
+    assert run.parameters == {"a.b": "1", "incomplete": "killed"}
+
+
+def test_tutorial_runs(capsys):
+    runpy.run_path(str(ROOT / "libgearmesh" / "bindings" / "python" / "tutorial.py"))
+    assert "Radau" in capsys.readouterr().out
