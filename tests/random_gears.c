@@ -74,10 +74,17 @@ static void any_radii(uint64_t *seed, gm_pair_params *params) {
     for (int g = 0; g < 2; ++g) {
         if (chance(seed, 70)) {
             const double height = gm_test_uniform(seed, 0.7, 1.5) + (double)model.shift[g];
-            *tip[g] = (double)model.reference_radius[g] + params->normal_module * height;
+            const double outwards = g == 1 && model.is_ring ? -1.0 : 1.0;
+            *tip[g] = (double)model.reference_radius[g] + outwards * params->normal_module * height;
         }
         const double r_b = (double)model.base_radius[g];
         const double rho = (double)model.rho_end[g];
+        if (g == 1 && model.is_ring) {
+            if (chance(seed, 50)) {
+                *start[g] = hypot(r_b, rho * gm_test_uniform(seed, 1.05, 1.4));
+            }
+            continue;
+        }
         switch (gm_test_integer(seed, 0, 9)) {
         case 0:
             /* On the base circle. Not to the last bit: whether the radius is above or below the
@@ -130,6 +137,32 @@ void random_params(uint64_t *seed, gm_pair_params *params, model_pair *model) {
             return;
         }
     }
+}
+
+void random_ring_params(uint64_t *seed, gm_pair_params *params, model_pair *model) {
+    gm_pair pair;
+    do {
+        gm_pair_params_default(params);
+        params->pinion_teeth = gm_test_integer(seed, 12, 60);
+        params->wheel_teeth = -(params->pinion_teeth + gm_test_integer(seed, 8, 100));
+        params->normal_module = 1e-3 * any_size(seed, -0.7, 1.3);
+        params->normal_pressure_angle = gm_test_uniform(seed, 14.0, 28.0) * degree;
+        params->helix_angle = any_helix(seed);
+        const double m_n = params->normal_module;
+        params->face_width = m_n * gm_test_uniform(seed, 2.0, 25.0);
+
+        /* The way that the profile shifts let it off the reference distance. */
+        params->center_distance =
+            -(params->pinion_teeth + params->wheel_teeth) * m_n / (2.0 * cos(params->helix_angle));
+        if (chance(seed, 90)) {
+            params->center_distance += m_n * gm_test_uniform(seed, -0.8, 0.6);
+        }
+        any_thickness(seed, params);
+        any_radii(seed, params);
+        model_pair_init(model, params);
+    } while (!(model_path_length(model) > 0.05L * model->base_pitch &&
+               fabsl(model->backlash) < 0.3L * model->base_pitch &&
+               gm_pair_init(&pair, params) == GM_OK));
 }
 
 /* ---------------------------------------------------------------------------------------------
@@ -267,7 +300,7 @@ void random_flanks_make(random_flanks *f, uint64_t *seed, const gm_pair *pair, i
         fill_side(f, seed, side, tables[side], face_nodes[side], profile_nodes[side], amplitude,
                   normal ? pair->normal_to_transverse : 1.0, normal ? exact : 1.0L);
         const double climb = (side == wheel ? 1.0 : -1.0) * pair->face_advance /
-                             (gear->tip_roll_length - gear->start_roll_length);
+                             fabs(gear->tip_roll_length - gear->start_roll_length);
         set_ramps(f, &ramp_seed, side, amplitude, climb, normal ? pair->normal_to_transverse : 1.0,
                   normal ? exact : 1.0L);
     }
@@ -312,9 +345,7 @@ static void any_state(random_case *c, uint64_t *seed) {
     random_case_place(c, angle, offset);
 }
 
-int random_case_make(random_case *c, uint64_t *seed, int with_flanks) {
-    memset(c, 0, sizeof *c);
-    random_params(seed, &c->params, &c->model);
+static int complete(random_case *c, uint64_t *seed, int with_flanks) {
     const int status = gm_pair_init(&c->pair, &c->params);
     c->amplitude = with_flanks ? c->params.normal_module * any_size(seed, -4.0, -2.3) : 0.0;
     for (int g = 0; g < 2 && status == GM_OK; ++g) {
@@ -326,6 +357,24 @@ int random_case_make(random_case *c, uint64_t *seed, int with_flanks) {
     }
     any_state(c, seed);
     return status;
+}
+
+int random_case_make(random_case *c, uint64_t *seed, int with_flanks) {
+    memset(c, 0, sizeof *c);
+    random_params(seed, &c->params, &c->model);
+    return complete(c, seed, with_flanks);
+}
+
+int random_ring_case_make(random_case *c, uint64_t *seed, int with_flanks) {
+    memset(c, 0, sizeof *c);
+    random_ring_params(seed, &c->params, &c->model);
+    return complete(c, seed, with_flanks);
+}
+
+int random_mixed_case_make(random_case *c, uint64_t *seed, int i) {
+    const int with_flanks = i % 4 != 0;
+    return i % 5 == 2 ? random_ring_case_make(c, seed, with_flanks)
+                      : random_case_make(c, seed, with_flanks);
 }
 
 void random_case_free(random_case *c) {

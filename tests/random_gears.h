@@ -38,6 +38,9 @@ typedef struct random_case {
 /** Draws parameters of a pair whose tips reach each other; always succeeds. */
 void random_params(uint64_t *seed, gm_pair_params *params, model_pair *model);
 
+/** The same of a pinion in a ring, which gm_pair_init() takes. */
+void random_ring_params(uint64_t *seed, gm_pair_params *params, model_pair *model);
+
 /** Draws tables, pitch and ramps for one gear of the pair: 0 = the pinion, 1 = the wheel. */
 void random_flanks_make(random_flanks *f, uint64_t *seed, const gm_pair *pair, int wheel,
                         double amplitude);
@@ -45,6 +48,10 @@ void random_flanks_free(random_flanks *f);
 
 /** Draws a whole case; returns the status of gm_pair_init(). Free it in any case. */
 int random_case_make(random_case *c, uint64_t *seed, int with_flanks);
+int random_ring_case_make(random_case *c, uint64_t *seed, int with_flanks);
+
+/** Case i of a test of all kinds: every fifth a ring, every fourth with ideal flanks. */
+int random_mixed_case_make(random_case *c, uint64_t *seed, int i);
 void random_case_free(random_case *c);
 
 /** Sets the angles so that x comes out as asked for, up to the rounding of the wheel angle. */

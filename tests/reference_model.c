@@ -37,6 +37,10 @@ static long double minimum(long double a, long double b) {
  * Geometry
  * ------------------------------------------------------------------------------------------- */
 
+static int is_ring(const model_pair *pair, int g) {
+    return g == 1 && pair->is_ring;
+}
+
 static void set_thickness(model_pair *pair, const gm_pair_params *params) {
     const long double m_n = params->normal_module;
     const long double alpha_n = params->normal_pressure_angle;
@@ -49,12 +53,14 @@ static void set_thickness(model_pair *pair, const gm_pair_params *params) {
             const long double nominal = m_n * (pi / 2 + 2 * pair->shift[g] * tanl(alpha_n));
             pair->normal_thickness[g] = or_else(given[g], nominal) + change;
             const long double transverse = pair->normal_thickness[g] / cos_beta;
-            pair->psi[g] = transverse / (2 * pair->reference_radius[g]) + involute(pair->alpha_t);
+            const long double turn = involute(pair->alpha_t);
+            pair->psi[g] =
+                transverse / (2 * pair->reference_radius[g]) + (is_ring(pair, g) ? -turn : turn);
             thick += 2 * pair->base_radius[g] * pair->psi[g];
         }
-        pair->backlash =
-            pair->base_pitch - thick +
-            2 * (pair->base_radius[0] + pair->base_radius[1]) * involute(pair->alpha_wt);
+        const long double apart = pair->is_ring ? pair->base_radius[0] - pair->base_radius[1]
+                                                : pair->base_radius[0] + pair->base_radius[1];
+        pair->backlash = pair->base_pitch - thick + 2 * apart * involute(pair->alpha_wt);
         if (isnan(params->backlash)) {
             return;
         }
@@ -64,25 +70,38 @@ static void set_thickness(model_pair *pair, const gm_pair_params *params) {
     }
 }
 
+/** Roll length on gear g of the point where the mate's is rho. */
+static long double mates_roll_length(const model_pair *pair, int g, long double rho) {
+    if (pair->is_ring) {
+        return g == 0 ? rho - pair->line_of_action : rho + pair->line_of_action;
+    }
+    return pair->line_of_action - rho;
+}
+
 static void set_active_profile(model_pair *pair, const gm_pair_params *params) {
     const long double m_n = params->normal_module;
     const double tip[2] = {params->pinion_tip_radius, params->wheel_tip_radius};
     const double start[2] = {params->pinion_start_radius, params->wheel_start_radius};
-    /* The axes are closer than the shifts ask for: both teeth are cut shorter by as much. */
+    /* The axes are closer than the shifts ask for, those of a ring's pair further apart: both teeth are cut shorter by as
+     * much. */
     const long double apart = pair->shift[0] + pair->shift[1];
-    const long double distance = pair->reference_radius[0] + pair->reference_radius[1];
-    const long double too_close = apart - (pair->center_distance - distance) / m_n;
-    const long double cut = maximum(0.0L, too_close);
+    const long double spread =
+        pair->is_ring
+            ? pair->reference_radius[1] - pair->reference_radius[0] - pair->center_distance
+            : pair->center_distance - pair->reference_radius[0] - pair->reference_radius[1];
+    const long double cut = maximum(0.0L, apart - spread / m_n);
     for (int g = 0; g < 2; ++g) {
         const long double r_b = pair->base_radius[g];
+        const long double height = m_n * (1 + pair->shift[g] - cut);
         pair->tip_radius[g] =
-            or_else(tip[g], pair->reference_radius[g] + m_n * (1 + pair->shift[g] - cut));
+            or_else(tip[g], is_ring(pair, g) ? pair->reference_radius[g] - height
+                                             : pair->reference_radius[g] + height);
         pair->rho_end[g] = sqrtl(pair->tip_radius[g] * pair->tip_radius[g] - r_b * r_b);
     }
     for (int g = 0; g < 2; ++g) {
         const long double r_b = pair->base_radius[g];
         if (isnan(start[g])) {
-            pair->rho_start[g] = maximum(0.0L, pair->line_of_action - pair->rho_end[1 - g]);
+            pair->rho_start[g] = maximum(0.0L, mates_roll_length(pair, g, pair->rho_end[1 - g]));
         } else {
             const long double r = start[g];
             pair->rho_start[g] = r > r_b ? sqrtl((r - r_b) * (r + r_b)) : 0.0L;
@@ -98,7 +117,8 @@ void model_pair_init(model_pair *pair, const gm_pair_params *params) {
     const long double d = params->center_distance;
 
     pair->teeth[0] = params->pinion_teeth;
-    pair->teeth[1] = params->wheel_teeth;
+    pair->teeth[1] = abs(params->wheel_teeth);
+    pair->is_ring = params->wheel_teeth < 0;
     pair->transverse_module = m_n / cosl(beta);
     pair->alpha_t = atanl(tanl(alpha_n) / cosl(beta));
     pair->beta_b = params->base_helix == GM_BASE_HELIX_PAPER
@@ -108,7 +128,8 @@ void model_pair_init(model_pair *pair, const gm_pair_params *params) {
         pair->reference_radius[g] = pair->transverse_module * pair->teeth[g] / 2;
         pair->base_radius[g] = pair->reference_radius[g] * cosl(pair->alpha_t);
     }
-    const long double base_sum = pair->base_radius[0] + pair->base_radius[1];
+    const long double base_sum = pair->is_ring ? pair->base_radius[1] - pair->base_radius[0]
+                                               : pair->base_radius[0] + pair->base_radius[1];
     pair->center_distance = d;
     pair->alpha_wt = acosl(base_sum / d);
     pair->line_of_action = sqrtl((d - base_sum) * (d + base_sum));
@@ -128,8 +149,10 @@ void model_pair_init(model_pair *pair, const gm_pair_params *params) {
 }
 
 long double model_path_length(const model_pair *pair) {
-    const long double start = maximum(pair->rho_start[0], pair->line_of_action - pair->rho_end[1]);
-    const long double end = minimum(pair->rho_end[0], pair->line_of_action - pair->rho_start[1]);
+    const long double start =
+        maximum(pair->rho_start[0], mates_roll_length(pair, 0, pair->rho_end[1]));
+    const long double end =
+        minimum(pair->rho_end[0], mates_roll_length(pair, 0, pair->rho_start[1]));
     return end - start;
 }
 
@@ -184,7 +207,9 @@ static long double plane_of(const model_ramp *ramp, long double t1, long double 
 }
 
 static long double approach_at(const line *l, long double t1) {
-    long double delta = l->rho[0] + l->rho[1] - l->pair->line_of_action + l->extra;
+    long double delta =
+        l->extra + (l->pair->is_ring ? l->rho[0] - l->rho[1] + l->pair->line_of_action
+                                     : l->rho[0] + l->rho[1] - l->pair->line_of_action);
     for (int g = 0; g < 2; ++g) {
         const long double t2 = profile_position(l, g, t1);
         delta += deviation(l->table[g], t1, t2);
@@ -308,8 +333,8 @@ static void add_line(const line *l, long double border, int side, model_result *
     long double low = 0.0L;
     long double high = 1.0L;
     for (int g = 0; g < 2; ++g) {
-        const long double first = pair->rho_start[g] - border;
-        const long double last = pair->rho_end[g] + border;
+        const long double first = minimum(pair->rho_start[g], pair->rho_end[g]) - border;
+        const long double last = maximum(pair->rho_start[g], pair->rho_end[g]) + border;
         if (l->climb[g] == 0.0L) {
             if (l->rho[g] < first || l->rho[g] > last) {
                 return;
@@ -387,9 +412,15 @@ void model_evaluate(const model_pair *pair, const model_flanks *pinion, const mo
             const long double angle_w = phi_w + (2 * j + 1) * pi / z_w;
             line l = {.pair = pair, .extra = approach};
             l.rho[0] = r_bp * (pair->alpha_wt + pair->psi[0] + s * angle_p);
-            l.rho[1] = r_bw * (pair->alpha_wt + pair->psi[1] - s * angle_w);
             l.climb[0] = s * pair->face_advance;
-            l.climb[1] = -s * pair->face_advance;
+            if (pair->is_ring) {
+                /* The flanks that look towards the pinion: on the other side of the tooth, and they turn with it. */
+                l.rho[1] = r_bw * (pair->alpha_wt - pair->psi[1] + s * angle_w);
+                l.climb[1] = s * pair->face_advance;
+            } else {
+                l.rho[1] = r_bw * (pair->alpha_wt + pair->psi[1] - s * angle_w);
+                l.climb[1] = -s * pair->face_advance;
+            }
             if (pinion != NULL) {
                 l.table[0] = &pinion->table[side][tooth_p];
                 l.ramp[0] = pinion->ramp[side];

@@ -17,6 +17,7 @@
 /** Geometry of a pair. Index 0 = pinion, 1 = wheel. */
 typedef struct model_pair {
     int teeth[2];
+    int is_ring; /**< the wheel is an internal gear; all lengths are above 0 */
     long double transverse_module;
     long double alpha_t;
     long double alpha_wt;

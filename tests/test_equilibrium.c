@@ -40,7 +40,7 @@ static void equilibrium_inverts_the_sum(void) {
     for (int i = 0; i < 600; ++i) {
         random_case c;
         gm_test_context("case %d, seed %llx", i, (unsigned long long)seed);
-        GM_ASSERT_INT(random_case_make(&c, &seed, i % 4 != 0), GM_OK);
+        GM_ASSERT_INT(random_mixed_case_make(&c, &seed, i), GM_OK);
         const double r_bw = (double)c.model.base_radius[1];
         const double m_n = c.params.normal_module;
         const double stiffness = 1e8;
@@ -461,7 +461,7 @@ static void bisection_of_the_sum_gives_the_same(void) {
     int compared = 0;
     for (int i = 0; i < 400; ++i) {
         random_case c;
-        GM_ASSERT_INT(random_case_make(&c, &seed, i % 4 != 0), GM_OK);
+        GM_ASSERT_INT(random_mixed_case_make(&c, &seed, i), GM_OK);
         gm_test_context("case %d, helix %g", i, c.params.helix_angle);
         const double torque = random_torque(&c, &seed);
         const double target = torque / (1e8 * c.pair.wheel.base_radius);
@@ -489,7 +489,7 @@ static void no_torque_is_carried_where_both_sides_touch(void) {
     int jammed = 0, open = 0;
     for (int i = 0; i < 400; ++i) {
         random_case c;
-        GM_ASSERT_INT(random_case_make(&c, &seed, i % 4 != 0), GM_OK);
+        GM_ASSERT_INT(random_mixed_case_make(&c, &seed, i), GM_OK);
         c.pair.backlash = c.params.normal_module * gm_test_uniform(&seed, -2e-3, 2e-3);
         gm_test_context("case %d, helix %g", i, c.params.helix_angle);
         const double overlap = bisect(&c, COAST, -1e-300) - bisect(&c, DRIVE, 0.0);
@@ -525,7 +525,7 @@ static void a_guess_does_not_change_the_answer(void) {
     int found = 0;
     for (int i = 0; i < 600; ++i) {
         random_case c;
-        GM_ASSERT_INT(random_case_make(&c, &seed, i % 4 != 0), GM_OK);
+        GM_ASSERT_INT(random_mixed_case_make(&c, &seed, i), GM_OK);
         const double torque = i % 20 == 0 ? 0.0 : random_torque(&c, &seed);
         double x = NAN;
         gm_penetration r;
@@ -738,7 +738,7 @@ static void no_case_takes_many_evaluations(void) {
     uint64_t seed = UINT64_C(57);
     for (int i = 0; i < 1000; ++i) {
         random_case c;
-        GM_ASSERT_INT(random_case_make(&c, &seed, i % 4 != 0), GM_OK);
+        GM_ASSERT_INT(random_mixed_case_make(&c, &seed, i), GM_OK);
         gm_test_context("case %d, helix %g", i, c.params.helix_angle);
         const double pitch = c.pair.transverse_base_pitch;
         double x;

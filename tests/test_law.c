@@ -49,7 +49,7 @@ static void force_of_a_mesh_is_that_of_its_sides(void) {
     for (int i = 0; i < 300; ++i) {
         random_case c;
         gm_test_context("case %d, seed %llx", i, (unsigned long long)seed);
-        GM_ASSERT_INT(random_case_make(&c, &seed, i % 4 != 0), GM_OK);
+        GM_ASSERT_INT(random_mixed_case_make(&c, &seed, i), GM_OK);
         const gm_state state = {c.pinion_angle, c.wheel_angle, gm_test_uniform(&seed, -1.0, 1.0),
                                 0.0};
         gm_position position;
@@ -89,7 +89,7 @@ static void gradient_of_the_force_is_that_of_differences(void) {
     for (int i = 0; i < 600; ++i) {
         random_case c;
         gm_test_context("case %d, seed %llx", i, (unsigned long long)seed);
-        GM_ASSERT_INT(random_case_make(&c, &seed, i % 4 != 0), GM_OK);
+        GM_ASSERT_INT(random_mixed_case_make(&c, &seed, i), GM_OK);
         const double r_bp = c.pair.pinion.base_radius;
         const double stiffness = 1e8;
         /* Damping and speed so that the viscous part is of the size of the elastic one. */
@@ -149,7 +149,7 @@ static void touching_part_moves_as_in_the_second_model(void) {
     for (int i = 0; i < 4000; ++i) {
         random_case c;
         gm_test_context("case %d, seed %llx", i, (unsigned long long)seed);
-        GM_ASSERT_INT(random_case_make(&c, &seed, i % 4 != 0), GM_OK);
+        GM_ASSERT_INT(random_mixed_case_make(&c, &seed, i), GM_OK);
         const double r_bp = c.pair.pinion.base_radius, r_bw = c.pair.wheel.base_radius;
         const int side = i % 3 == 0 ? GM_COAST : GM_DRIVE;
         const double approach = side == GM_DRIVE ? 1.0 : -1.0;

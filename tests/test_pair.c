@@ -9,10 +9,11 @@
 static const double degree = 0.017453292519943295;
 
 /** All doubles of a pair. */
-enum { GEAR_DOUBLES = 20, OWN_DOUBLES = 29, PAIR_DOUBLES = 2 * GEAR_DOUBLES + OWN_DOUBLES };
+enum { GEAR_DOUBLES = 21, OWN_DOUBLES = 29, PAIR_DOUBLES = 2 * GEAR_DOUBLES + OWN_DOUBLES };
 
 static void list_gear(const gm_gear *g, double *out) {
-    const double values[GEAR_DOUBLES] = {g->profile_shift,
+    const double values[GEAR_DOUBLES] = {g->sign,
+                                         g->profile_shift,
                                          g->reference_radius,
                                          g->base_radius,
                                          g->tip_radius,
@@ -368,6 +369,24 @@ static void published_pairs_have_their_tips_and_contact_ratios(void) {
                           (0.5e-3 + by_shifts) * mm);
             GM_ASSERT_ABS(2.0 * p.wheel.tip_radius, pairs[i].wheel_tip_mm * mm,
                           (0.5e-3 + by_shifts) * mm);
+        }
+    }
+}
+
+/* Where the rule or the drawing says so it is so, without a rounding. */
+static void no_tip_alteration_is_none(void) {
+    for (int teeth = 20; teeth < 90; ++teeth) {
+        gm_test_context("%d teeth", teeth);
+        for (int ring = 0; ring < 2; ++ring) {
+            const int wheel = ring ? -(teeth + 60) : 31;
+            const double distance_mm = 0.5 * 1.7 * abs(teeth + wheel);
+            gm_pair_params params = catalogue_params(teeth, wheel, 1.7, 0.0, distance_mm, 0.0, 0.0);
+            gm_pair p = make_pair(&params);
+            GM_ASSERT_ABS(p.pinion.tip_alteration, 0.0, 0.0);
+            GM_ASSERT_ABS(p.wheel.tip_alteration, 0.0, 0.0);
+            params.wheel_tip_alteration = -0.1;
+            p = make_pair(&params);
+            GM_ASSERT_REL(p.wheel.tip_alteration, -0.1, 0.0);
         }
     }
 }
@@ -1433,6 +1452,7 @@ int main(int argc, char **argv) {
         GM_TEST(thickness_wins_over_shift),
         GM_TEST(backlash_thins_both_teeth_equally_and_leaves_the_shifts),
         GM_TEST(published_pairs_have_their_tips_and_contact_ratios),
+        GM_TEST(no_tip_alteration_is_none),
         GM_TEST(tips_default_to_addendum_shift_and_tip_alteration),
         GM_TEST(tip_alteration_keeps_the_clearance_of_the_rack),
         GM_TEST(a_given_tip_tells_its_tip_alteration),

@@ -613,7 +613,7 @@ static void derivatives_are_those_of_the_second_model(void) {
     for (int i = 0; i < 1500; ++i) {
         random_case c;
         gm_test_context("case %d, seed %llx", i, (unsigned long long)seed);
-        if (!GM_ASSERT_INT(random_case_make(&c, &seed, i % 4 != 0), GM_OK)) {
+        if (!GM_ASSERT_INT(random_mixed_case_make(&c, &seed, i), GM_OK)) {
             random_case_free(&c);
             return;
         }

@@ -20,9 +20,10 @@
 /** Number of failed cases that are printed. */
 #define PRINTED 5
 
-/* One rounding of the center distance, the longest length of a pair. */
-static double rounding(const gm_pair_params *params) {
-    return 0x1p-53 * params->center_distance;
+/* One rounding of the longest length of a pair: the center distance, or the radius of a ring. */
+static double rounding(const gm_pair_params *params, const model_pair *model) {
+    return 0x1p-53 *
+           (model->is_ring ? (double)model->reference_radius[1] : params->center_distance);
 }
 
 static int inside(double got, long double low, long double high, double relative, double absolute,
@@ -36,7 +37,7 @@ static int inside(double got, long double low, long double high, double relative
 static int compare(const random_case *c, const gm_penetration *got) {
     /* The limits of a line of contact and delta are each the sum of three or four lengths below d.
      * Angles are exact inputs and are reduced without loss: their size does not matter. */
-    const double e = 4.0 * rounding(&c->params);
+    const double e = 4.0 * rounding(&c->params, &c->model);
     model_result low;
     model_result high;
     model_evaluate(&c->model, c->model_use[0], c->model_use[1], c->pinion_angle, c->wheel_angle, -e,
@@ -60,15 +61,17 @@ static int compare(const random_case *c, const gm_penetration *got) {
     return good;
 }
 
-static void run(uint64_t seed, int with_flanks) {
+typedef int case_maker(random_case *c, uint64_t *seed, int with_flanks);
+
+static void run(case_maker *make, int cases, uint64_t seed, int with_flanks) {
     int failed = 0;
     int touching = 0;
     int jumps = 0;
-    for (int i = 0; i < CASES / 2 && failed < PRINTED; ++i) {
+    for (int i = 0; i < cases && failed < PRINTED; ++i) {
         random_case c;
         const uint64_t first = seed;
         gm_test_context("case %d, seed %llx", i, (unsigned long long)first);
-        if (!GM_ASSERT_INT(random_case_make(&c, &seed, with_flanks), GM_OK)) {
+        if (!GM_ASSERT_INT(make(&c, &seed, with_flanks), GM_OK)) {
             ++failed;
         } else {
             gm_test_context("case %d, seed %llx, z %d/%d, helix %.3g, x %.3g p_bt, angle %.3g", i,
@@ -89,17 +92,22 @@ static void run(uint64_t seed, int with_flanks) {
         random_case_free(&c);
     }
     gm_test_context("all cases");
-    printf("%d of %d touch, %d on both sides ", touching, CASES / 2, jumps);
-    GM_ASSERT(touching > CASES / 4); /* else the sweep would prove little */
-    GM_ASSERT(jumps > CASES / 100);
+    printf("%d of %d touch, %d on both sides ", touching, cases, jumps);
+    GM_ASSERT(touching > cases / 2); /* else the sweep would prove little */
+    GM_ASSERT(jumps > cases / 100);
 }
 
 static void ideal_flanks_agree_with_the_second_model(void) {
-    run(UINT64_C(20260101), 0);
+    run(random_case_make, CASES / 2, UINT64_C(20260101), 0);
 }
 
 static void real_flanks_agree_with_the_second_model(void) {
-    run(UINT64_C(20260102), 1);
+    run(random_case_make, CASES / 2, UINT64_C(20260102), 1);
+}
+
+static void rings_agree_with_the_second_model(void) {
+    run(random_ring_case_make, CASES / 6, UINT64_C(20260104), 0);
+    run(random_ring_case_make, CASES / 4, UINT64_C(20260105), 1);
 }
 
 static void derived_geometry_agrees_with_the_second_model(void) {
@@ -108,12 +116,16 @@ static void derived_geometry_agrees_with_the_second_model(void) {
         gm_pair_params params;
         model_pair model;
         gm_pair pair;
-        random_params(&seed, &params, &model);
+        if (i % 5 == 0) {
+            random_ring_params(&seed, &params, &model);
+        } else {
+            random_params(&seed, &params, &model);
+        }
         gm_test_context("case %d, z %d/%d, helix %.3g", i, params.pinion_teeth, params.wheel_teeth,
                         params.helix_angle);
         int good = GM_ASSERT_INT(gm_pair_init(&pair, &params), GM_OK);
         /* A dozen operations. */
-        const double e = 12.0 * rounding(&params);
+        const double e = 12.0 * rounding(&params, &model);
         good &= GM_ASSERT_ABS(pair.backlash, (double)model.backlash, e);
         /* The line of action is the root of (d - r_bp - r_bw)(d + r_bp + r_bw): shorter than d, it loses by
          * the ratio of both. The path is what two tips leave of it. */
@@ -146,6 +158,7 @@ int main(int argc, char **argv) {
         GM_TEST(derived_geometry_agrees_with_the_second_model),
         GM_TEST(ideal_flanks_agree_with_the_second_model),
         GM_TEST(real_flanks_agree_with_the_second_model),
+        GM_TEST(rings_agree_with_the_second_model),
     };
     return gm_test_main("reference.sweep", tests, GM_TEST_COUNT(tests), argc, argv);
 }

@@ -90,11 +90,11 @@ typedef struct field_ends {
     double lower, upper;
 } field_ends;
 
-static field_ends find_field(const gm_pair *pair, const gmi_engagement *at, double delta) {
+static field_ends find_field(const gmi_engagement *at, double delta) {
     const double reach = at->line_of_action + delta;
     const field_ends ends = {
-        fmax(at->start_roll_length[GM_PINION], reach - pair->wheel.tip_roll_length),
-        fmin(pair->pinion.tip_roll_length, reach - at->start_roll_length[GM_WHEEL])};
+        fmax(at->start_roll_length[GM_PINION], reach - at->tip_roll_length[GM_WHEEL]),
+        fmin(at->tip_roll_length[GM_PINION], reach - at->start_roll_length[GM_WHEEL])};
     return ends;
 }
 
@@ -112,8 +112,8 @@ static void find_knots(const gm_cache *cache, double knots[KNOTS]) {
     const gmi_engagement *at = &cache->mesh->engagement;
     const double p_bt = pair->transverse_base_pitch;
     const double sign = cache->side == GM_DRIVE ? 1.0 : -1.0;
-    const field_ends low = find_field(pair, at, cache->lowest);
-    const field_ends high = find_field(pair, at, fmax(0.0, cache->lowest) + 2.0 * cache->depth);
+    const field_ends low = find_field(at, cache->lowest);
+    const field_ends high = find_field(at, fmax(0.0, cache->lowest) + 2.0 * cache->depth);
 
     /* Columns stand a margin off the range that a kink moves over. */
     const double margin = kink_margin * p_bt;

@@ -33,13 +33,13 @@ static int wrap_tooth(int tooth, int teeth) {
 }
 
 /* Limits of rho_p: those of the pinion, and those of the wheel seen from the pinion. */
-static void find_limits(const gm_pair *pair, const gmi_engagement *at, gmi_lines *lines) {
+static void find_limits(const gmi_engagement *at, gmi_lines *lines) {
     const double reach = at->line_of_action + lines->delta; /* rho_p + rho_w */
-    const double wheel_tip = reach - pair->wheel.tip_roll_length;
+    const double wheel_tip = reach - at->tip_roll_length[GM_WHEEL];
     const double wheel_start = reach - at->start_roll_length[GM_WHEEL];
 
     lines->lower = at->start_roll_length[GM_PINION];
-    lines->upper = pair->pinion.tip_roll_length;
+    lines->upper = at->tip_roll_length[GM_PINION];
     lines->lower_by_delta = lines->upper_by_delta = 0.0;
     if (wheel_tip > lines->lower) {
         lines->lower = wheel_tip;
@@ -57,7 +57,7 @@ void gmi_lines_find(const gm_pair *pair, const gmi_engagement *at, int side,
     lines->origin = at->phase_origin[side] + direction * position->phase;
     lines->advance = direction * pair->face_advance;
     lines->delta = gmi_ideal_penetration(at, side, position->offset);
-    find_limits(pair, at, lines);
+    find_limits(at, lines);
 
     /* Line k covers origin + k p_bt + [fall, rise] of the line of action: those that meet [lower, upper]. */
     const int climbs = lines->advance > 0.0;

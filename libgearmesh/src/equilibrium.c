@@ -132,7 +132,7 @@ static double departure(const problem *p, double lower) {
     gmi_lines_find(pair, at, loaded_side(p), &p->position, &lines);
     /* Line 0 begins to leave where T0 + delta - rho_w(tip) passes its lowest rho_p. */
     const double delta =
-        lines.origin + lines.fall + pair->wheel.tip_roll_length - at->line_of_action;
+        lines.origin + lines.fall + at->tip_roll_length[GM_WHEEL] - at->line_of_action;
     const double travel = delta + 0.5 * at->backlash;
     const double pitch = pair->transverse_base_pitch;
     return travel + pitch * ceil((lower - travel) / pitch);

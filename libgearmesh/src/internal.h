@@ -59,12 +59,17 @@ static inline int gmi_is_aligned(const void *memory) {
 /* a * b = *product + return value, exactly (Dekker; no fused multiply-add needed). */
 double gmi_product_remainder(double a, double b, double product);
 
-/* gear.c: geometry of one gear. */
+/*
+ * gear.c: geometry of one gear. ISO 21771 gives a ring a negative number of teeth, and with it negative radii and roll
+ * lengths, centre distance and line of action: so the formulas of external gears hold for it as they are. What users see
+ * has positive lengths; the sign of the gear turns them into those of the standard.
+ */
 double gmi_involute(double angle);
 void gmi_gear_init(gm_gear *gear, int teeth, double transverse_module,
                    double transverse_pressure_angle);
 void gmi_gear_set_root(gm_gear *gear, double normal_module);
-void gmi_gear_set_tip(gm_gear *gear, double tip_radius, double normal_module);
+void gmi_gear_set_tip(gm_gear *gear, double given_radius, double tip_alteration,
+                      double normal_module);
 void gmi_gear_set_start(gm_gear *gear, double start_radius);
 void gmi_gear_set_start_roll_length(gm_gear *gear, double start_roll_length);
 void gmi_gear_set_thickness(gm_gear *gear, double normal_thickness, double helix_angle,
@@ -72,6 +77,11 @@ void gmi_gear_set_thickness(gm_gear *gear, double normal_thickness, double helix
 void gmi_gear_set_tip_thickness(gm_gear *gear, double helix_angle);
 
 /* meshing.c: two gears at a centre distance. */
+
+/* Of both base radii: the sum, and below 0 the difference of a ring's pair (m). */
+static inline double gmi_base_sum(const gm_pair *pair) {
+    return pair->pinion.base_radius + pair->wheel.sign * pair->wheel.base_radius;
+}
 
 /*
  * What depends on the centre distance, the gears staying as drawn; the names are those of gm_pair. At the drawing's own
@@ -93,24 +103,41 @@ typedef struct gmi_meshing {
     double tip_clearance[2];        /* [enum gm_role] from this gear's tip to the mate's root (m) */
 } gmi_meshing;
 
-/* 1 if the gears mesh there: the base circles are apart and the path of contact is longer than 0; else 0. */
+/* 1 if the gears mesh there: the line of action and the path of contact on it are longer than 0; else 0. */
 int gmi_meshing_find(const gm_pair *pair, double center_distance, gmi_meshing *meshing);
+
+/* What is in the way of a ring's pair. */
+enum gmi_interference {
+    GMI_CLEAR,
+    GMI_INVOLUTE_INTERFERENCE, /* the ring's tip reaches beyond the pinion's tangent point */
+    GMI_TROCHOID_INTERFERENCE, /* the tips meet beside the path of contact */
+    GMI_TRIMMING               /* the tips meet when the pinion is moved in along the centre line */
+};
+
+enum gmi_interference gmi_meshing_interference(const gm_pair *pair, const gmi_meshing *meshing);
+
+/* Where the active profile starts: as given, else where it meets the mate's tip; T of a ring's pair is below 0 (m). */
+double gmi_start_roll_length(const gm_gear *gear, const gm_gear *mate, double line_of_action);
 
 /* The first part of it, which needs no teeth: line_of_action, working_pressure_angle, involute_difference. */
 void gmi_meshing_find_angles(const gm_pair *pair, double center_distance, gmi_meshing *meshing);
 
 /*
  * The pair as it is posed: all of it that moves. t1 runs over the common face of the drawing, also where the faces have
- * moved against each other. Without a pose it is the drawing, to the last bit.
+ * moved against each other. Without a pose it is the drawing, to the last bit. The signs are those of ISO 21771, so that
+ * what evaluates it knows nothing of rings: lengths of a ring, the centre distance and T are then below 0.
  */
 typedef struct gmi_engagement {
-    double center_distance;               /* (m) */
+    double center_distance;               /* x of the wheel's axis (m) */
     double working_pressure_angle;        /* alpha_wt (rad) */
-    double line_of_action;                /* T (m) */
+    double line_of_action;                /* T = rho_p + rho_w of points that touch (m) */
+    double wheel_base_radius;             /* (m) */
     double backlash;                      /* (m) */
     double phase_origin[2];               /* [side] as in gm_pair (m) */
     double start_roll_length[2];          /* [enum gm_role] where the active profile begins (m) */
     int start_follows[2];                 /* 1 where that follows the mate's tip as T changes */
+    double tip_roll_length[2];            /* [enum gm_role] where it ends (m) */
+    double wheel_profile_start;           /* roll length of the wheel's t2 = 0 (m) */
     double face_from, face_to;            /* t1 between which both gears have a face */
     double face_origin[2], face_scale[2]; /* [enum gm_role] own t1 = face_origin + face_scale t1 */
 

@@ -28,7 +28,9 @@ static double flexibility(const gm_pair *pair) {
     /* Teeth of the spur gears that the normal section shows: z_n = z / (cos^2(beta_b) cos(beta)). */
     const double cos_base = cos(pair->base_helix_angle);
     const double normal_teeth = 1.0 / (cos_base * cos_base * cos(pair->helix_angle));
-    const double z1 = first->teeth * normal_teeth, z2 = second->teeth * normal_teeth;
+    const double z1 = first->teeth * normal_teeth;
+    const double z2 = second->sign < 0.0 ? HUGE_VAL /* as the standard wants a ring */
+                                         : second->teeth * normal_teeth;
 
     return 0.04723 + 0.15551 / z1 + 0.25791 / z2 - (0.00635 + 0.11654 / z1) * x1 -
            (0.00193 + 0.24188 / z2) * x2 + 0.00529 * x1 * x1 + 0.00182 * x2 * x2;

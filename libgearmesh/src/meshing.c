@@ -14,7 +14,7 @@
  * its digits when both nearly agree.
  */
 void gmi_meshing_find_angles(const gm_pair *pair, double center_distance, gmi_meshing *meshing) {
-    const double base_sum = pair->pinion.base_radius + pair->wheel.base_radius;
+    const double base_sum = fabs(gmi_base_sum(pair));
     const double alpha_t = pair->transverse_pressure_angle;
 
     /* The right triangle of centre distance, base radii and line of action [Paper, Eq. 23]. */
@@ -30,33 +30,39 @@ void gmi_meshing_find_angles(const gm_pair *pair, double center_distance, gmi_me
     meshing->involute_difference = sin(difference) / (cos(alpha_w) * cos(alpha_t)) - difference;
 }
 
-/* A start radius that is given stays; else the profile starts where it meets the mate's tip. */
-static double start_roll_length(const gm_gear *gear, const gm_gear *mate, double line_of_action) {
-    return gear->start_is_given ? gear->start_roll_length
-                                : fmax(line_of_action - mate->tip_roll_length, 0.0);
+double gmi_start_roll_length(const gm_gear *gear, const gm_gear *mate, double line_of_action) {
+    if (gear->start_is_given) {
+        return gear->start_roll_length;
+    }
+    const double of_mate = mate->sign * mate->tip_roll_length;
+    return fmax(gear->sign * (line_of_action - of_mate), 0.0);
 }
 
 int gmi_meshing_find(const gm_pair *pair, double center_distance, gmi_meshing *meshing) {
     const gm_gear *pinion = &pair->pinion;
     const gm_gear *wheel = &pair->wheel;
-    const double base_sum = pinion->base_radius + wheel->base_radius;
-    if (!(center_distance > base_sum)) {
+    const double base_sum = gmi_base_sum(pair);
+    if (!(center_distance > fabs(base_sum))) {
         return 0;
     }
     gmi_meshing_find_angles(pair, center_distance, meshing);
-    const double length = meshing->line_of_action;
+
+    /* Below 0 with a ring. */
+    const double sign = wheel->sign;
+    const double length = sign * meshing->line_of_action;
+    const double wheel_axis = sign * center_distance;
 
     /* Spreading the axes opens the backlash of the drawing. */
     meshing->backlash = pair->backlash +
                         2.0 * base_sum * (meshing->involute_difference - pair->involute_difference);
 
     /* Path of contact: where both active profiles are. */
-    const double pinion_start = start_roll_length(pinion, wheel, length);
-    const double wheel_start = start_roll_length(wheel, pinion, length);
+    const double pinion_start = gmi_start_roll_length(pinion, wheel, length);
+    const double wheel_start = gmi_start_roll_length(wheel, pinion, length);
     meshing->start_roll_length[GM_PINION] = pinion_start;
     meshing->start_roll_length[GM_WHEEL] = wheel_start;
-    meshing->path_start = fmax(pinion_start, length - wheel->tip_roll_length);
-    meshing->path_end = fmin(pinion->tip_roll_length, length - wheel_start);
+    meshing->path_start = fmax(pinion_start, length - sign * wheel->tip_roll_length);
+    meshing->path_end = fmin(pinion->tip_roll_length, length - sign * wheel_start);
     meshing->transverse_contact_ratio =
         (meshing->path_end - meshing->path_start) / pair->transverse_base_pitch;
 
@@ -69,12 +75,87 @@ int gmi_meshing_find(const gm_pair *pair, double center_distance, gmi_meshing *m
     meshing->phase_origin[GM_COAST] = at_zero - advance;
 
     /* On the centre line. */
-    const double spread = center_distance / base_sum; /* 1 / cos(alpha_wt) */
+    const double spread = wheel_axis / base_sum; /* 1 / cos(alpha_wt) */
     meshing->working_pitch_radius[GM_PINION] = pinion->base_radius * spread;
     meshing->working_pitch_radius[GM_WHEEL] = wheel->base_radius * spread;
-    meshing->tip_clearance[GM_PINION] = center_distance - pinion->tip_radius - wheel->root_radius;
-    meshing->tip_clearance[GM_WHEEL] = center_distance - wheel->tip_radius - pinion->root_radius;
+    meshing->tip_clearance[GM_PINION] = wheel_axis - pinion->tip_radius - sign * wheel->root_radius;
+    meshing->tip_clearance[GM_WHEEL] = wheel_axis - sign * wheel->tip_radius - pinion->root_radius;
     return meshing->path_end > meshing->path_start;
+}
+
+/* ---------------------------------------------------------------------------------------------
+ * What is in the way of a ring's pair
+ * ------------------------------------------------------------------------------------------- */
+
+/*
+ * The tip corners of two flanks that touch, or of two that touch each other's mirror image, by their polar angles about
+ * their own axes from the centre line: theta_p and theta_w. Involutes that touch in the pitch point at angles A and B
+ * have A r_bp = B r_bw, and from there to the tip the flank turns by inv(alpha_wt) - inv(alpha_a).
+ */
+typedef struct tip_corners {
+    double pinion_turn, wheel_turn; /* inv(alpha_wt) - inv(alpha_a) (rad) */
+    double ratio;                   /* r_bp / r_bw */
+    double gap; /* how far the ring's flank is turned away from the pinion's (rad) */
+} tip_corners;
+
+static double turn_to_tip(const gm_gear *gear, double working_involute) {
+    return working_involute - gmi_involute(atan2(gear->tip_roll_length, gear->base_radius));
+}
+
+/* Polar angle of the ring's corner when the pinion's is at theta_p. */
+static double corner_of_ring(const tip_corners *corners, double theta_p) {
+    return (theta_p - corners->pinion_turn) * corners->ratio + corners->wheel_turn + corners->gap;
+}
+
+/* Flanks in contact: the pinion's corner passes the ring's tip circle before or behind the ring's corner. */
+static int tips_meet_beside_path(const gm_pair *pair, const gmi_meshing *meshing,
+                                 const tip_corners *corners) {
+    const double a = meshing->center_distance;
+    const double r_p = pair->pinion.tip_radius, r_w = pair->wheel.tip_radius;
+    const double cos_p = (r_w * r_w - r_p * r_p - a * a) / (2.0 * a * r_p);
+    const double cos_w = (a * a + r_w * r_w - r_p * r_p) / (2.0 * a * r_w);
+    if (!(fabs(cos_p) <= 1.0 && fabs(cos_w) <= 1.0)) {
+        return 1; /* the tip circles do not cross: the pinion fills the ring */
+    }
+    return corner_of_ring(corners, acos(cos_p)) < acos(cos_w);
+}
+
+/*
+ * Pinion moved in along the centre line, backlash on both sides alike: the corners must not stand higher than those of
+ * the ring. The way left, r_aw sin(theta_w) - r_ap sin(theta_p), is least as the gears turn where both heights are the
+ * same y with y^2 (1 - ratio^2) = r_ap^2 - ratio^2 r_aw^2.
+ */
+static int tips_meet_on_way_in(const gm_pair *pair, const tip_corners *corners) {
+    const double r_p = pair->pinion.tip_radius, r_w = pair->wheel.tip_radius;
+    const double k = corners->ratio;
+    const double height_squared = (r_p * r_p - k * k * r_w * r_w) / (1.0 - k * k);
+    if (!(height_squared > 0.0 && height_squared < r_p * r_p)) {
+        return 0;
+    }
+    const double height = sqrt(height_squared);
+    return corner_of_ring(corners, asin(height / r_p)) < asin(height / r_w);
+}
+
+enum gmi_interference gmi_meshing_interference(const gm_pair *pair, const gmi_meshing *meshing) {
+    if (pair->wheel.sign > 0.0) {
+        return GMI_CLEAR;
+    }
+    if (!(pair->wheel.tip_roll_length > meshing->line_of_action)) {
+        return GMI_INVOLUTE_INTERFERENCE;
+    }
+
+    const double working_involute = gmi_involute(meshing->working_pressure_angle);
+    tip_corners corners = {
+        turn_to_tip(&pair->pinion, working_involute),
+        turn_to_tip(&pair->wheel, working_involute),
+        pair->pinion.base_radius / pair->wheel.base_radius,
+        0.0,
+    };
+    if (tips_meet_beside_path(pair, meshing, &corners)) {
+        return GMI_TROCHOID_INTERFERENCE;
+    }
+    corners.gap = 0.5 * meshing->backlash / pair->wheel.base_radius;
+    return tips_meet_on_way_in(pair, &corners) ? GMI_TRIMMING : GMI_CLEAR;
 }
 
 /* ---------------------------------------------------------------------------------------------
@@ -89,11 +170,14 @@ static gmi_engagement drawn(const gm_pair *pair) {
         .center_distance = pair->center_distance,
         .working_pressure_angle = pair->working_pressure_angle,
         .line_of_action = pair->line_of_action,
+        .wheel_base_radius = wheel->base_radius,
         .backlash = pair->backlash,
         .phase_origin = {pair->phase_origin[GM_DRIVE], pair->phase_origin[GM_COAST]},
         .start_roll_length = {pinion->start_roll_length, wheel->start_roll_length},
         .start_follows = {!pinion->start_is_given && pinion->start_roll_length > 0.0,
                           !wheel->start_is_given && wheel->start_roll_length > 0.0},
+        .tip_roll_length = {pinion->tip_roll_length, wheel->tip_roll_length},
+        .wheel_profile_start = wheel->start_roll_length,
         .face_from = 0.0,
         .face_to = 1.0,
         .face_origin = {(pair->face_start - pinion->face_start) / pinion->face_width,
@@ -104,11 +188,29 @@ static gmi_engagement drawn(const gm_pair *pair) {
     return at;
 }
 
+/* The one place where a ring's lengths get their sign. */
+static void give_signs(const gm_pair *pair, gmi_engagement *at) {
+    const double sign = pair->wheel.sign;
+    at->center_distance *= sign;
+    at->line_of_action *= sign;
+    at->wheel_base_radius *= sign;
+    at->start_roll_length[GM_WHEEL] *= sign;
+    at->tip_roll_length[GM_WHEEL] *= sign;
+    at->wheel_profile_start *= sign;
+}
+
 /* Axes at another distance and in another direction: exact, as it is another drawing of the same gears. */
 static int move_axes(const gm_pair *pair, double along_x, double along_y, gmi_engagement *at) {
-    const double distance = hypot(pair->center_distance + along_x, along_y);
+    /* Of the wheel's axis from the pinion's; a ring's is on the other side, where distances are below 0. */
+    const double sign = pair->wheel.sign;
+    const double apart = pair->center_distance + sign * along_x;
+    const double distance = hypot(apart, along_y);
     gmi_meshing moved;
     if (!gmi_meshing_find(pair, distance, &moved)) {
+        return GM_POSE_OUT_OF_MESH;
+    }
+    const enum gmi_interference found = gmi_meshing_interference(pair, &moved);
+    if (found == GMI_INVOLUTE_INTERFERENCE || found == GMI_TROCHOID_INTERFERENCE) {
         return GM_POSE_OUT_OF_MESH;
     }
 
@@ -131,12 +233,11 @@ static int move_axes(const gm_pair *pair, double along_x, double along_y, gmi_en
         at->start_follows[k] = !gears[k]->start_is_given && moved.start_roll_length[k] > 0.0;
     }
 
-    /* Both gears have turned back by the direction of the axes: phi_p - psi, phi_w + psi. */
-    const double psi = atan2(along_y, pair->center_distance + along_x);
-    const double r_bp = pair->pinion.base_radius;
+    /* Both gears have turned back by the direction of the axes: phi_p - psi, and phi_w + psi, or - psi with a ring. */
+    const double psi = atan2(sign * along_y, apart);
     at->axis_direction = psi;
-    at->phase_shift = -r_bp * psi;
-    at->offset_shift = -(r_bp + pair->wheel.base_radius) * psi;
+    at->phase_shift = -pair->pinion.base_radius * psi;
+    at->offset_shift = -gmi_base_sum(pair) * psi;
     return GM_OK;
 }
 
@@ -188,6 +289,7 @@ static int tilt_axis(const gm_pair *pair, const gm_pose *pose, gmi_engagement *a
 int gmi_engagement_find(const gm_pair *pair, const gm_pose *pose, gmi_engagement *engagement) {
     *engagement = drawn(pair);
     if (pose == NULL) {
+        give_signs(pair, engagement);
         return GM_OK;
     }
     const double along_x = pose->center_distance_change;
@@ -209,5 +311,6 @@ int gmi_engagement_find(const gm_pair *pair, const gm_pose *pose, gmi_engagement
     if (status == GM_OK && (pose->skew != 0.0 || pose->inclination != 0.0)) {
         status = tilt_axis(pair, pose, engagement);
     }
+    give_signs(pair, engagement);
     return status;
 }

@@ -74,27 +74,46 @@ static const gear_fields fields_of[2] = {
     [GM_PINION] = FIELDS_OF("pinion"), [GM_WHEEL] = FIELDS_OF("wheel")};
 
 static gear_params params_of(const gm_pair_params *p, enum gm_role role) {
-    const gear_params pinion = {p->pinion_teeth,
-                                p->pinion_face_width,
-                                p->pinion_profile_shift,
-                                p->pinion_normal_thickness,
-                                p->pinion_rack_addendum,
-                                p->pinion_rack_dedendum,
-                                p->pinion_rack_fillet_radius,
-                                p->pinion_tip_alteration,
-                                p->pinion_tip_radius,
-                                p->pinion_start_radius};
-    const gear_params wheel = {p->wheel_teeth,
-                               p->wheel_face_width,
-                               p->wheel_profile_shift,
-                               p->wheel_normal_thickness,
-                               p->wheel_rack_addendum,
-                               p->wheel_rack_dedendum,
-                               p->wheel_rack_fillet_radius,
-                               p->wheel_tip_alteration,
-                               p->wheel_tip_radius,
-                               p->wheel_start_radius};
-    return role == GM_PINION ? pinion : wheel;
+    if (role == GM_PINION) {
+        const gear_params pinion = {
+            .teeth = p->pinion_teeth,
+            .face_width = p->pinion_face_width,
+
+            /* The teeth. */
+            .profile_shift = p->pinion_profile_shift,
+            .normal_thickness = p->pinion_normal_thickness,
+
+            /* What cut them. */
+            .rack_addendum = p->pinion_rack_addendum,
+            .rack_dedendum = p->pinion_rack_dedendum,
+            .rack_fillet_radius = p->pinion_rack_fillet_radius,
+
+            /* Where their flanks end. */
+            .tip_alteration = p->pinion_tip_alteration,
+            .tip_radius = p->pinion_tip_radius,
+            .start_radius = p->pinion_start_radius,
+        };
+        return pinion;
+    }
+    const gear_params wheel = {
+        .teeth = p->wheel_teeth,
+        .face_width = p->wheel_face_width,
+
+        /* The teeth. */
+        .profile_shift = p->wheel_profile_shift,
+        .normal_thickness = p->wheel_normal_thickness,
+
+        /* What cut them. */
+        .rack_addendum = p->wheel_rack_addendum,
+        .rack_dedendum = p->wheel_rack_dedendum,
+        .rack_fillet_radius = p->wheel_rack_fillet_radius,
+
+        /* Where their flanks end. */
+        .tip_alteration = p->wheel_tip_alteration,
+        .tip_radius = p->wheel_tip_radius,
+        .start_radius = p->wheel_start_radius,
+    };
+    return wheel;
 }
 
 static gm_gear *gear_of(gm_pair *pair, enum gm_role role) {
@@ -115,26 +134,35 @@ void gm_pair_params_default(gm_pair_params *params) {
     }
     const double missing = gmi_nan();
     const gm_pair_params defaults = {
+        /* Of the pair. */
         .base_helix = GM_BASE_HELIX_ISO,
         .normal_module = missing,
         .normal_pressure_angle = missing,
         .helix_angle = 0.0,
         .center_distance = missing,
+
+        /* The faces. */
         .face_width = missing,
         .pinion_face_width = missing,
         .wheel_face_width = missing,
         .axial_offset = 0.0,
+
+        /* The thickness of the teeth. */
         .pinion_profile_shift = missing,
         .wheel_profile_shift = missing,
         .backlash = missing,
         .pinion_normal_thickness = missing,
         .wheel_normal_thickness = missing,
+
+        /* The basic racks. */
         .pinion_rack_addendum = missing,
         .wheel_rack_addendum = missing,
         .pinion_rack_dedendum = missing,
         .wheel_rack_dedendum = missing,
         .pinion_rack_fillet_radius = missing,
         .wheel_rack_fillet_radius = missing,
+
+        /* Where the flanks end. */
         .pinion_tip_alteration = missing,
         .wheel_tip_alteration = missing,
         .pinion_tip_radius = missing,
@@ -147,6 +175,11 @@ void gm_pair_params_default(gm_pair_params *params) {
 
 static int is_teeth(int teeth) {
     return teeth >= GMI_SMALLEST_TEETH && teeth <= GMI_LARGEST_TEETH;
+}
+
+/* Of the wheel, which may be a ring. */
+static int is_wheel_teeth(int teeth) {
+    return is_teeth(teeth) || (teeth >= -GMI_LARGEST_TEETH && teeth <= -GMI_SMALLEST_TEETH);
 }
 
 static int is_length(double value) {
@@ -195,12 +228,13 @@ static const char length_requirement[] = "a length from 1e-6 to 1e9 m";
 
 /* Each parameter of the pair by itself. */
 static problem check_pair_fields(const gm_pair_params *p) {
-    static const char teeth[] = "a whole number from 3 to 100000";
     const double degree = GMI_PI / 180.0;
     const int both_widths_given = !isnan(p->pinion_face_width) && !isnan(p->wheel_face_width);
     const check checks[] = {
-        {is_teeth(p->pinion_teeth), "pinion_teeth", teeth},
-        {is_teeth(p->wheel_teeth), "wheel_teeth", teeth},
+        /* Teeth and their normal section. */
+        {is_teeth(p->pinion_teeth), "pinion_teeth", "a whole number from 3 to 100000"},
+        {is_wheel_teeth(p->wheel_teeth), "wheel_teeth",
+         "a whole number from 3 to 100000, or from -100000 to -3 for a ring"},
         {p->base_helix == GM_BASE_HELIX_ISO || p->base_helix == GM_BASE_HELIX_PAPER, "base_helix",
          "GM_BASE_HELIX_ISO or GM_BASE_HELIX_PAPER"},
         {is_length(p->normal_module), "normal_module", length_requirement},
@@ -208,6 +242,8 @@ static problem check_pair_fields(const gm_pair_params *p) {
          "normal_pressure_angle", "an angle between 0 and 45 degrees"},
         {fabs(p->helix_angle) < 60.0 * degree, "helix_angle",
          "an angle between -60 and 60 degrees"},
+
+        /* Where the gears are, and how wide. */
         {is_length(p->center_distance), "center_distance", length_requirement},
         {is_length(p->face_width) || (isnan(p->face_width) && both_widths_given), "face_width",
          length_requirement},
@@ -225,13 +261,18 @@ static problem check_gear_fields(const gm_pair_params *params, enum gm_role role
     const gear_params p = params_of(params, role);
     const gear_fields *field = &fields_of[role];
     const check checks[] = {
+        /* Face and thickness of the teeth. */
         {is_optional_length(p.face_width), field->face_width, length_requirement},
         {is_optional_within(p.profile_shift, LARGEST_SHIFT), field->profile_shift,
          "a number from -1000 to 1000"},
         {is_optional_length(p.normal_thickness), field->normal_thickness, length_requirement},
+
+        /* Basic rack. */
         {is_optional_rack(p.rack_addendum), field->rack_addendum, rack},
         {is_optional_rack(p.rack_dedendum), field->rack_dedendum, rack},
         {is_optional_rack(p.rack_fillet_radius), field->rack_fillet_radius, rack},
+
+        /* Where the flanks end. */
         {is_optional_within(p.tip_alteration, LARGEST_RACK), field->tip_alteration,
          "a number of modules from -10 to 10"},
         {is_optional_length(p.tip_radius), field->tip_radius, length_requirement},
@@ -318,9 +359,10 @@ static void derive_sections(gm_pair *pair, const gm_pair_params *p) {
 
     gmi_gear_init(&pair->pinion, p->pinion_teeth, pair->transverse_module, alpha_t);
     gmi_gear_init(&pair->wheel, p->wheel_teeth, pair->transverse_module, alpha_t);
-    pair->hunting_passes = hunting_passes(p->pinion_teeth, p->wheel_teeth);
+    pair->hunting_passes = hunting_passes(pair->pinion.teeth, pair->wheel.teeth);
     pair->transverse_base_pitch = GMI_PI * pair->transverse_module * cos(alpha_t);
-    pair->reference_center_distance = pair->pinion.reference_radius + pair->wheel.reference_radius;
+    pair->reference_center_distance =
+        fabs(pair->pinion.reference_radius + pair->wheel.sign * pair->wheel.reference_radius);
 
     /* [Paper, Eq. 6] divides by cos(alpha_t); right is the product [ISO21771]. */
     const double cos_transverse = cos(alpha_t);
@@ -420,7 +462,7 @@ static void derive_shifts(gm_pair *pair, const gm_pair_params *p) {
  * Tooth thicknesses and backlash along the line of action:
  *     p_bt - 2 r_bp psi_p - 2 r_bw psi_w + 2 (r_bp + r_bw) inv(alpha_wt)
  *   = 2 (r_bp + r_bw) (inv(alpha_wt) - inv(alpha_t)) - (s_np + s_nw - pi m_n) cos(alpha_t) / cos(beta),
- * the second form without cancellation of the large terms.
+ * the second form without cancellation of the large terms; r_bw of a ring is below 0.
  */
 static problem derive_thickness(gm_pair *pair, const gm_pair_params *p) {
     gm_gear *pinion = &pair->pinion;
@@ -438,8 +480,8 @@ static problem derive_thickness(gm_pair *pair, const gm_pair_params *p) {
 
     /* A backlash that is given thins both teeth alike. */
     const double along_line = cos(pair->transverse_pressure_angle) / cos(p->helix_angle);
-    pair->backlash = 2.0 * (pinion->base_radius + wheel->base_radius) * pair->involute_difference -
-                     (excess_p + excess_w) * along_line;
+    pair->backlash =
+        2.0 * gmi_base_sum(pair) * pair->involute_difference - (excess_p + excess_w) * along_line;
     if (!isnan(p->backlash)) {
         const double change = 0.5 * (pair->backlash - p->backlash) / along_line;
         excess_p += change;
@@ -455,12 +497,18 @@ static problem derive_thickness(gm_pair *pair, const gm_pair_params *p) {
 
 /*
  * Tip alteration that keeps the tip clearance of the basic rack when the axes are closer than the shifts ask for
- * [ISO21771, k m_n = a - a_0 - m_n (x_p + x_w)]; a tooth is not made longer.
+ * [ISO21771, k m_n = a - a_0 - m_n (x_p + x_w)], or further apart with a ring, where a and a_0 are below 0; a tooth is not
+ * made longer.
  */
 static double default_tip_alteration(const gm_pair *pair) {
-    const double spread =
-        (pair->center_distance - pair->reference_center_distance) / pair->normal_module;
-    return fmin(0.0, spread - (pair->pinion.profile_shift + pair->wheel.profile_shift));
+    const double spread = pair->wheel.sign *
+                          (pair->center_distance - pair->reference_center_distance) /
+                          pair->normal_module;
+    const double k = spread - (pair->pinion.profile_shift + pair->wheel.profile_shift);
+
+    /* What axes and shifts that agree leave is none. */
+    const double rounding = 8.0 * DBL_EPSILON * pair->center_distance / pair->normal_module;
+    return k < -rounding ? k : 0.0;
 }
 
 /* Root circle, tip circle and what is left of the tooth there. */
@@ -475,10 +523,7 @@ static problem derive_tip(gm_pair *pair, const gm_pair_params *params, enum gm_r
     }
 
     /* r_a = r + m_n (h_aP + x + k) where the drawing gives no tip [ISO21771]. */
-    const double k = or_else(p.tip_alteration, default_tip_alteration(pair));
-    const double height = gear->rack_addendum + gear->profile_shift + k;
-    gmi_gear_set_tip(gear,
-                     or_else(p.tip_radius, gear->reference_radius + pair->normal_module * height),
+    gmi_gear_set_tip(gear, p.tip_radius, or_else(p.tip_alteration, default_tip_alteration(pair)),
                      pair->normal_module);
     gmi_gear_set_tip_thickness(gear, pair->helix_angle);
     if (gear->tip_roll_length > 0.0) {
@@ -499,17 +544,42 @@ static problem derive_start(gm_pair *pair, const gm_pair_params *params, enum gm
     if (gear->start_is_given) {
         gmi_gear_set_start(gear, p.start_radius);
     } else {
-        gmi_gear_set_start_roll_length(gear, pair->line_of_action - mate->tip_roll_length);
+        const double line_of_action = pair->wheel.sign * pair->line_of_action;
+        gmi_gear_set_start_roll_length(gear, gmi_start_roll_length(gear, mate, line_of_action));
     }
 
-    if (gear->start_roll_length < gear->tip_roll_length) {
+    /* The teeth of a ring begin outside. */
+    const double length = gear->tip_roll_length - gear->start_roll_length;
+    if (gear->sign * length > 0.0) {
         return no_problem;
     }
     return gear->start_is_given
                ? geometry_problem(fields_of[role].start_radius,
-                                  "a radius smaller than the tip radius")
+                                  gear->sign < 0.0 ? "a radius larger than the ring's tip radius"
+                                                   : "a radius smaller than the tip radius")
                : geometry_problem(fields_of[role].tip_radius,
                                   "a radius at which the tips of both gears reach each other");
+}
+
+/* The gears of a ring's pair may meet where no flank does. */
+static problem interference_problem(enum gmi_interference found) {
+    switch (found) {
+    case GMI_INVOLUTE_INTERFERENCE:
+        return geometry_problem("wheel_tip_radius",
+                                "a larger radius: the ring's tip reaches beyond the pinion's "
+                                "tangent point (involute interference)");
+    case GMI_TROCHOID_INTERFERENCE:
+        return geometry_problem("wheel_teeth",
+                                "a ring with more teeth, or shorter ones: the tips meet beside the "
+                                "path of contact (trochoid interference)");
+    case GMI_TRIMMING:
+        return geometry_problem("wheel_teeth",
+                                "a ring with more teeth, or shorter ones: the tips meet when the "
+                                "pinion is moved in along the centre line (trimming)");
+    case GMI_CLEAR:
+        break;
+    }
+    return no_problem;
 }
 
 /* Path of contact at zero penetration and contact ratios [ISO21771]. */
@@ -536,7 +606,7 @@ static problem derive_path(gm_pair *pair) {
         return geometry_problem("face_width",
                                 "a width that gives a total contact ratio below 1000");
     }
-    return no_problem;
+    return interference_problem(gmi_meshing_interference(pair, &nominal));
 }
 
 /* Absurd thicknesses and distances put the flanks of the teeth at zero angles far from where they meet. */
@@ -582,6 +652,20 @@ static problem check_finite(const gm_pair *pair) {
     return no_problem;
 }
 
+/* A line of action needs base circles that lie apart, one inside the other with a ring. */
+static problem check_distance(const gm_pair *pair, const gm_pair_params *p) {
+    if (pair->wheel.sign < 0.0 && pair->wheel.teeth <= pair->pinion.teeth) {
+        return geometry_problem("wheel_teeth", "a ring with more teeth than the pinion");
+    }
+    if (p->center_distance > fabs(gmi_base_sum(pair))) {
+        return no_problem;
+    }
+    return geometry_problem("center_distance",
+                            pair->wheel.sign < 0.0
+                                ? "a distance larger than the difference of the base radii"
+                                : "a distance larger than the sum of the base radii");
+}
+
 static problem derive(gm_pair *pair, const gm_pair_params *params) {
     problem found = check_fields(params);
     if (found.field != NULL) {
@@ -602,9 +686,9 @@ static problem derive(gm_pair *pair, const gm_pair_params *params) {
     }
 
     /* Both at the centre distance of the drawing. */
-    if (!(params->center_distance > pair->pinion.base_radius + pair->wheel.base_radius)) {
-        return geometry_problem("center_distance",
-                                "a distance larger than the sum of the base radii");
+    found = check_distance(pair, params);
+    if (found.field != NULL) {
+        return found;
     }
     derive_angles(pair, params->center_distance);
     derive_shifts(pair, params);
@@ -632,20 +716,29 @@ static gm_gear gear_nan(void) {
     const gm_gear gear = {
         .teeth = 0,
         .start_is_given = 0,
+
+        /* Sign, shift, basic rack and tip alteration. */
+        .sign = nan,
         .profile_shift = nan,
         .rack_addendum = nan,
         .rack_dedendum = nan,
         .rack_fillet_radius = nan,
         .tip_alteration = nan,
+
+        /* Circles. */
         .reference_radius = nan,
         .base_radius = nan,
         .root_radius = nan,
         .tip_radius = nan,
         .start_radius = nan,
+
+        /* Teeth on them. */
         .normal_thickness = nan,
         .base_half_thickness = nan,
         .tip_thickness = nan,
         .normal_tip_thickness = nan,
+
+        /* Flank, pitch and face. */
         .start_roll_length = nan,
         .tip_roll_length = nan,
         .pitch_angle = nan,
@@ -662,6 +755,8 @@ static gm_pair pair_nan(void) {
     const gm_pair pair = {
         .pinion = gear,
         .wheel = gear,
+
+        /* From the gears alone: sections, */
         .normal_module = nan,
         .transverse_module = nan,
         .normal_pressure_angle = nan,
@@ -669,21 +764,29 @@ static gm_pair pair_nan(void) {
         .helix_angle = nan,
         .base_helix_angle = nan,
         .transverse_base_pitch = nan,
+
+        /* the common face and what lies across it. */
         .face_width = nan,
         .face_start = nan,
         .face_advance = nan,
         .normal_to_transverse = nan,
         .hunting_passes = nan,
+
+        /* From the centre distance: line of action, */
         .center_distance = nan,
         .reference_center_distance = nan,
         .working_pressure_angle = nan,
         .involute_difference = nan,
         .line_of_action = nan,
+
+        /* path of contact, */
         .path_start = nan,
         .path_end = nan,
         .transverse_contact_ratio = nan,
         .overlap_ratio = nan,
         .total_contact_ratio = nan,
+
+        /* and how the teeth stand in each other. */
         .backlash = nan,
         .phase_origin = {nan, nan},
         .pinion_working_pitch_radius = nan,
@@ -735,8 +838,10 @@ static double root_form_roll_length(const gm_pair *pair, const gm_pair_params *p
 
     /* Depth below the reference circle. A rack of which nothing is said reaches a little deeper than the mate's tip. */
     const int rack_given = !isnan(p.rack_dedendum) || !isnan(p.rack_fillet_radius);
+    const double sign = pair->wheel.sign;
     const double needed =
-        (gear->reference_radius + mate->tip_radius - pair->center_distance) / pair->normal_module;
+        (gear->reference_radius + sign * mate->tip_radius - sign * pair->center_distance) /
+        pair->normal_module;
     const double depth =
         rack_given ? straight_rack_depth(gear, pair->normal_pressure_angle) - gear->profile_shift
                    : needed + STRAIGHT_RACK_EXTRA;
@@ -763,13 +868,15 @@ static int warnings_of_gear(const gm_pair *pair, const gm_pair_params *params, e
     const gear_warnings *flag = &flags[role];
     int warnings = 0;
 
-    /* Root: what the rack leaves of the involute. */
-    const double form = root_form_roll_length(pair, params, role);
-    if (form < 0.0) {
-        warnings |= flag->undercut;
-    }
-    if (gear->start_roll_length < form) {
-        warnings |= flag->root_form;
+    /* Root: what the rack leaves of the involute. No rack cuts a ring. */
+    if (gear->sign > 0.0) {
+        const double form = root_form_roll_length(pair, params, role);
+        if (form < 0.0) {
+            warnings |= flag->undercut;
+        }
+        if (gear->start_roll_length < form) {
+            warnings |= flag->root_form;
+        }
     }
     if (p.start_radius < gear->base_radius) {
         warnings |= flag->start_radius;

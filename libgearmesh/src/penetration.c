@@ -17,8 +17,9 @@
  * One side, prepared
  * ------------------------------------------------------------------------------------------- */
 
+/* From start to tip (m). */
 static double flank_length(const gm_gear *gear) {
-    return gear->tip_roll_length - gear->start_roll_length;
+    return gear->sign * (gear->tip_roll_length - gear->start_roll_length);
 }
 
 static int ramp_count(const gmi_tables *tables) {
@@ -258,7 +259,7 @@ void gmi_side_sum_tables(const gm_pair *pair, const gmi_engagement *at, const gm
         view.ends.face_from = HUGE_VAL;
         view.ends.face_to = -HUGE_VAL;
     }
-    view.wheel_reach = at->line_of_action + view.lines.delta - pair->wheel.start_roll_length;
+    view.wheel_reach = at->line_of_action + view.lines.delta - at->wheel_profile_start;
 
     /* Line by line, each with the teeth that meet on it; those that cannot reach each other are left out. */
     gmi_teeth teeth = gmi_lines_teeth(pair, side, position, &view.lines);

@@ -58,7 +58,7 @@ static tilted tilted_of(const gm_pair *pair, const gmi_engagement *at, int side,
     line.tau = advance / pair->face_width;
     line.length = at->line_of_action;
     line.r_bp = pair->pinion.base_radius;
-    line.r_bw = pair->wheel.base_radius;
+    line.r_bw = at->wheel_base_radius;
     line.rho_p = (straight){rho_origin, advance};
     line.rho_w = (straight){line.length - rho_origin, -advance};
     line.zeta = (straight){pair->face_start - at->face_center, pair->face_width};
@@ -97,17 +97,17 @@ static gmi_interval limits_of(const gm_pair *pair, const gmi_engagement *at, int
     const gm_gear *pinion = &pair->pinion, *wheel = &pair->wheel;
     switch (place) {
     case ROLL_PINION:
-        return (gmi_interval){at->start_roll_length[GM_PINION], pinion->tip_roll_length};
+        return (gmi_interval){at->start_roll_length[GM_PINION], at->tip_roll_length[GM_PINION]};
     case ROLL_WHEEL:
-        return (gmi_interval){at->start_roll_length[GM_WHEEL], wheel->tip_roll_length};
+        return (gmi_interval){at->start_roll_length[GM_WHEEL], at->tip_roll_length[GM_WHEEL]};
     case FACE_PINION:
         return (gmi_interval){0.0, pinion->face_width};
     case FACE_WHEEL:
         return (gmi_interval){-0.5 * wheel->face_width, 0.5 * wheel->face_width};
     case TABLE_PINION:
-        return (gmi_interval){pinion->start_roll_length, pinion->tip_roll_length};
+        return (gmi_interval){pinion->start_roll_length, at->tip_roll_length[GM_PINION]};
     default:
-        return (gmi_interval){wheel->start_roll_length, wheel->tip_roll_length};
+        return (gmi_interval){at->wheel_profile_start, at->tip_roll_length[GM_WHEEL]};
     }
 }
 
@@ -244,8 +244,10 @@ double gmi_tilt_bound(const gm_pair *pair, const gmi_engagement *at, int side) {
     const double length = fabs(line.length), r_bw = fabs(line.r_bw);
     const double gain = 1.0 + line.tau * line.g;
 
-    /* rho_w runs from 0 to the wheel's tip, or a little beyond. */
-    const double rho_w = fmax(fabs(pair->wheel.tip_roll_length), length);
+    /* rho_w runs from 0 to the wheel's tip, or a little beyond; on a ring from the tip to the start. */
+    const double tip_or_start =
+        fmax(fabs(at->tip_roll_length[GM_WHEEL]), fabs(at->start_roll_length[GM_WHEEL]));
+    const double rho_w = fmax(tip_or_start, length);
     const double zeta = fmax(fabs(line.zeta.at_zero), fabs(line.zeta.at_zero + line.zeta.per_t1));
     const double u = zeta + tau * rho_w;
     const double first_order = fabs(gain) * g * u - gain * line.tau * line.a * line.r_bw;

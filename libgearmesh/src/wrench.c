@@ -39,7 +39,7 @@ void gmi_wrench_add_side(const gm_pair *pair, const gmi_engagement *at, const gm
     const double d = at->center_distance;
     const double on_wheel_force[3] = {f_x, f_y, f_z};
     const double about_pinion[3] = {m_x, m_y, m_z};
-    const double about_wheel[3] = {m_x, m_y + d * f_z, -force * sign * pair->wheel.base_radius};
+    const double about_wheel[3] = {m_x, m_y + d * f_z, -force * sign * at->wheel_base_radius};
 
     /* What acts on the wheel acts on the pinion the other way. */
     for (int k = 0; k < 3; ++k) {

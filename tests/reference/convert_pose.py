@@ -5,7 +5,7 @@
 
     convert_pose.py pose.json > pose.txt
 
-Internal gears are left out. Numbers are written so that they give the same double back.
+Numbers are written so that they give the same double back.
 """
 import json
 import sys
@@ -32,8 +32,6 @@ def main():
     sys.stdout.write(HEAD)
     for case in cases:
         gears, pose = case["gears"], case["pose"]
-        if gears["wheel_teeth"] < 0:
-            continue
 
         def length(name, unit=MM):
             return gears[name] * unit if name in gears else float("nan")

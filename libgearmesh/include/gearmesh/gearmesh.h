@@ -5,8 +5,8 @@
  * @file gearmesh.h
  * The open gear mesh element: contact of two real, measured, helical gears for any solver.
  *
- * The library answers one question: given the two rotation angles of an external pair of involute
- * gears, how deep do the teeth press into each other, how does that change with both angles, and
+ * The library answers one question: given the two rotation angles of a pair of involute
+ * gears, external or a pinion in a ring, how deep do the teeth press into each other, how does that change with both angles, and
  * which force and wrench follow. Every tooth may have a measured flank of its own.
  *
  * ## The call
@@ -39,6 +39,8 @@
  * - Mesh coordinate x = r_bp phi_p - r_bw phi_w. The drive flanks touch for x > backlash / 2, the
  *   coast flanks for x < -backlash / 2. The transmission error shown to users is -x.
  * - helix_angle > 0: the pinion is right-handed (the wheel left-handed).
+ * - A ring (wheel_teeth < 0) has its axis at x = -center_distance, wheel_angle > 0 is counter-clockwise, and both
+ *   gears have the same hand. All lengths stay above 0.
  * - t1 in [0, 1] runs along the face of each gear, t1 = (z - face_start) / face_width; t2 in [0, 1]
  *   is uniform in the roll angle from the start radius to the tip radius. Flank deviation > 0:
  *   material added.
@@ -143,12 +145,12 @@ enum gm_base_helix {
  */
 typedef struct gm_pair_params {
     int pinion_teeth;             /**< z_p, 3 .. 100000, required */
-    int wheel_teeth;              /**< z_w, 3 .. 100000, required */
+    int wheel_teeth;              /**< z_w, 3 .. 100000, or -100000 .. -3: a ring, required */
     int base_helix;               /**< enum gm_base_helix [GM_BASE_HELIX_ISO] */
     double normal_module;         /**< m_n, m, required */
     double normal_pressure_angle; /**< alpha_n, rad, 0 < alpha_n < 45 deg, required */
     double helix_angle;           /**< beta, rad, |beta| < 60 deg, > 0: right-handed pinion [0] */
-    double center_distance;       /**< d, m, > r_bp + r_bw, required */
+    double center_distance;       /**< d, m, > r_bp + r_bw, of a ring > r_bw - r_bp, required */
     double face_width;        /**< b, common to both gears, m, required unless the face widths of
                                         both gears are given */
     double pinion_face_width; /**< b_p of the pinion alone, m [NaN: face_width] */
@@ -199,8 +201,10 @@ typedef struct gm_pair_params {
  * What belongs to one gear alone, as drawn. Nothing of it moves with a pose. Read-only after gm_pair_init().
  */
 typedef struct gm_gear {
-    int teeth;            /**< z */
+    int teeth;            /**< z, of a ring its absolute value */
     int start_is_given;   /**< 1: the drawing gives the start radius; 0: the mate's tip sets it */
+    /** +1: external teeth; -1: a ring, of which ISO 21771 counts z and all lengths below 0. Here they are above. */
+    double sign;
     double profile_shift; /**< x, nominal (1) */
     double rack_addendum; /**< h_aP / m_n (1) */
     double rack_dedendum; /**< h_fP / m_n (1) */
@@ -295,7 +299,10 @@ GM_API int gm_pair_params_check(const gm_pair_params *params, const char **field
  * @param[in]  params  the parameters
  * @return GM_OK, GM_ERR_NULL, GM_ERR_PARAMETER, GM_ERR_GEOMETRY
  *
- * Valid for external cylindrical involute pairs on parallel axes.
+ * Valid for cylindrical involute pairs on parallel axes, external or a pinion in a ring. A ring is refused
+ * (GM_ERR_GEOMETRY) where its tip reaches beyond the pinion's tangent point (involute interference), where the
+ * tips meet beside the path of contact (trochoid interference), or when the pinion is moved in along the centre
+ * line (trimming).
  */
 GM_API int gm_pair_init(gm_pair *pair, const gm_pair_params *params);
 
