@@ -1326,6 +1326,30 @@ class Tables(Case):
         self.refused_value("drive", "repeat", "yes", "must be off | on")
 
 
+class Ripple(Case):
+    def test_bad_ripple(self):
+        for section in ("drive", "load"):
+            for value, fragment in [("0:5:0", "an order above 0"), ("2:5", "ORDER:AMPLITUDE:PHASE_DEG"),
+                                    ("2:5:90deg", "such as 2:5:0, 4:1.5:90")]:
+                self.refused_value(section, "ripple", value, fragment)
+        self.refused("--set drive.ripple: ", "(got 0:1:0)", arguments=["--set", "drive.ripple=2:5:0, 0:1:0"])
+
+    def test_right_ripple(self):
+        text = PARAMS.replace("[drive]\n", "[drive]\nripple = 2:5:0, 4.5:1:-90\n")
+        text = text.replace("[load]\n", "[load]\nripple = 2:1:0\n")
+        self.write("run.ini", text)
+        self.assertEqual(self.accepted("run.ini", "--check").stderr, "")
+        self.assertEqual(self.accepted("run.ini", "--check", "--set", "drive.ripple=").stderr, "")
+        self.assertIn("load.ripple: warning: not used with analysis.type = static",
+                      self.accepted("run.ini", "--check", "--set", "analysis.type=static").stderr)
+
+    def test_stop_speed_is_for_torque(self):
+        self.write("run.ini", with_key(PARAMS, "analysis", "stop_rpm", "1500"))
+        self.assertIn("analysis.stop_rpm: warning: not used with drive.kind = speed",
+                      self.accepted("run.ini", "--check").stderr)
+        self.refused_value("analysis", "stop_rpm", "fast", "must be a number")
+
+
 class Example(Case):
     """data/example/params.ini is complete and right."""
 

@@ -63,6 +63,7 @@ TIGHT = ["solver.relative_tolerance=1e-9", "solver.absolute_tolerance_um=1e-8"]
 PLAIN = ["output.oversampling=1"]
 TORQUE = ["drive.kind=torque", "drive.torque_Nm=22", f"bodies.pinion_inertia_kg_m2={I_P}"]
 STATIC = ["analysis.type=static", "analysis.positions=60"]
+RIPPLE = ["drive.ripple=2:3:0, 4.5:2:60", "load.ripple=3:8:0, 1:2:-45"]
 
 # Measured flanks, all different.
 ROOT = os.path.join(os.path.dirname(os.path.abspath(__file__)), "..")
@@ -245,7 +246,7 @@ class Means(Case):
         for settings, factor in [([], 1), (TORQUE, 1), (["load.mean_Nm=-80"], 1), (SIMPLE, simple),
                                  ([*SIMPLE, *TORQUE], simple), (["drive.start_rpm=-3000"], 1),
                                  (["load.noise_interval_s=1e-7"], 1), (["output.oversampling=16"], 1),
-                                 (self.DRAG, 1), ([*TORQUE, *self.DRAG], 1)]:
+                                 (self.DRAG, 1), ([*TORQUE, *self.DRAG], 1), (RIPPLE, 1), ([*TORQUE, *RIPPLE], 1)]:
             c = self.run_columns([*firm, *settings])
             force = [factor * (K * p + D * r) * 1e-6
                      for p, r in zip(c["penetration_um"], c["penetration_rate_um_per_s"])]
@@ -532,6 +533,144 @@ class Tables(Case):
         # The flanks change where the deceleration's torque takes the load over, before the speed is zero.
         zero = next(t for t, f in zip(c["time_s"], c["contact_force_N"]) if t > 0.021 and f <= 0)
         self.assertLess(zero, 0.07)
+
+
+class Ripple(Case):
+    """Harmonics of the pinion's turn, in what drives and what loads."""
+
+    def vibration(self, t, w0, decay, rate, drive, phase):
+        """x and x' at t of x'' + 2 decay x' + w0^2 x = drive cos(rate t + phase) without free vibration."""
+        response = drive / complex(w0**2 - rate**2, 2 * decay * rate) * cmath.exp(1j * (rate * t + phase))
+        return response.real, (1j * rate * response).real
+
+    def test_speed_and_load_ripple_shake_the_simple_model(self):
+        """In firm contact it is linear: forced vibrations, and the free one that leaves x' = x'' = 0 at the start."""
+        g = self.geometry(SIMPLE)
+        r_bp, r_bw = g["pinion_base_radius_mm"] * 1e-3, g["wheel_base_radius_mm"] * 1e-3
+        factor, w = g["transverse_contact_ratio"], 3000 * math.pi / 30
+        w0, decay = math.sqrt(K * factor * r_bw**2 / I_W), D * factor * r_bw**2 / I_W / 2
+        turned = math.sqrt(w0**2 - decay**2)
+        speed, phase, load, load_phase = 4 * math.pi / 30, math.radians(30), 3.0, math.radians(-60)
+        settings = [*SIMPLE, *TIGHT, *PLAIN, "drive.start_rpm=3000", "drive.end_rpm=3000", "load.mean_Nm=60"]
+
+        for order, drive, at, ripple in [
+                (2, r_bp * speed * 2 * w, phase, "drive.ripple=2:4:30"),
+                (7, r_bw * load / I_W, load_phase - math.pi / 2, "load.ripple=7:3:-60")]:
+            c = self.run_columns([*settings, ripple])
+            mean = GAP / 2 + 60.0 / (r_bw * K * factor)
+            x0, rate0 = self.vibration(0.0, w0, decay, order * w, drive, at)
+            # Where x' = x'' = 0 the spring holds what acts at t = 0.
+            start = drive * math.cos(at) / w0**2
+            a, b = start - x0, (-rate0 + decay * (start - x0)) / turned
+            for t, dte, rpm in zip(c["time_s"], c["dte_um"], c["pinion_speed_rpm"]):
+                free = math.exp(-decay * t) * (a * math.cos(turned * t) + b * math.sin(turned * t))
+                x = mean + self.vibration(t, w0, decay, order * w, drive, at)[0] + free
+                # The load's angle is the pinion's own. Tolerances of 1e-9 of 6 um add up over some hundred steps.
+                self.assert_close(-dte, x * 1e6, absolute=1e-5, what=f"{ripple}, t = {t}")
+                shown = 3000 + (4 * math.sin(2 * w * t + phase) if order == 2 else 0)
+                self.assert_close(rpm, shown, absolute=1e-9)
+            if order == 7:
+                self.assert_all_close(c["load_torque_Nm"], [60 + load * math.sin(7 * p + load_phase)
+                                                            for p in c["pinion_angle_rad"]], absolute=1e-11)
+
+    def test_ripple_of_a_torque_does_work(self):
+        """Both bodies as one: kinetic energy is what drive and load have done since the start, by the angle alone."""
+        g = self.geometry(SIMPLE)
+        ratio = g["pinion_base_radius_mm"] / g["wheel_base_radius_mm"]
+        inertia, start = I_P + I_W * ratio**2, 50.0
+        c = self.run_columns([*SIMPLE, *TORQUE, *TIGHT, *PLAIN, "drive.torque_Nm=60", "drive.ripple=1:4:20, 3.5:2:0",
+                              "load.ripple=2:5:-70", f"drive.start_rpm={start * 30 / math.pi!r}",
+                              "analysis.duration_s=0.1"])
+
+        def work(amplitude, order, phase, angle):
+            return amplitude / order * (math.cos(phase) - math.cos(order * angle + phase))
+
+        for p, rpm in zip(c["pinion_angle_rad"], c["pinion_speed_rpm"]):
+            done = (60 - LOAD * ratio) * p + work(4, 1, math.radians(20), p) + work(2, 3.5, 0, p) \
+                - ratio * work(5, 2, math.radians(-70), p)
+            # x moves by some 0.1 um at 10 krad/s, with which the pinion's speed is off by 0.02 rad/s.
+            self.assert_close(rpm * math.pi / 30, math.sqrt(start**2 + 2 * done / inertia), absolute=0.03)
+        self.assertGreater(c["pinion_angle_rad"][-1], 20.0)
+
+    def test_start_carries_the_ripple(self):
+        """The first force is in equilibrium with mean, ripple, drag and the torque of the ripple's acceleration."""
+        g = self.geometry()
+        r_bp, r_bw = g["pinion_base_radius_mm"] * 1e-3, g["wheel_base_radius_mm"] * 1e-3
+        w = 1000 * math.pi / 30
+        acceleration = (3 * 2 * w * math.cos(0) + 2 * 4.5 * w * math.cos(math.radians(60))) * math.pi / 30 * r_bp / r_bw
+        speed = (1000 + 2 * math.sin(math.radians(60))) * math.pi / 30 * r_bp / r_bw
+        load = LOAD + 8 * math.sin(0) + 2 * math.sin(math.radians(-45))
+        force = (load + I_W * acceleration + 0.02 * speed) / r_bw
+        for samples in (PLAIN, []):
+            c = self.run_columns([*RIPPLE, *TIGHT, *samples, "bodies.wheel_drag_Nms=0.02"])
+            # A filtered row has means over 1e-5 s about it, on one side those of the start.
+            self.assert_close(c["contact_force_N"][0], force, relative=1e-9 if samples else 1e-2)
+            if samples:
+                self.assert_close(c["load_torque_Nm"][0], load, relative=1e-12)
+
+    def test_table_and_ripple_add_up(self):
+        self.write_table("speed", "speed_rpm", [(-0.01, 1500.0), (0.003, 1500.0), (0.008, 2500.0), (0.03, 2500.0)])
+        c = self.run_columns([*PLAIN, "drive.start_rpm=", "drive.end_rpm=", "drive.file=speed", "drive.ripple=3:30:10"])
+        angle = 0.0
+        for t, rpm, phi in zip(c["time_s"], c["pinion_speed_rpm"], c["pinion_angle_rad"]):
+            ramp = min(max(t - 0.003, 0.0), 0.005)
+            steady = (1500 * t + 1e5 * ramp**2 + 1000 * max(t - 0.008, 0.0)) * math.pi / 30
+            expected = 1500 + 2e5 * ramp + 30 * math.sin(3 * steady + math.radians(10))
+            self.assert_close(rpm, expected, absolute=1e-9)
+            # The integral by the trapezoid of the rows: h^2 / 12 of the change of the slope, 9e4 rpm/s.
+            if t > 0:
+                angle += 0.5 * (rpm + before) * math.pi / 30 / 25600
+            before = rpm
+            self.assert_close(phi, angle, absolute=(1 / 25600)**2 / 12 * 3e5 * math.pi / 30)
+
+    def write_table(self, name, column, rows):
+        with open(self.path(name), "w") as file:
+            file.write(f"time_s,{column}\n" + "".join(f"{t!r},{v!r}\n" for t, v in rows))
+
+
+class Stop(Case):
+    """A torque-driven run that ends where the pinion has reached a speed."""
+    RUN_UP = [*TORQUE, "drive.torque_Nm=60", "analysis.duration_s=1", "output.rate_Hz=5000", "drive.start_rpm=1000"]
+
+    def test_last_row_is_the_first_at_or_beyond(self):
+        for settings, stop, sign in [([], 1500, 1), (PLAIN, 1500, 1), (["drive.torque_Nm=-30"], 700, -1),
+                                     ([*PLAIN, "drive.torque_Nm=-30"], 0, -1), (["output.oversampling=16"], 1203.4, 1)]:
+            with self.subTest((settings, stop)):
+                run = [*self.RUN_UP, *settings]
+                whole = self.run_columns([*run, "analysis.duration_s=0.1"])
+                c = self.run_columns([*run, f"analysis.stop_rpm={stop}"])
+                speeds = c["pinion_speed_rpm"]
+                self.assertGreaterEqual(sign * (speeds[-1] - stop), 0)
+                self.assertTrue(all(sign * (speed - stop) < 0 for speed in speeds[:-1]))
+                # Up to there it is the run without the stop, filtered with what comes behind.
+                count = len(speeds)
+                self.assertGreater(count, 10)
+                for name in c:
+                    self.assertEqual(c[name], whole[name][:count], name)
+
+    def test_speed_need_not_be_a_column(self):
+        c = self.run_columns([*self.RUN_UP, "analysis.stop_rpm=1500"])
+        for columns in ("time_s", "time_s,load_torque_Nm"):
+            one = self.run_columns([*self.RUN_UP, "analysis.stop_rpm=1500", f"output.columns={columns}"])
+            self.assertEqual(one["time_s"], c["time_s"])
+
+    def test_speed_that_is_not_reached_is_told(self):
+        result = self.gearsim([*self.RUN_UP, "analysis.duration_s=0.01", "analysis.stop_rpm=5000"], "--output", "run.csv")
+        self.assertEqual(result.returncode, 0)
+        self.assertIn("analysis.stop_rpm: warning: not reached within analysis.duration_s", result.stderr)
+
+    def test_reversal_through_zero_speed(self):
+        """A torque against the motion: both bodies as one slow down, stop, and go back, on the other flanks."""
+        g = self.geometry()
+        ratio = g["pinion_base_radius_mm"] / g["wheel_base_radius_mm"]
+        c = self.run_columns([*TORQUE, *PLAIN, "drive.start_rpm=300", "drive.torque_Nm=-5", "load.mean_Nm=0",
+                              "analysis.duration_s=1", "analysis.stop_rpm=-300", "output.rate_Hz=5000"])
+        fall = 5 / (I_P + I_W * ratio**2) * 30 / math.pi
+        self.assert_close(c["time_s"][-1], 600 / fall, absolute=1e-3)
+        # The backlash is crossed at the start, so that the pinion alone turns for a while, and bounces.
+        for t, rpm in list(zip(c["time_s"], c["pinion_speed_rpm"]))[len(c["time_s"]) // 2:]:
+            self.assert_close(rpm, 300 - fall * t, absolute=3.0)
+        self.assertLess(max(c["contact_force_N"][-50:]), 0)
 
 
 class Rattle(Case):

@@ -122,6 +122,8 @@ static void jacobian_is_that_of_differences(void) {
             conf.wheel_drag = 0.5;
             conf.load_per_speed = 0.7;
             conf.load_per_speed_squared = 0.02;
+            conf.drive_ripple = (ripple){1, {{2.0, 40.0, 0.3}}};
+            conf.load_ripple = (ripple){2, {{3.0, 30.0, 0.0}, {0.5, 20.0, 1.0}}};
             const gear_mesh gears = case_mesh(&conf);
             gear_model model;
             int compared = 0, kinks = 0;
@@ -188,6 +190,8 @@ static void start_is_an_equilibrium(void) {
                 conf.mean_load = loads[l];
                 conf.drive_torque = 1.2 * loads[l];
                 conf.end_speed = 400.0;
+                conf.drive_ripple = (ripple){1, {{2.0, 3.0, 0.3}}};
+                conf.load_ripple = (ripple){1, {{3.0, 4.0, 1.0}}};
                 const gear_mesh gears = case_mesh(&conf);
                 gear_model model;
                 double state[STATES_MAX], offset, pinion;
@@ -318,6 +322,46 @@ static void longest_step_is_a_part_of_a_tooth(void) {
     model_free(&model);
 }
 
+/* Without contact x'' and the pinion's acceleration change by the bound of their rates at most, whatever ripples. */
+static void ripple_changes_a_flight_less_than_its_bound(void) {
+    for (int d = 0; d < 2; ++d) {
+        config conf = case_config(MODEL_3D, drives[d]);
+        conf.drive_ripple = (ripple){1, {{2.0, 40.0, 0.3}}};
+        conf.load_ripple = (ripple){2, {{3.0, 30.0, 0.0}, {0.5, 20.0, 1.0}}};
+        conf.end_speed = 400.0;
+        const gear_mesh gears = case_mesh(&conf);
+        gear_model model;
+        double state[STATES_MAX], now, later, pinion_now, pinion_later;
+        const double r_bp = gears.pair.pinion.base_radius, horizon = 2e-3;
+        model_init(&model, &conf, &gears);
+
+        set_state(&model, 0.0, 0.01, 0.0, 100.0, state);
+        for (int i = 0; i < 50; ++i) {
+            const double start = 2e-3 * i;
+            const double angle = d == 0 ? 0.0 : 0.2 * i;
+            set_state(&model, 0.0, 0.01, angle, 100.0, state);
+            const gear_motion motion = model_motion(&model, start, state);
+            const model_flight flight = model_without_contact(&model, start, &motion, horizon);
+            accelerations(&model, start, state, &now, &pinion_now);
+            gm_test_context("drive %d, start %g", d, start);
+            GM_ASSERT_REL(flight.acceleration, now, 1e-12);
+
+            for (double t = 0.0; t <= horizon; t += horizon / 16) {
+                const double turned = t * (100.0 + 0.5 * t * flight.pinion_acceleration);
+                set_state(&model, 0.0, 0.01, angle + turned, 100.0 + t * flight.pinion_acceleration,
+                          state);
+                accelerations(&model, start + t, state, &later, &pinion_later);
+                GM_ASSERT(fabs(later - now) <= flight.jerk * t * (1.0 + 1e-9));
+                if (d == 1) {
+                    GM_ASSERT(fabs(pinion_later - pinion_now) * r_bp <=
+                              r_bp * flight.pinion_jerk * t * (1.0 + 1e-9));
+                }
+            }
+        }
+        model_free(&model);
+    }
+}
+
 /*
  * Thrown up from the middle of the backlash at v, falling at a: x = v t - a t^2 / 2 leaves +-gap / 2 at the smallest
  * positive root. The look ahead ends there or less than a shortest touch earlier, and never before half of it.
@@ -369,6 +413,7 @@ int main(int argc, char **argv) {
         GM_TEST(library_status_is_handed_on),
         GM_TEST(tolerance_of_the_angle_never_loosens),
         GM_TEST(longest_step_is_a_part_of_a_tooth),
+        GM_TEST(ripple_changes_a_flight_less_than_its_bound),
         GM_TEST(flight_ends_at_the_touch),
     };
     return gm_test_main("gearsim.model", tests, GM_TEST_COUNT(tests), argc, argv);

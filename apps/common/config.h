@@ -10,6 +10,7 @@
 
 #include "exit_code.h"
 #include "messages.h"
+#include "ripple.h"
 
 #include <gearmesh/gearmesh.h>
 #include <stdint.h>
@@ -91,6 +92,7 @@ typedef struct config {
     enum table_interpolation drive_interpolation;
     enum table_repeat drive_repeat;
     struct time_table *drive_table; /* what the file says, once gearsim has read it */
+    ripple drive_ripple;            /* amplitudes in rpm, or N m for a torque */
 
     double mean_load; /* N m */
     double end_load;  /* of the last of the static sweeps, N m; NaN: mean_load */
@@ -103,9 +105,11 @@ typedef struct config {
     enum table_interpolation load_interpolation;
     enum table_repeat load_repeat;
     struct time_table *load_table;
+    ripple load_ripple; /* amplitudes in N m */
 
     enum analysis_type analysis;
-    double duration; /* s */
+    double duration;   /* s */
+    double stop_speed; /* of the pinion, that ends the run; NaN: none (rad/s) */
     int positions;
     int loads; /* static sweeps over the positions, from mean_load to end_load */
     enum static_period period;

@@ -3,6 +3,8 @@
 
 #include "key_table.h"
 #include "memory.h"
+#include "number.h"
+#include "ripple.h"
 
 #include <ctype.h>
 #include <errno.h>
@@ -135,40 +137,6 @@ static const struct {
     [UNIT_RPM] = {30, 3.14159265358979323846},
 };
 
-static const char *skip_digits(const char *text) {
-    while (*text >= '0' && *text <= '9') {
-        ++text;
-    }
-    return text;
-}
-
-/* [+-] digits [. digits] [e [+-] digits]: what strtod() takes beyond that (hex, nan, inf) is refused. */
-int key_plain_number(const char *text) {
-    const char *start = text + (*text == '+' || *text == '-');
-    const char *end = skip_digits(start);
-    long digits = end - start;
-
-    /* Digits before the point, behind it, or both. */
-    if (*end == '.') {
-        const char *fraction = end + 1;
-        end = skip_digits(fraction);
-        digits += end - fraction;
-    }
-    if (digits == 0) {
-        return 0;
-    }
-
-    if (*end == 'e' || *end == 'E') {
-        const char *exponent = end + 1;
-        exponent += *exponent == '+' || *exponent == '-';
-        end = skip_digits(exponent);
-        if (end == exponent) {
-            return 0;
-        }
-    }
-    return *end == '\0';
-}
-
 static int not_a_number(const char *text, char *fault) {
     const char *right = strchr(text, ',') != NULL
                             ? "must be a number with a decimal point and without separators"
@@ -179,7 +147,7 @@ static int not_a_number(const char *text, char *fault) {
 }
 
 static int read_number(const char *text, double *value, char *fault) {
-    if (!key_plain_number(text)) {
+    if (!number_is_plain(text)) {
         return not_a_number(text, fault);
     }
     *value = strtod(text, NULL);
@@ -255,7 +223,7 @@ static int assign_count(const key_spec *key, int *target, const char *text, char
 }
 
 static int assign_seed(uint64_t *target, const char *text, char *fault) {
-    if (*text != '\0' && *skip_digits(text) == '\0') {
+    if (*text != '\0' && strspn(text, "0123456789") == strlen(text)) {
         errno = 0;
         const unsigned long long value = strtoull(text, NULL, 10);
         if (errno != ERANGE && value <= UINT64_MAX) {
@@ -335,6 +303,8 @@ enum key_result key_assign(const key_spec *key, void *filled, const char *text,
         return assign_seed(target, text, fault) ? KEY_REFUSED : KEY_TAKEN;
     case KEY_CHOICE:
         return assign_choice(key, target, text, fault) ? KEY_REFUSED : KEY_TAKEN;
+    case KEY_RIPPLE:
+        return ripple_parse(target, text, fault, KEY_FAULT_SIZE) ? KEY_REFUSED : KEY_TAKEN;
     case KEY_TEXT:
     case KEY_PATH:
         break;
@@ -362,6 +332,9 @@ enum key_result key_assign_default(const key_spec *key, void *filled) {
         break;
     case KEY_SEED:
         *(uint64_t *)target_of(key, filled) = 0;
+        break;
+    case KEY_RIPPLE:
+        ((ripple *)target_of(key, filled))->count = 0;
         break;
 
     /* Texts are on the heap. */
@@ -394,6 +367,8 @@ static void describe_values(const key_spec *key, char *text, size_t size) {
         key_choices_print(key->choices, text, size);
     } else if (key->kind == KEY_SEED) {
         snprintf(text, size, "whole number");
+    } else if (key->kind == KEY_RIPPLE) {
+        snprintf(text, size, "ORDER:AMPLITUDE:PHASE_DEG, ...");
     } else if (key->kind == KEY_COUNT || (key->kind == KEY_NUMBER && isfinite(key->range.low))) {
         describe_range(&key->range, text, size);
     }
@@ -466,7 +441,7 @@ void key_table_print(const key_table *table, FILE *stream) {
 
 /* A default that is told in words but is a value. */
 static int is_value(const key_spec *key, const char *text) {
-    return text != NULL && (key->kind == KEY_CHOICE || key_plain_number(text));
+    return text != NULL && (key->kind == KEY_CHOICE || number_is_plain(text));
 }
 
 void key_print_line(const key_spec *key, const char *value, FILE *stream) {

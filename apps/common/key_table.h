@@ -17,6 +17,7 @@ enum key_kind {
     KEY_COUNT,  /* int */
     KEY_SEED,   /* uint64_t */
     KEY_CHOICE, /* enum, one of the names in `choices` */
+    KEY_RIPPLE, /* ripple */
     KEY_TEXT,   /* char * */
     KEY_PATH    /* char *, relative to the folder of the INI file */
 };
@@ -104,9 +105,6 @@ enum key_result { KEY_TAKEN, KEY_REFUSED, KEY_NO_MEMORY };
 enum { KEY_FAULT_SIZE = 512 };
 enum key_result key_assign(const key_spec *key, void *filled, const char *text,
                            char fault[KEY_FAULT_SIZE]);
-
-/* Whether a text is a plain decimal number, with or without exponent, and nothing else. */
-int key_plain_number(const char *text);
 
 /* The default of a key; without one NaN, -1 for a choice, 0 for a count, NULL for a text. KEY_TAKEN or KEY_NO_MEMORY. */
 enum key_result key_assign_default(const key_spec *key, void *filled);

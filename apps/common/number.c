@@ -227,3 +227,37 @@ int number_format(char text[NUMBER_TEXT_SIZE], double value, int digits) {
     *out = '\0';
     return (int)(out - text);
 }
+
+static const char *skip_digits(const char *text) {
+    while (*text >= '0' && *text <= '9') {
+        ++text;
+    }
+    return text;
+}
+
+/* [+-] digits [. digits] [e [+-] digits]: what strtod() takes beyond that (hex, nan, inf) is refused. */
+int number_is_plain(const char *text) {
+    const char *start = text + (*text == '+' || *text == '-');
+    const char *end = skip_digits(start);
+    long digits = end - start;
+
+    /* Digits before the point, behind it, or both. */
+    if (*end == '.') {
+        const char *fraction = end + 1;
+        end = skip_digits(fraction);
+        digits += end - fraction;
+    }
+    if (digits == 0) {
+        return 0;
+    }
+
+    if (*end == 'e' || *end == 'E') {
+        const char *exponent = end + 1;
+        exponent += *exponent == '+' || *exponent == '-';
+        end = skip_digits(exponent);
+        if (end == exponent) {
+            return 0;
+        }
+    }
+    return *end == '\0';
+}

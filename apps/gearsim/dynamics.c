@@ -40,6 +40,7 @@ typedef struct dynamic_run {
     enum column_need row_need;    /* the most that a column asked for needs of the mesh, */
     enum column_need sample_need; /* and of the mesh between the rows, as it is filtered */
     double rows;                  /* number of rows, a whole number */
+    double past_stop; /* +1 or -1: the stop speed is reached from below, from above; 0 = none */
     dynamic_sample sample;
     double values[COLUMNS_MAX]; /* of the sample */
     char why[640];              /* the run ended early */
@@ -216,7 +217,7 @@ static int see_box_means(dynamic_run *run, double row, int i) {
     }
     const mean_weight box = {{begin, end, end}, {{weight, weight}, {0.0, 0.0}}};
     const double speed = motion.pinion_speed - run->edge.pinion_speed;
-    const double rest = run->is_started ? 0.0 : 0.5 * drive_at(&run->model.drive, 0.0).acceleration;
+    const double rest = run->is_started ? 0.0 : 0.5 * drive_acceleration(&run->model.drive, 0.0);
     set_means(run, &box, rest + speed * weight, &following, (motion.offset_rate - before) * weight);
 
     run->edge_time = end;
@@ -234,7 +235,7 @@ static double hat_acceleration(const dynamic_run *run, double begin, double midd
         const double rise = (now->pinion_angle - run->edge.pinion_angle) / (middle - begin);
         return 2.0 * (fall - rise) / (end - begin);
     }
-    return 0.5 * drive_at(&run->model.drive, 0.0).acceleration +
+    return 0.5 * drive_acceleration(&run->model.drive, 0.0) +
            (fall - now->pinion_speed) / (end - middle);
 }
 
@@ -355,6 +356,17 @@ static void tell_progress(dynamic_run *run) {
  * Rows
  * ------------------------------------------------------------------------------------------- */
 
+/* The first row at or beyond the stop speed is the last one. */
+static void look_for_stop(dynamic_run *run, double row) {
+    const double beyond =
+        run->past_stop * (run->sample.motion.pinion_speed - run->conf->stop_speed);
+
+    if (run->past_stop != 0.0 && beyond >= 0.0 && row + 1.0 < run->rows) {
+        run->rows = row + 1.0;
+        run->past_stop = 0.0;
+    }
+}
+
 /* Samples of one row period, the first of them at the row's time itself. */
 static int take_row_period(dynamic_run *run, double row) {
     for (int i = 0; i < run->factor; ++i) {
@@ -365,6 +377,9 @@ static int take_row_period(dynamic_run *run, double row) {
 
         decimator_push(run->filter, run->values);
         tell_progress(run);
+        if (i == 0) {
+            look_for_stop(run, row);
+        }
 
         /* The rows that lag behind by the filter's delay are complete with their period's first sample. */
         const double complete = row - (double)(decimator_delay(run->filter) / run->factor);
@@ -385,9 +400,9 @@ static int take_row_period(dynamic_run *run, double row) {
 }
 
 static int take_all(dynamic_run *run) {
-    const double periods = run->rows + (double)(decimator_delay(run->filter) / run->factor);
+    const double delay = (double)(decimator_delay(run->filter) / run->factor);
 
-    for (double row = 0.0; row < periods; row += 1.0) {
+    for (double row = 0.0; row < run->rows + delay; row += 1.0) {
         const int failed = take_row_period(run, row);
         if (failed) {
             return failed;
@@ -465,6 +480,12 @@ static int start_filter(dynamic_run *run) {
             run->sample_need = larger(run->sample_need, column->need);
         }
     }
+
+    /* The speed that ends the run is looked at in every row. */
+    if (run->conf->drive == DRIVE_TORQUE && !isnan(run->conf->stop_speed)) {
+        run->row_need = larger(run->row_need, NEEDS_MOTION);
+        run->past_stop = run->conf->stop_speed >= run->conf->start_speed ? 1.0 : -1.0;
+    }
     run->filter = decimator_create(run->factor, dynamic_column_count, kinds);
     return run->filter != NULL ? 0 : message_no_memory(run->conf->messages);
 }
@@ -501,6 +522,9 @@ static int end_run(dynamic_run *run, int exit_code) {
     progress_clear(&run->progress);
     if (exit_code != 0) {
         message_of_program(run->conf->messages, "%s", run->why);
+    } else if (run->past_stop != 0.0) {
+        config_warn(run->conf, "analysis.stop_rpm",
+                    "not reached within analysis.duration_s, which ended the run");
     }
     summarize(run);
 

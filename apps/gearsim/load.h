@@ -2,7 +2,8 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 
 /*
- * The load torque on the wheel: a mean, seeded noise, and what follows the wheel's speed.
+ * The load torque on the wheel: a mean or a table, seeded noise, ripple over the pinion's angle, and what follows the
+ * wheel's speed.
  *
  * Noise value k, at the time k * interval, is a pure function of seed and k: no state, any order of
  * calls, the same on every machine. Between the values runs a cubic (Catmull-Rom), which is C1, so that
@@ -16,6 +17,7 @@
 typedef struct load_signal {
     double mean;              /* N m */
     const time_table *table;  /* in place of the mean, NULL = none */
+    ripple ripple;            /* over the pinion's angle (N m) */
     double amplitude;         /* noise values are uniform in +- amplitude, N m */
     double interval;          /* between noise values, s */
     uint64_t stream;          /* what the seed has been mixed to */

@@ -123,10 +123,13 @@ int model_init(gear_model *model, const config *conf, const gear_mesh *gears) {
     model->noise = NULL;
     model->cache = NULL;
     model->mesh = conf->model;
-    model->drive = drive_create(conf);
+    if (drive_create(&model->drive, conf) != 0) {
+        return EXIT_RUN_FAILED;
+    }
     model->load =
         load_create(conf->mean_load, conf->noise_amplitude, conf->noise_interval, conf->seed);
     model->load.table = conf->load_table;
+    model->load.ripple = conf->load_ripple;
     model->load.per_speed = conf->load_per_speed;
     model->load.per_speed_squared = conf->load_per_speed_squared;
     init_bodies(model, conf);
@@ -141,6 +144,7 @@ int model_init(gear_model *model, const config *conf, const gear_mesh *gears) {
 }
 
 void model_free(gear_model *model) {
+    drive_free(&model->drive);
     response_free(model->noise);
     mesh_cache_free(model->cache, model->gears);
     model->noise = NULL;
@@ -267,6 +271,7 @@ double model_wheel_speed(const gear_model *model, const gear_motion *motion) {
 
 double model_load(const gear_model *model, double time, const gear_motion *motion) {
     const double torque = load_steady(&model->load, time) +
+                          ripple_value(&model->load.ripple, motion->pinion_angle) +
                           load_at_speed(&model->load, model_wheel_speed(model, motion));
 
     return load_with_noise(&model->load, torque, time);
@@ -281,34 +286,53 @@ model_torques model_by_speeds(const gear_model *model, double pinion_speed, doub
     return torques;
 }
 
+/* What ripples over the pinion's own angle: a torque; a prescribed speed does not (N m). */
+static double drive_ripple(const gear_model *model, const gear_motion *motion) {
+    return model->states == STATES_MAX ? ripple_value(&model->drive.ripple, motion->pinion_angle)
+                                       : 0.0;
+}
+
 model_torques model_by_motion(const gear_model *model, const gear_motion *motion) {
     const double wheel_speed = model_wheel_speed(model, motion);
     const model_torques torques = {
-        .load = load_at_speed(&model->load, wheel_speed) - model->load.per_speed * wheel_speed,
+        .drive = model->torque_to_pinion * drive_ripple(model, motion),
+        .load = load_at_speed(&model->load, wheel_speed) - model->load.per_speed * wheel_speed +
+                ripple_value(&model->load.ripple, motion->pinion_angle),
     };
     return torques;
 }
 
 int model_follows_motion(const gear_model *model) {
-    return model->load.per_speed != 0.0 || model->load.per_speed_squared != 0.0 ||
+    const int ripples = model->load.ripple.count > 0 ||
+                        (model->states == STATES_MAX && model->drive.ripple.count > 0);
+
+    return ripples || model->load.per_speed != 0.0 || model->load.per_speed_squared != 0.0 ||
            model->wheel_drag != 0.0 || model->torque_to_pinion * model->pinion_drag != 0.0;
 }
 
+/* The most that any harmonic goes round in a turn of the pinion. */
+static double highest_order(const gear_model *model) {
+    return fmax(ripple_highest_order(&model->drive.ripple),
+                ripple_highest_order(&model->load.ripple));
+}
+
 double model_smooth_time(const gear_model *model, const gear_motion *motion) {
-    (void)motion;
-    return 1.0 / model->natural_frequency;
+    return 1.0 / fmax(model->natural_frequency, highest_order(model) * fabs(motion->pinion_speed));
 }
 
 model_torques model_applied(const gear_model *model, double time, const gear_motion *motion) {
     const double wheel_speed = model_wheel_speed(model, motion);
     const double r_bp = model->gears->pair.pinion.base_radius;
     const model_torques torques = {
-        .drive = model->states == STATES_MAX ? r_bp *
-                                                   (drive_torque(&model->drive, time) -
-                                                    model->pinion_drag * motion->pinion_speed) /
-                                                   model->pinion_inertia
-                                             : r_bp * drive_at(&model->drive, time).acceleration,
-        .load = load_steady(&model->load, time) + load_at_speed(&model->load, wheel_speed),
+        .drive = model->states == STATES_MAX
+                     ? r_bp *
+                           (drive_torque(&model->drive, time) + drive_ripple(model, motion) -
+                            model->pinion_drag * motion->pinion_speed) /
+                           model->pinion_inertia
+                     : r_bp * drive_acceleration(&model->drive, time),
+        .load = load_steady(&model->load, time) +
+                ripple_value(&model->load.ripple, motion->pinion_angle) +
+                load_at_speed(&model->load, wheel_speed),
         .drag = model->wheel_drag * wheel_speed,
     };
     return torques;
@@ -343,12 +367,27 @@ model_torques model_mean_over_time(const gear_model *model, const mean_weight *w
     const double drive_torque = mean_of(
         model->drive.kind == DRIVE_TORQUE ? model->drive.table : NULL, model->drive.torque, weight);
     const model_torques mean = {
-        .drive = is_prescribed ? r_bp * (model->drive.table != NULL ? pinion_acceleration
-                                                                    : model->drive.acceleration)
+        .drive = is_prescribed ? r_bp * (drive_is_linear(&model->drive) ? model->drive.acceleration
+                                                                        : pinion_acceleration)
                                : r_bp * drive_torque / model->pinion_inertia,
         .load = mean_of(model->load.table, model->load.mean, weight),
     };
     return mean;
+}
+
+/* Speed of the pinion until the horizon, at most; its own drag only slows it down (rad/s). */
+static double fastest_pinion(const gear_model *model, const gear_motion *motion,
+                             const model_torques *torques, double table_rate, double horizon) {
+    const pinion_drive *drive = &model->drive;
+    if (model->states != STATES_MAX) {
+        return drive->fastest + ripple_largest(&drive->ripple, 0);
+    }
+
+    /* The drive as it is, with what the table may add and the ripple come to from its lowest. */
+    const double more = table_rate * horizon + 2.0 * ripple_largest(&drive->ripple, 0);
+    const double acceleration = (fabs(torques->drive) + model->torque_to_pinion * more) /
+                                model->gears->pair.pinion.base_radius;
+    return fabs(motion->pinion_speed) + acceleration * horizon;
 }
 
 /* Without contact every torque that follows a speed slows its body down, and what it does becomes less. */
@@ -359,15 +398,19 @@ model_flight model_without_contact(const gear_model *model, double time, const g
     const model_torques torques = model_applied(model, time, motion);
     const double load_part = model->torque_to_offset * (torques.load + torques.drag);
 
-    /* What the tables change by until their next row, beyond which the horizon does not go. */
+    /* What the tables change by until their next row, beyond which the horizon does not go, and ripple at the speed that
+     * the pinion can have by then. */
     const time_table *drive_table = model->drive.table, *load_table = model->load.table;
-    const double load_rate = load_table != NULL ? time_table_steepest(load_table, time) : 0.0;
-    double drive_rate = 0.0; /* of x'' (m/s3) */
-    if (drive_table != NULL) {
-        drive_rate = model->states == STATES_MAX
-                         ? model->torque_to_pinion * time_table_steepest(drive_table, time)
-                         : r_bp * time_table_curvature(drive_table, time);
-    }
+    const int is_prescribed = model->states != STATES_MAX;
+    const double table_rate =
+        drive_table != NULL && !is_prescribed ? time_table_steepest(drive_table, time) : 0.0;
+    const double pinion_speed = fastest_pinion(model, motion, &torques, table_rate, horizon);
+    const double drive_rate = /* of x'' (m/s3) */
+        is_prescribed ? r_bp * drive_jerk(&model->drive, time)
+                      : model->torque_to_pinion *
+                            (table_rate + pinion_speed * ripple_largest(&model->drive.ripple, 1));
+    const double load_rate = (load_table != NULL ? time_table_steepest(load_table, time) : 0.0) +
+                             pinion_speed * ripple_largest(&model->load.ripple, 1);
 
     /* The load's torques fall by their slope times what the wheel's speed changes by until the horizon. */
     const double wheel_acceleration =
@@ -482,6 +525,16 @@ static void add_torques(double jacobian[STATES_MAX][STATES_MAX], const gear_mode
         model->torque_to_offset * (model->wheel_drag + load_by_speed(&model->load, wheel_speed));
     const double pinion_slope = model->torque_to_pinion * model->pinion_drag;
 
+    /* Ripple over the pinion's angle, of its own torque (which moves both coordinates) and of the load. */
+    const double to_arc = 1.0 / (model->natural_frequency * pair->pinion.base_radius);
+    const double drive_ripple_slope =
+        model->torque_to_pinion * ripple_slope(&model->drive.ripple, motion->pinion_angle);
+    const double load_ripple_slope =
+        model->torque_to_offset * ripple_slope(&model->load.ripple, motion->pinion_angle);
+
+    jacobian[STATE_PINION_ARC][STATE_OFFSET_RATE] +=
+        to_arc * (drive_ripple_slope + load_ripple_slope);
+    jacobian[STATE_PINION_ARC][STATE_PINION_SPEED] += to_arc * drive_ripple_slope;
     jacobian[STATE_OFFSET_RATE][STATE_OFFSET_RATE] -= wheel_slope / pair->wheel.base_radius;
     jacobian[STATE_PINION_SPEED][STATE_OFFSET_RATE] +=
         (wheel_slope * ratio - pinion_slope) / pair->pinion.base_radius;
@@ -513,10 +566,23 @@ int model_jacobian(const gear_model *model, double time, const double state[],
  * Steps and tolerances
  * ------------------------------------------------------------------------------------------- */
 
-/* Time for a share of a tooth, from the speed at hand and the acceleration without contact. */
-static double tooth_step(const gear_model *model, double time, const double state[]) {
+/* Part of a turn that a step may take: a share of a tooth, which the simple model does not have, and of a ripple. */
+static double step_angle(const gear_model *model) {
+    const double order = highest_order(model);
+    const double wave = order > 0.0 ? two_pi / order : HUGE_VAL;
+    const double tooth = model->mesh == MODEL_3D ? model->gears->pair.pinion.pitch_angle : HUGE_VAL;
+
+    return fmin(tooth, wave) / steps_per_tooth;
+}
+
+/* Time for it, from the speed at hand and the acceleration without contact; 0 = any. */
+static double turning_step(const gear_model *model, double time, const double state[]) {
     const gm_gear *pinion = &model->gears->pair.pinion;
-    const double angle = pinion->pitch_angle / steps_per_tooth;
+    const double angle = step_angle(model);
+    if (!isfinite(angle)) {
+        return 0.0;
+    }
+
     const gear_motion motion = model_motion(model, time, state);
     const model_torques torques = model_applied(model, time, &motion);
     const double speed = fabs(motion.pinion_speed);
@@ -567,10 +633,10 @@ double model_before_row(const gear_model *model, double row) {
 }
 
 double model_max_step(const gear_model *model, double time, const double state[]) {
-    const double tooth = model->mesh == MODEL_3D ? tooth_step(model, time, state) : 0.0;
+    const double turning = turning_step(model, time, state);
     const double vibration = model->noise != NULL ? vibration_step(model) : 0.0;
 
-    return tooth > 0.0 && vibration > 0.0 ? fmin(tooth, vibration) : fmax(tooth, vibration);
+    return turning > 0.0 && vibration > 0.0 ? fmin(turning, vibration) : fmax(turning, vibration);
 }
 
 static double jump_share(const gear_model *model) {

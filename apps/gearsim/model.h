@@ -8,7 +8,8 @@
  *     x'' = r_bp alpha_p + r_bw M_w / I_w - F r_bw^2 / I_w
  *
  * with the prescribed alpha_p, or alpha_p = (M_p - c_p phi_p' - F r_bp) / I_p if the pinion is driven by a
- * torque. M_w contains the wheel's drag c_w phi_w' and what of the load follows its speed. Both cases read
+ * torque. M_w contains the wheel's drag c_w phi_w', what of the load follows its speed, and ripple over phi_p, as M_p
+ * does. Both cases read
  * x'' = a - mobility F, where a is what drive, load and drag would do to x without contact, and the mobility
  * is what a force of 1 N along the line of action does.
  *

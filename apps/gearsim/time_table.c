@@ -1,8 +1,8 @@
 /* SPDX-FileCopyrightText: The gearmesh authors */
 /* SPDX-License-Identifier: BSD-3-Clause */
 #include "time_table.h"
-#include "key_table.h"
 #include "memory.h"
+#include "number.h"
 
 #include <errno.h>
 #include <math.h>
@@ -177,7 +177,7 @@ static int read_row(table_reader *reader, char *line) {
                       NULL);
     }
     for (int i = 0; i < 2; ++i) {
-        numbers[i] = key_plain_number(fields[i]) ? strtod(fields[i], NULL) : (double)NAN;
+        numbers[i] = number_is_plain(fields[i]) ? strtod(fields[i], NULL) : (double)NAN;
         if (!(fabs(numbers[i]) <= 1e12)) {
             return refuse(reader, reader->line,
                           "must be a plain number from -1e12 to 1e12 with a decimal point",
@@ -306,6 +306,15 @@ static double piece_integral(const piece *part, double s) {
            (part->c[0] + s * (0.5 * part->c[1] + s * (part->c[2] / 3.0 + s * 0.25 * part->c[3])));
 }
 
+/* A cubic stays within the hull of its Bezier points. */
+static double piece_largest(const piece *part) {
+    const double *c = part->c, h = part->length;
+    const double first = c[0] + c[1] * h / 3.0;
+    const double second = c[0] + h * (2.0 * c[1] + c[2] * h) / 3.0;
+
+    return fmax(fmax(fabs(c[0]), fabs(first)), fmax(fabs(second), fabs(piece_value(part, h))));
+}
+
 /* Whether the solver has to start again between two pieces. */
 static int is_kink(const piece *before, const piece *behind, int is_speed) {
     const double value = piece_value(before, before->length);
@@ -347,8 +356,9 @@ static time_table *make_table(const table_reader *reader, int is_cubic, int repe
     }
     table->kink_at_end =
         repeats ? is_kink(&pieces[table->count - 1], &pieces[0], reader->is_speed) : 1;
-    for (int i = 0; i < count; ++i) {
-        table->largest = fmax(table->largest, fabs(rows[i].value));
+    table->largest = fabs(table->last);
+    for (int i = 0; i < table->count; ++i) {
+        table->largest = fmax(table->largest, piece_largest(&pieces[i]));
     }
     table->zero = 0.0;
     table->zero = time_table_integral(table, 0.0);
