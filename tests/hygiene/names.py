@@ -60,7 +60,8 @@ def offences_of(root, document, library, tests):
 
 
 def main(root):
-    library = words_of(root, "libgearmesh/**/*.[ch]", "apps/**/*.[ch]", "libgearmesh/**/CMakeLists.txt")
+    library = words_of(root, "libgearmesh/**/*.[ch]", "apps/**/*.[ch]", "libgearmesh/**/CMakeLists.txt",
+                       "libgearmesh/bindings/**/*.py")
     tests = words_of(root, "tests/*.c", "tests/*.h", "tests/*.py", "tests/hygiene/*") | library
     documents = sorted((root / "libgearmesh" / "docs").glob("*.md")) + [root / "README.md", root / "CONTRIBUTING.md"]
     count = 0
