@@ -63,7 +63,7 @@ if (eigenfrequency > 0 && eigenfrequency < frequency_high) {
     set label '0' at first eigenfrequency, graph 1.03 center offset 0,0.6 font ',13'
 }
 
-do for [format in 'png svg'] {
+do for [format in formats] {
     eval terminal(format, 'campbell_map', 1400, 1000)
     set output picture . '.' . format
     plot 'map.bin' binary array=(columns, rows) format='%float32' endian=little \

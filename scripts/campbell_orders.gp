@@ -9,7 +9,7 @@ load 'style.gp'
 array colours[4] = ['#0072b2', '#d55e00', '#009e73', '#aa4499']
 highest = word(harmonics, words(harmonics)) * pinion_teeth + 15
 
-do for [format in 'png svg'] {
+do for [format in formats] {
     eval terminal(format, 'campbell_orders', 1400, 1100)
     set output picture . '.' . format
     set multiplot

@@ -19,7 +19,7 @@ set key horizontal right enhanced samplen 1.5 width (pitch_is_arc ? -2 : -9) fon
 set style fill solid 0.85 noborder
 set boxwidth 0.36
 
-do for [format in 'png svg'] {
+do for [format in formats] {
     eval terminal(format, 'flanks_pitch', 1400, 1000)
     set output picture . '.' . format
     set multiplot

@@ -14,7 +14,7 @@ from_top(y) = 1.0 - 1.0 * y / height
 set cbrange [-range_um:range_um]
 set style fill solid noborder
 
-do for [format in 'png svg'] {
+do for [format in formats] {
     eval terminal(format, 'flanks_teeth', 1400, height)
     set output picture . '.' . format
     set multiplot

@@ -44,7 +44,7 @@ set style textbox opaque noborder fillcolor '#ffffff' margins 0.4,0.4
 set palette maxcolors 0
 unset key
 
-do for [format in 'png svg'] {
+do for [format in formats] {
     eval terminal(format, 'flanks_topography', 1400, height)
     set output picture . '.' . format
     set multiplot

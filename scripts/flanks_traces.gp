@@ -19,7 +19,7 @@ set border 0
 unset key
 half(side, x) = side eq 'drive' ? -x : x
 
-do for [format in 'png svg'] {
+do for [format in formats] {
     eval terminal(format, 'flanks_traces', 1400, height)
     set output picture . '.' . format
     set multiplot

@@ -17,7 +17,7 @@ import tempfile
 import program
 
 SCRIPTS = os.path.dirname(os.path.realpath(__file__))
-FORMATS = ("png", "svg")
+FORMATS = ("png", "svg", "pdf")
 UTF8_LOCALES = ("C.UTF-8", "C.utf8", "en_US.UTF-8", "POSIX.UTF-8")
 
 
@@ -85,7 +85,7 @@ def draw(stem, prepare):
     """Draw pictures in a folder beside their place and move them there when all are done; returns their names.
 
     `prepare(folder)` writes the data and returns {name: (script, values)}; the picture becomes STEM + name. The script
-    writes it as `picture . '.png'` and `.svg`.
+    writes it as `picture . '.png'`, `.svg` and `.pdf`.
     """
     with tempfile.TemporaryDirectory(prefix=".gearmesh_", dir=os.path.dirname(stem) or ".") as folder:
         folder = os.path.abspath(folder)

@@ -40,7 +40,7 @@ do for [i = 0:curves - 1] {
         font (i == chosen ? 'DejaVu Sans Bold,12' : ',12')
 }
 
-do for [format in 'png svg'] {
+do for [format in formats] {
     eval terminal(format, 'harris_harris', 1400, 1000)
     set output picture . '.' . format
     plot for [i = 0:curves - 1] 'curves.dat' index i using 1:2 with lines lw width(i) \

@@ -57,7 +57,7 @@ if (has_chosen && chosen >= number_low && chosen <= number_high) {
     set arrow from graph 0, first chosen to graph 1.008, first chosen nohead front lw 1.6 dt (8,5) lc rgb '#202020'
 }
 
-do for [format in 'png svg'] {
+do for [format in formats] {
     eval terminal(format, 'harris_map', 1400, 1000)
     set output picture . '.' . format
     plot 'map.bin' binary array=(fine, fine) format='%float32' endian=little \

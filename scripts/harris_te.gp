@@ -33,7 +33,7 @@ do for [i = 0:curves - 1] {
         textcolor rgb word(colours, i + 1)
 }
 
-do for [format in 'png svg'] {
+do for [format in formats] {
     eval terminal(format, 'harris_te', 1400, 1000)
     set output picture . '.' . format
     plot for [i = 0:curves - 1] 'te.dat' index i using 1:2 with lines lw 2.6 lc rgb word(colours, i + 1)

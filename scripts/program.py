@@ -4,6 +4,7 @@
 
 This module is imported before numpy, so it needs nothing but Python itself.
 """
+import importlib
 import importlib.util
 import os
 import re
@@ -45,6 +46,27 @@ def require(*packages):
     names = ", ".join(f"{package} (Debian: {DEBIAN_PACKAGES[package]})" for package in missing)
     print(f"{name()}: needs Python with {names}, which {sys.executable} does not have", file=sys.stderr)
     sys.exit(2)
+
+
+def optional(package):
+    """A package that few need, from this Python or from the environment of `scripts/setup --workbench`.
+
+    That environment has all packages of its own, as what it has is not made for those of the system. So the script is
+    started again there: to be called before anything is printed or written.
+    """
+    if importlib.util.find_spec(package) is not None:
+        return importlib.import_module(package)
+    python = os.path.join(workbench_folder(), "bin", "python3")
+    is_there = os.path.realpath(sys.prefix) == os.path.realpath(workbench_folder())
+    if not is_there and os.path.isfile(python) and _has(python, (package,)):
+        os.execve(python, [python, *sys.orig_argv[1:]], {**os.environ, HANDED_ON: "1"})
+    raise InputError(f"needs Python with {package}: scripts/setup --workbench installs it")
+
+
+def workbench_folder():
+    """The environment that `scripts/setup --workbench` makes: $GEARMESH_WORKBENCH, or among the data of the user."""
+    data = os.environ.get("XDG_DATA_HOME") or os.path.join(os.path.expanduser("~"), ".local", "share")
+    return os.environ.get("GEARMESH_WORKBENCH") or os.path.join(data, "gearmesh", "workbench")
 
 
 def _other_pythons():

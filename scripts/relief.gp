@@ -41,7 +41,7 @@ do for [i = 1:2] {
     set label names[i] at graph 1.025, first at left font ',13' textcolor rgb colours[i]
 }
 
-do for [format in 'png svg'] {
+do for [format in formats] {
     eval terminal(format, 'relief', 1400, 1000)
     set output picture . '.' . format
     plot for [i = 1:2 * has_band] curves index i + 1 using 1:2:3 with filledcurves \

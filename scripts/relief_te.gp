@@ -17,7 +17,7 @@ set bmargin at screen 0.115
 set xlabel 'mesh cycles of the pinion'
 unset key
 
-do for [format in 'png svg'] {
+do for [format in formats] {
     eval terminal(format, 'relief_te', 1600, 900)
     set output picture . '.' . format
     set multiplot

@@ -78,18 +78,38 @@ def turned_angle(angle_rad):
 
 def read_run(path):
     """Read a result of gearsim, CSV or HDF5; raises RunError with a message for people."""
-    try:
-        with open(path, "rb") as file:
-            is_hdf5 = file.read(len(HDF5_SIGNATURE)) == HDF5_SIGNATURE
-        columns, provenance, incomplete = _read_hdf5(path) if is_hdf5 else _read_csv(path)
-    except OSError as error:
-        raise RunError(f"{path}: cannot be read: {error.strerror or program.first_line_of(error)}") from error
-    if len(columns[0]) < 2:
-        raise RunError(f"{path}: must have two rows or more (got {len(columns[0])})")
-    _check_columns(path, columns)
-    run = Run(*columns, provenance=provenance)
+    columns, provenance, incomplete = read_columns(path, _wanted)
+    time_s, speed_rpm, angle_rad = (columns[name] for name in COLUMNS[:3])
+    check_numbers(path, columns)
+    check_times(path, COLUMNS[0], time_s)
+    if not speed_rpm.any():
+        raise RunError(f"{path}: pinion_speed_rpm is 0 throughout: there are no orders of a pinion that stands still")
+    check_turning(path, COLUMNS[2], speed_rpm, angle_rad)
+    run = Run(*columns.values(), provenance=provenance)
     run.incomplete = incomplete
     return run
+
+
+def read_columns(path, wanted):
+    """{name: values} of a CSV or HDF5, {key: text} of its head, and why it ended early (None: it did not).
+
+    `wanted(path, names)` says which of the names in the file are read, and in which order. For HDF5 the names are the
+    open file itself.
+    """
+    try:
+        read = _read_hdf5 if is_hdf5(path) else _read_csv
+        columns, provenance, incomplete = read(path, wanted)
+    except OSError as error:
+        raise RunError(f"{path}: cannot be read: {error.strerror or program.first_line_of(error)}") from error
+    rows = len(next(iter(columns.values())))
+    if rows < 2:
+        raise RunError(f"{path}: must have two rows or more (got {rows})")
+    return columns, provenance, incomplete
+
+
+def is_hdf5(path):
+    with open(path, "rb") as file:
+        return file.read(len(HDF5_SIGNATURE)) == HDF5_SIGNATURE
 
 
 def _wanted(path, names):
@@ -100,28 +120,31 @@ def _wanted(path, names):
     return [name for name in COLUMNS + (PAIRS_COLUMN,) if name in names]
 
 
-def _check_columns(path, columns):
-    """Numbers all of them, rows at an even distance in time, and an angle that goes with the speed."""
-    time_s, speed_rpm, angle_rad = columns[:3]
-    for name, column in zip(COLUMNS + (PAIRS_COLUMN,), columns):
+def check_numbers(path, columns):
+    """Numbers all of them, whose squares are numbers as well."""
+    for name, column in columns.items():
         bad = np.flatnonzero(~np.isfinite(column))
         if len(bad):
             raise RunError(f"{path}: {name}: must be a finite number (got {column[bad[0]]} in row {bad[0] + 1})")
         if np.abs(column).max() > 1e150:
             raise RunError(f"{path}: {name}: must be a number whose square can be told (got more than 1e150)")
 
+
+def check_times(path, name, time_s):
+    """Rows at an even distance in time."""
     steps_s = np.diff(time_s)
     mean_s = (time_s[-1] - time_s[0]) / len(steps_s)
     if mean_s <= 0 or np.abs(steps_s - mean_s).max() > 0.1 * mean_s:
-        raise RunError(f"{path}: time_s is not evenly spaced (more output.digits may help)")
+        raise RunError(f"{path}: {name} is not evenly spaced (more output.digits may help)")
 
-    if not speed_rpm.any():
-        raise RunError(f"{path}: pinion_speed_rpm is 0 throughout: there are no orders of a pinion that stands still")
+
+def check_turning(path, name, speed_rpm, angle_rad):
+    """An angle that goes with the speed."""
     turning = np.abs(speed_rpm[1:]) > TURNING_SHARE_OF_SPEED * np.abs(speed_rpm).max()
     bad = np.flatnonzero(turning & (np.diff(angle_rad) * np.sign(speed_rpm[1:]) <= 0))
     if len(bad):
         raise RunError(
-            f"{path}: pinion_angle_rad does not grow (or fall) from row {bad[0] + 1} to the next as the pinion turns "
+            f"{path}: {name} does not grow (or fall) from row {bad[0] + 1} to the next as the shaft turns "
             "(more output.digits may help)"
         )
 
@@ -131,7 +154,7 @@ def _check_columns(path, columns):
 # ----------------------------------------------------------------------------------------------------
 
 
-def _read_hdf5(path):
+def _read_hdf5(path, wanted):
     """Columns, provenance, and why the run ended early (None: it did not)."""
     try:
         import h5py
@@ -140,10 +163,10 @@ def _read_hdf5(path):
     try:
         with h5py.File(path, "r") as file:
             provenance = {name: _text(value) for name, value in file.attrs.items()}
-            columns = [_column(path, name, file[name], h5py.Dataset) for name in _wanted(path, file)]
+            columns = {name: _column(path, name, file[name], h5py.Dataset) for name in wanted(path, file)}
     except (OSError, RuntimeError, ValueError, TypeError, KeyError) as error:
         raise RunError(f"{path}: cannot be read as HDF5: {program.first_line_of(error)}") from error
-    lengths = {len(column) for column in columns}
+    lengths = {len(column) for column in columns.values()}
     if len(lengths) > 1:
         raise RunError(f"{path}: its columns must have the same length (got {sorted(lengths)})")
     return columns, provenance, provenance.pop("incomplete", None)
@@ -179,19 +202,21 @@ def read_head(path):
     raise RunError(f"{path}: no header line")
 
 
-def _read_csv(path):
+def _read_csv(path, wanted):
     """The same of a CSV."""
     provenance, names, head_lines = read_head(path)
-    used = [names.index(name) for name in _wanted(path, names)]
+    chosen = wanted(path, names)
+    used = [names.index(name) for name in chosen]
     if _is_cut_off(path):
         raise RunError(f"{path}: its last line must have an end (the file is cut off)")
     if _count_rows(path, names, head_lines) == 0:
-        return [[]], provenance, None
+        return dict.fromkeys(chosen, []), provenance, None
     try:
         table = np.loadtxt(path, delimiter=",", skiprows=head_lines, usecols=used, ndmin=2, encoding="utf-8")
     except ValueError as error:
         raise RunError(_bad_row(path, names, used, head_lines) or f"{path}: {program.first_line_of(error)}") from error
-    return [np.ascontiguousarray(column) for column in table.T], provenance, _incomplete_reason(path)
+    columns = {name: np.ascontiguousarray(column) for name, column in zip(chosen, table.T)}
+    return columns, provenance, _incomplete_reason(path)
 
 
 def _count_rows(path, names, head_lines):

@@ -11,8 +11,9 @@ scaling by its equivalent noise bandwidth).
 import math
 
 import numpy as np
-from scipy import interpolate, signal
+from scipy import signal
 
+import tracking
 from results import Run, RunError, read_run  # noqa: F401  (a run-up is read and analysed by one module)
 
 # Standard window, with which the indicators are defined.
@@ -51,6 +52,15 @@ class Gears:
     def wheel_order(self):
         """One event per turn of the wheel, in turns of the pinion."""
         return self.pinion_teeth / self.wheel_teeth
+
+
+def speed_text(run):
+    """How the pinion turns: `100 to 6000 rpm in 10 s`."""
+    duration = f"{run.time_s[-1] - run.time_s[0]:.3g} s"
+    if run.is_constant:
+        return f"{run.start_rpm:.5g} rpm for {duration}"
+    reverses = ", reversing" if run.reverses else ""
+    return f"{run.start_rpm:.5g} to {run.end_rpm:.5g} rpm{reverses} in {duration}"
 
 
 # ----------------------------------------------------------------------------------------------------
@@ -336,25 +346,17 @@ def order_blocks(run, turns, highest_order):
     if not len(starts):
         return None
 
-    # At twice its rate a cubic spline through the signal is exact to 0.1 % up to the trusted frequency.
-    force_N = signal.resample_poly(run.force_N - run.force_N.mean(), 2, 1)
-    fine_turn = np.interp(np.arange(len(force_N)) / 2.0, np.arange(len(turn)), turn)
+    over_angle = tracking.OverAngle(run)
 
     # So many samples per turn that the slowest block holds the whole bandwidth: nothing is aliased.
-    per_turn = max(2.2 * highest_order, 1.1 * run.rate_Hz * 60.0 / lowest_rpm)
-    samples = turns * int(2 ** np.ceil(np.log2(per_turn)))
-    at = np.arange(samples) * (turns / samples)
+    samples = turns * int(2 ** np.ceil(np.log2(over_angle.samples_per_turn(highest_order, lowest_rpm))))
     weight = signal.get_window("hann", samples)
 
     # Each block over even steps of the angle, and its spectrum up to the highest order.
     bins = int(highest_order * turns) + 1
     power, speeds_rpm = np.empty((len(starts), bins), dtype=np.float32), np.empty((3, len(starts)))
     for i, start in enumerate(starts):
-        first, last = np.searchsorted(fine_turn, (start, start + turns))
-        part = slice(max(0, first - 16), last + 16)
-        growing = np.flatnonzero(np.diff(fine_turn[part], prepend=-np.inf) > 0)  # it may stand still beside the block
-        spline = interpolate.CubicSpline(fine_turn[part][growing], force_N[part][growing])
-        spectrum = np.fft.rfft(spline(start + at) * weight)[:bins]
+        spectrum = np.fft.rfft(over_angle.piece(start, turns, samples) * weight)[:bins]
         power[i] = np.abs(2.0 * spectrum / weight.sum()) ** 2
         first, last = np.searchsorted(turn, (start, start + turns))
         inside_rpm = run.speed_rpm[first:last]

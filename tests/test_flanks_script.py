@@ -288,7 +288,7 @@ class Pictures(Drawn):
         result = self.flanks("gear.csv", "pitch.csv", "--output", "out", "--title", "it's a \"test\" 50 %")
         self.assertEqual((result.returncode, result.stderr), (0, ""))
         names = [f"out_{name}" for name in ("topography", "traces", "pitch", "teeth")]
-        expected = [f"{name}.{suffix}" for name in names for suffix in ("png", "svg")] + ["gear.csv", "pitch.csv"]
+        expected = [f"{name}.{suffix}" for name in names for suffix in ("pdf", "png", "svg")] + ["gear.csv", "pitch.csv"]
         self.assertEqual(sorted(os.listdir(self.folder)), sorted(expected))
         for name in names:
             self.assertGreater(min(self.png_size(name + ".png")), 600)
@@ -378,7 +378,7 @@ class Measured(Drawn):
         self.write_traces()
         result = self.flanks("t.csv")
         self.assertEqual((result.returncode, result.stderr), (0, ""))
-        self.assertEqual(sorted(os.listdir(self.folder)), ["t.csv", "t_traces.png", "t_traces.svg"])
+        self.assertEqual(sorted(os.listdir(self.folder)), ["t.csv", "t_traces.pdf", "t_traces.png", "t_traces.svg"])
         self.assertIn("8 traces of 2 teeth", result.stdout)
         self.assertIn("right profile: 2 traces, largest range 16.000 um (tooth 4)", result.stdout)
         self.assertGreater(min(self.png_size("t_traces.png")), 600)

@@ -162,7 +162,7 @@ class Harris(Case):
         result = self.accepted("harris", SPUR, "--torques", f"0:{1.5 * DESIGN_NM}:4", "--title", "a \"title\" 50 %",
                                run=self.run_program)
         self.assertEqual(result.stderr, "")
-        names = [f"params_{name}.{suffix}" for name in ("harris", "map", "te") for suffix in ("png", "svg")]
+        names = [f"params_{name}.{suffix}" for name in ("harris", "map", "te") for suffix in ("pdf", "png", "svg")]
         self.assertEqual(sorted(os.listdir(self.folder)), sorted(names + ["params_harris.csv", "params_te.csv"]))
         amounts_um = sorted({row["wheel_tip_relief_um"] for row in self.table("params_harris.csv")})
         np.testing.assert_allclose(amounts_um, np.linspace(0, 30, 49))
@@ -430,7 +430,7 @@ class Relief(Case):
     def test_variables_by_itself_and_pictures(self):
         result = self.accepted("relief", SPUR, "--output", "r", "--torques", "36:73:2", "--starts", "1", "--tolerance",
                                "0.5", "--set", "analysis.positions=40", run=self.run_program)
-        names = [f"r_relief{name}" for name in (".csv", ".ini", ".png", ".svg", "_te.png", "_te.svg")]
+        names = [f"r_relief{name}" for name in (".csv", ".ini", ".pdf", ".png", ".svg", "_te.pdf", "_te.png", "_te.svg")]
         self.assertEqual(sorted(os.listdir(self.folder)), names)
         for key in ("pinion_tip_relief_um", "pinion_tip_relief_length_mm", "wheel_tip_relief_um",
                     "wheel_tip_relief_length_mm", "pinion_crowning_um", "pinion_drive_helix_slope_um"):
@@ -442,7 +442,7 @@ class Relief(Case):
 
     def test_torques_end_where_the_gears_cannot_carry_more(self):
         self.accepted("relief", SPUR, *SOFT, "--vary", "pinion_crowning_um=0:10", "--starts", "1", "--output", "r")
-        names = [f"r_relief{name}" for name in (".csv", ".ini", ".png", ".svg", "_te.png", "_te.svg")]
+        names = [f"r_relief{name}" for name in (".csv", ".ini", ".pdf", ".png", ".svg", "_te.pdf", "_te.png", "_te.svg")]
         self.assertEqual(sorted(os.listdir(self.folder)), names)
         self.assertAlmostEqual(self.table("r_relief.csv")[-1]["torque_Nm"], SOFT_CAPACITY_NM - 1.25, delta=1.25)
 

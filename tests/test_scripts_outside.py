@@ -79,7 +79,7 @@ def run_text(rows=None):
     return HEAD + ",".join(COLUMNS) + "\n" + file.getvalue()
 
 
-NAMES = ("campbell", "flanks", "harris", "relief")
+NAMES = ("campbell", "flanks", "harris", "orders", "relief")
 
 
 class Case(unittest.TestCase):
@@ -129,6 +129,7 @@ class ForeignNames(Case):
         title = ["--title=" + name]
         return [
             ("campbell", "run.csv", title),
+            ("orders", "run.csv", title),
             ("flanks", "flanks.csv", title),
             ("flanks", "traces.csv", title),
             ("harris", SPUR, [*quick, *title, "--vary", "pinion_tip_relief_um=0:20:2"]),
@@ -142,7 +143,7 @@ class ForeignNames(Case):
             os.mkdir(name)
             # Every name for flanks; the other scripts, which go the same way, for some of them.
             calls = self.calls(name)
-            for script, source, options in calls if number in (0, 9, 11) else calls[1:2]:
+            for script, source, options in calls if number in (0, 9, 11) else calls[2:3]:
                 shutil.copy(source, name + ".csv")
                 # Half of the names for a folder, the others for files.
                 output, folder = (os.path.join(".", name, "x"), name) if number % 2 else (name, ".")

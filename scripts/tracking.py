@@ -1,0 +1,253 @@
+# SPDX-FileCopyrightText: The gearmesh authors
+# SPDX-License-Identifier: BSD-3-Clause
+"""Orders of any signal over the angle of a shaft: short spectra, single orders, Vold-Kalman filter, overall level.
+
+A frame holds a number of turns, whichever way the shaft turns and however its speed changes in it: the signal is read
+at even steps of the angle. So an order stands still in it, and is read at any number, whole or not. Amplitudes are peak
+values.
+
+The Vold-Kalman filter of the second generation (H. Vold, J. Leuridan, SAE 931288, 1993; J. Tuma, "Setting the passband
+width in the Vold-Kalman order tracking filter", ICSV12, 2005) finds the envelopes of all its orders at once: those that
+change least and leave least of the signal. Here envelopes are constant over a sixteenth of 1 / bandwidth of the angle.
+So the passband is the same in orders at all speeds, and the equations are well conditioned however narrow it is.
+"""
+import math
+
+import numpy as np
+from scipy import fft, interpolate, linalg, signal
+
+from results import RunError
+
+SLOWEST_SHARE = 0.02  # of the highest speed: what turns slower has no frames
+STEADY_RATIO = 2.0  # highest to lowest speed of a frame
+SWEEP_OF_FRAME = 0.05  # share of the speed by which it may change in a frame, if nothing is asked for
+FEWEST_TURNS, MOST_TURNS = 5, 40
+POINTS = 600  # frames in a record, at most
+PADDING = 8  # between two bins of a map a Hann window then loses 0.3 % at most
+STEPS_OF_BANDWIDTH = 16  # steps of an envelope of the Vold-Kalman filter in 1 / bandwidth
+
+
+class OverAngle:
+    """A signal without its mean that can be read at any angle.
+
+    At twice its rate a cubic spline through the signal is exact to 0.1 % up to the trusted frequency.
+    """
+
+    def __init__(self, run):
+        self.turn = run.angle_rad / (2.0 * np.pi)
+        self.rate_Hz = run.rate_Hz
+        self.values = signal.resample_poly(run.force_N - run.force_N.mean(), 2, 1)
+        self.fine_turn = np.interp(np.arange(len(self.values)) / 2.0, np.arange(len(self.turn)), self.turn)
+
+    def piece(self, start, turns, samples):
+        """So many samples at even steps of the angle."""
+        first, last = np.searchsorted(self.fine_turn, (start, start + turns))
+        part = slice(max(0, first - 16), last + 16)
+        growing = np.flatnonzero(np.diff(self.fine_turn[part], prepend=-np.inf) > 0)  # it may stand still beside the piece
+        spline = interpolate.CubicSpline(self.fine_turn[part][growing], self.values[part][growing])
+        return spline(start + np.arange(samples) * (turns / samples))
+
+    def samples_per_turn(self, highest_order, lowest_rpm):
+        """So many that the slowest stretch holds the whole bandwidth: nothing is aliased."""
+        return max(2.2 * highest_order, 1.1 * self.rate_Hz * 60.0 / lowest_rpm)
+
+
+class Frames:
+    """Pieces of some turns: where they begin, the row in their middle, lowest and highest speed of each."""
+
+    def __init__(self, run, turns, start, row, lowest_rpm, highest_rpm):
+        self.run, self.turns = run, turns
+        self.start, self.row = start, row
+        self.lowest_rpm, self.highest_rpm = lowest_rpm, highest_rpm
+
+    @property
+    def time_s(self):
+        return self.run.time_s[self.row]
+
+    @property
+    def speed_rpm(self):
+        return self.run.speed_rpm[self.row]
+
+    def pieces(self, over_angle, highest_order):
+        """The signal over the angle, frame by frame."""
+        for start, lowest_rpm in zip(self.start, self.lowest_rpm):
+            samples = self.turns * over_angle.samples_per_turn(highest_order, lowest_rpm)
+            yield over_angle.piece(start, self.turns, fft.next_fast_len(math.ceil(samples), real=True))
+
+    def trusted(self, orders):
+        """[frame, order]: whether the frequency of an order is one that the rate of the record holds."""
+        return np.outer(self.highest_rpm / 60.0, orders) <= self.run.trusted_Hz
+
+
+def fitting_turns(run):
+    """Turns in which the speed changes by SWEEP_OF_FRAME, at the mean speed."""
+    mean_rpm = run.speed_rpm.mean()
+    turns = SWEEP_OF_FRAME * mean_rpm**2 / (60.0 * max(run.sweep_rpm_per_s(), 1e-9))
+    whole = (run.angle_rad[-1] - run.angle_rad[0]) / (2.0 * np.pi)
+    return max(1.0, min(max(FEWEST_TURNS, min(MOST_TURNS, round(turns))), math.floor(whole / 4)))
+
+
+def frames_of(run, turns, points=None):
+    """Frames about rows at even distances in time, where the shaft turns fast enough and one way."""
+    turn = run.angle_rad / (2.0 * np.pi)
+    row = np.unique(np.linspace(0, len(turn) - 1, points or POINTS).astype(int))
+    start = turn[row] - turns / 2.0
+    first, last = np.searchsorted(turn, start), np.searchsorted(turn, start + turns)
+    slow = np.concatenate([[0], np.cumsum(run.speed_rpm < SLOWEST_SHARE * run.speed_rpm.max())])
+    inside = (start >= turn[0]) & (start + turns <= turn[-1]) & (last > first)
+    inside[inside] = slow[last[inside]] == slow[first[inside]]
+    row, start, first, last = row[inside], start[inside], first[inside], last[inside]
+
+    speeds = [run.speed_rpm[a:b] for a, b in zip(first, last)]
+    lowest, highest = np.array([(s.min(), s.max()) for s in speeds]).reshape(-1, 2).T
+    steady = highest <= STEADY_RATIO * np.maximum(lowest, 1e-300)
+    if not steady.any():
+        whole = turn[-1] - turn[0]
+        raise RunError(f"no {turns:g} turns at a speed that is steady enough; the record has {whole:.4g} turns (--turns)")
+    return Frames(run, turns, start[steady], row[steady], lowest[steady], highest[steady])
+
+
+# ----------------------------------------------------------------------------------------------------
+# Spectra
+# ----------------------------------------------------------------------------------------------------
+
+
+def spectra(frames, over_angle, highest_order, window="hann", padding=PADDING):
+    """(order, squared peak amplitude [frame, order]) of all frames, NaN where the rate does not hold the order."""
+    power = None
+    for i, piece in enumerate(frames.pieces(over_angle, highest_order)):
+        weight = signal.get_window(window, len(piece))
+        bins = int(highest_order * frames.turns * padding) + 1
+        spectrum = fft.rfft(piece * weight, padding * len(piece))[:bins]
+        if power is None:
+            power = np.empty((len(frames.row), bins), dtype=np.float32)
+        power[i] = np.abs(2.0 * spectrum / weight.sum()) ** 2
+    order = np.arange(power.shape[1]) / (frames.turns * padding)
+    power[~frames.trusted(order)] = np.nan
+    return order, power
+
+
+def mean_power(power):
+    """Mean over the frames that hold an order; NaN where none does."""
+    count = np.isfinite(power).sum(axis=0)
+    return np.where(count > 0, np.nansum(power, axis=0, dtype=float) / np.maximum(count, 1), np.nan)
+
+
+def tracked(frames, over_angle, orders, window="hann"):
+    """Amplitudes [order, frame] of any orders, whole or not, read at the order itself; NaN: the rate does not hold it."""
+    highest = max(orders)
+    found = np.empty((len(orders), len(frames.row)))
+    for i, piece in enumerate(frames.pieces(over_angle, highest)):
+        weight = signal.get_window(window, len(piece))
+        at = np.arange(len(piece)) * (frames.turns / len(piece))
+        waves = np.exp(-2j * np.pi * np.outer(orders, at))
+        found[:, i] = np.abs(waves @ (piece * weight)) * 2.0 / weight.sum()
+    return np.where(frames.trusted(orders).T, found, np.nan)
+
+
+def overall(frames):
+    """Rms of the signal without its mean in each frame."""
+    turn = frames.run.angle_rad / (2.0 * np.pi)
+    ends = np.searchsorted(turn, (frames.start, frames.start + frames.turns)).T
+    return np.array([frames.run.force_N[first:last].std() for first, last in ends])
+
+
+# ----------------------------------------------------------------------------------------------------
+# Vold-Kalman filter
+# ----------------------------------------------------------------------------------------------------
+
+
+def vold_kalman(run, orders, bandwidth, at_rows):
+    """Amplitudes [order, row] of any orders at some rows; `bandwidth` in orders, between the half powers."""
+    found = np.full((len(orders), len(at_rows)), np.nan)
+    turn = run.angle_rad / (2.0 * np.pi)
+    fast = run.speed_rpm >= SLOWEST_SHARE * run.speed_rpm.max()
+    edges = np.flatnonzero(np.diff(np.concatenate([[False], fast, [False]]).astype(int)))
+    values = run.force_N - run.force_N.mean()
+
+    # Each stretch that turns one way by itself.
+    for first, last in zip(edges[::2], edges[1::2]):
+        steps = STEPS_OF_BANDWIDTH * bandwidth * (turn[first:last] - turn[first])
+        if steps[-1] < STEPS_OF_BANDWIDTH:
+            continue
+        envelopes = _envelopes(values[first:last], run.angle_rad[first:last], steps, orders)
+        rows = np.flatnonzero((at_rows >= first) & (at_rows < last))
+        middles = np.arange(envelopes.shape[1]) + 0.5
+        for k, envelope in enumerate(envelopes):
+            parts = [np.interp(steps[at_rows[rows] - first], middles, part) for part in (envelope.real, envelope.imag)]
+            found[k, rows] = np.hypot(*parts)
+    frequency_Hz = np.outer(orders, run.speed_rpm[at_rows] / 60.0)
+    return np.where(frequency_Hz <= run.trusted_Hz, found, np.nan)
+
+
+def _envelopes(values, angle_rad, steps, orders):
+    """Complex envelopes [order, step] that minimise |values - sum of Re(envelope exp(i order angle))|^2 + r^2 |D envelope|^2.
+
+    D are the second differences from step to step. In the mean over a turn the first term weighs an envelope with half
+    the number of rows n of its step. With r^2 = n / 2 (sqrt(2) - 1) / (2 sin(pi b / 2))^4 a modulation by half the
+    bandwidth, b = 1 / STEPS_OF_BANDWIDTH of it in a step, comes out with half its power.
+    """
+    size, unknowns = 2 * len(orders), 2 * len(orders)
+    step_of = np.minimum(steps.astype(int), math.ceil(steps[-1]) - 1)
+    count = int(step_of[-1]) + 1
+    waves = np.empty((size, len(values)))
+    for k, order in enumerate(orders):
+        phase = np.remainder(order * angle_rad, 2.0 * np.pi)
+        waves[2 * k], waves[2 * k + 1] = np.cos(phase), -np.sin(phase)
+
+    # The signal: sums over the rows of each step, a band of `unknowns` at either side of the diagonal.
+    band = 2 * unknowns
+    matrix, right = np.zeros((band + 1, count * unknowns)), np.zeros((count, unknowns))
+    for i in range(unknowns):
+        right[:, i] = np.bincount(step_of, waves[i] * values, count)
+        for j in range(i, unknowns):
+            matrix[band + i - j, j::unknowns] = np.bincount(step_of, waves[i] * waves[j], count)
+
+    # The smoothness.
+    rows = np.interp(np.arange(count - 2) + 1.5, steps, np.gradient(np.arange(len(steps)), steps))
+    weight = rows / 2.0 * (math.sqrt(2.0) - 1.0) / (2.0 * math.sin(math.pi / (2 * STEPS_OF_BANDWIDTH))) ** 4
+    for i, one in enumerate((1.0, -2.0, 1.0)):
+        for j, other in list(enumerate((1.0, -2.0, 1.0)))[i:]:
+            into = matrix[band - (j - i) * unknowns].reshape(count, unknowns)
+            into[j : j + count - 2] += (weight * one * other)[:, None]
+
+    parts = linalg.solveh_banded(matrix, right.ravel(), overwrite_ab=True, check_finite=False).reshape(count, unknowns)
+    return (parts[:, 0::2] + 1j * parts[:, 1::2]).T
+
+
+# ----------------------------------------------------------------------------------------------------
+# Maps
+# ----------------------------------------------------------------------------------------------------
+
+
+class Map:
+    """Power over order and speed (or time): rows from low to high, evenly."""
+
+    def __init__(self, order, row, row_range, power, over_time):
+        self.order, self.row, self.row_range, self.power, self.over_time = order, row, row_range, power, over_time
+
+
+def order_map(frames, order, power, over_time, rows=330):
+    """Mean power of the frames of each row; a row between two that have frames is interpolated."""
+    run = frames.run
+    along = frames.time_s if over_time else frames.speed_rpm
+    whole = run.time_s if over_time else run.speed_rpm
+    low, high = (float(whole.min()), float(whole.max())) if over_time else (float(along.min()), float(along.max()))
+    if high <= low:
+        low, high = low - 0.5, high + 0.5
+    rows = max(1, min(rows, len(along) // 2))
+    row_of = np.clip(((along - low) / (high - low) * rows).astype(int), 0, rows - 1)
+    filled = np.unique(row_of)
+    mean = np.array([mean_power(power[row_of == row]) for row in filled])
+    middles = low + (np.arange(rows) + 0.5) * (high - low) / rows
+    nearest = np.abs(np.arange(rows)[:, None] - filled).argmin(axis=1)
+    return Map(order, middles, (low, high), mean[nearest], over_time)
+
+
+def pooled(order, power, columns=1400):
+    """The same with no more columns than a picture shows: the highest of those beside each other. (step, power)"""
+    group = max(1, -(-len(order) // columns))
+    kept = len(order) // group * group
+    with np.errstate(invalid="ignore"):
+        shown = np.fmax.reduce(power[:, :kept].reshape(len(power), -1, group), axis=2)
+    return group * (order[1] - order[0]), shown
