@@ -212,14 +212,14 @@ static void error_can_be_measured(void) {
     fixture f;
     make_paper(&f, &params);
     gm_cache_errors fine, again, spoilt;
-    GM_ASSERT_INT(gm_cache_error(f.cache, 2000, 7, &fine), GM_OK);
+    GM_ASSERT_INT(gm_cache_error(f.cache, 2000, 7, NULL, &fine), GM_OK);
     GM_ASSERT(fine.sum_rms > 0.0 && fine.sum_rms <= 2.5e-4 * sum_at_20_Nm);
     GM_ASSERT(fine.sum_largest >= fine.sum_rms && fine.sum_largest <= 3e-3 * sum_at_20_Nm);
     GM_ASSERT(fine.contact_rms > 0.0 && fine.contact_rms <= 0.01);
     GM_ASSERT(fine.contact_largest >= fine.contact_rms && fine.contact_largest <= 0.15);
-    GM_ASSERT_INT(gm_cache_error(f.cache, 2000, 7, &again), GM_OK);
+    GM_ASSERT_INT(gm_cache_error(f.cache, 2000, 7, NULL, &again), GM_OK);
     GM_ASSERT(memcmp(&fine, &again, sizeof fine) == 0);
-    GM_ASSERT_INT(gm_cache_error(f.cache, 2000, 8, &again), GM_OK);
+    GM_ASSERT_INT(gm_cache_error(f.cache, 2000, 8, NULL, &again), GM_OK);
     GM_ASSERT(fine.sum_largest != again.sum_largest);
 
     /* One per cent more in every node is seen as one: sums are 19 um on average at half the depth. */
@@ -228,14 +228,14 @@ static void error_can_be_measured(void) {
     for (size_t i = 0; i < values; ++i) {
         f.cache->values[i] *= 1.01F;
     }
-    GM_ASSERT_INT(gm_cache_error(f.cache, 2000, 7, &spoilt), GM_OK);
+    GM_ASSERT_INT(gm_cache_error(f.cache, 2000, 7, NULL, &spoilt), GM_OK);
     GM_ASSERT(spoilt.sum_rms > 5.0 * fine.sum_rms);
     free_fixture(&f);
 
-    GM_ASSERT_INT(gm_cache_error(NULL, 10, 1, &spoilt), GM_ERR_NULL);
+    GM_ASSERT_INT(gm_cache_error(NULL, 10, 1, NULL, &spoilt), GM_ERR_NULL);
     GM_ASSERT_NAN(spoilt.sum_rms);
-    GM_ASSERT_INT(gm_cache_error(f.cache, 10, 1, NULL), GM_ERR_NULL);
-    GM_ASSERT_INT(gm_cache_error(f.cache, 0, 1, &spoilt), GM_ERR_PARAMETER);
+    GM_ASSERT_INT(gm_cache_error(f.cache, 10, 1, NULL, NULL), GM_ERR_NULL);
+    GM_ASSERT_INT(gm_cache_error(f.cache, 0, 1, NULL, &spoilt), GM_ERR_PARAMETER);
     GM_ASSERT_NAN(spoilt.contact_largest);
 }
 
@@ -492,8 +492,8 @@ static void bad_states_are_refused_as_without_a_cache(void) {
     free_fixture(&f);
 
     gm_cache_errors errors;
-    GM_ASSERT_INT(gm_cache_fill(NULL, 0, 0), GM_ERR_NULL);
-    GM_ASSERT_INT(gm_cache_error(NULL, 1, 1, &errors), GM_ERR_NULL);
+    GM_ASSERT_INT(gm_cache_fill(NULL, 0, 0, NULL), GM_ERR_NULL);
+    GM_ASSERT_INT(gm_cache_error(NULL, 1, 1, NULL, &errors), GM_ERR_NULL);
     GM_ASSERT_INT(gm_cache_passes(NULL), 0);
 }
 
@@ -680,7 +680,7 @@ typedef struct filler {
 
 static void *fill(void *argument) {
     filler *work = argument;
-    work->status = gm_cache_fill(work->cache, work->first, work->count);
+    work->status = gm_cache_fill(work->cache, work->first, work->count, NULL);
     return NULL;
 }
 
@@ -721,12 +721,12 @@ static void threads_may_fill_and_then_share(void) {
     GM_ASSERT(memcmp(before, filled.cache, filled.size) == 0);
     free(before);
 
-    GM_ASSERT_INT(gm_cache_fill(NULL, 0, 1), GM_ERR_NULL);
-    GM_ASSERT_INT(gm_cache_fill(lazy.cache, -1, 1), GM_ERR_PARAMETER);
-    GM_ASSERT_INT(gm_cache_fill(lazy.cache, 0, -1), GM_ERR_PARAMETER);
-    GM_ASSERT_INT(gm_cache_fill(lazy.cache, passes, 1), GM_ERR_PARAMETER);
-    GM_ASSERT_INT(gm_cache_fill(lazy.cache, 1, passes), GM_ERR_PARAMETER);
-    GM_ASSERT_INT(gm_cache_fill(lazy.cache, passes, 0), GM_OK);
+    GM_ASSERT_INT(gm_cache_fill(NULL, 0, 1, NULL), GM_ERR_NULL);
+    GM_ASSERT_INT(gm_cache_fill(lazy.cache, -1, 1, NULL), GM_ERR_PARAMETER);
+    GM_ASSERT_INT(gm_cache_fill(lazy.cache, 0, -1, NULL), GM_ERR_PARAMETER);
+    GM_ASSERT_INT(gm_cache_fill(lazy.cache, passes, 1, NULL), GM_ERR_PARAMETER);
+    GM_ASSERT_INT(gm_cache_fill(lazy.cache, 1, passes, NULL), GM_ERR_PARAMETER);
+    GM_ASSERT_INT(gm_cache_fill(lazy.cache, passes, 0, NULL), GM_OK);
     free_fixture(&filled);
     free_fixture(&lazy);
 }
@@ -832,7 +832,7 @@ static void wrong_calls_are_refused(void) {
     GM_ASSERT(cache == NULL);
     GM_ASSERT_INT(gm_cache_init(NULL, &good, mesh, memory, size), GM_ERR_NULL);
     GM_ASSERT_INT(gm_cache_init(&cache, &good, mesh, memory, size), GM_OK);
-    GM_ASSERT_INT(gm_cache_fill(cache, 0, 1), GM_OK);
+    GM_ASSERT_INT(gm_cache_fill(cache, 0, 1, NULL), GM_OK);
     free(mesh);
     free(jumping);
 }
@@ -852,10 +852,10 @@ static void a_pair_that_hardly_touches_is_measured_in_bounded_time(void) {
     const gm_cache_params coarse = params_of(GM_DRIVE, 8, 8, 20e-6);
     make_cache(&f, &coarse);
     gm_cache_errors errors;
-    GM_ASSERT_INT(gm_cache_error(f.cache, 500, 1, &errors), GM_OK);
+    GM_ASSERT_INT(gm_cache_error(f.cache, 500, 1, NULL, &errors), GM_OK);
     GM_ASSERT(errors.sum_largest < 1e-6); /* steps of 2.5 um */
 
-    GM_ASSERT_INT(gm_cache_fill(f.cache, 0, f.cache->passes), GM_OK);
+    GM_ASSERT_INT(gm_cache_fill(f.cache, 0, f.cache->passes, NULL), GM_OK);
     int without = 0;
     const int all = f.cache->passes * f.cache->columns;
     for (int i = 0; i < all; ++i) {

@@ -16,15 +16,15 @@
 static long evaluations;
 
 #ifdef GM_TEST_COUNTS_EVALUATIONS
-void __real_gmi_mesh_evaluate_exact(const gm_mesh *mesh, const gm_position *position, int wanted,
-                                    gm_mesh_result *result);
-void __wrap_gmi_mesh_evaluate_exact(const gm_mesh *mesh, const gm_position *position, int wanted,
-                                    gm_mesh_result *result);
+int __real_gmi_mesh_evaluate_exact(const gm_mesh *mesh, const gm_position *position, int wanted,
+                                   gm_workspace *workspace, gm_mesh_result *result);
+int __wrap_gmi_mesh_evaluate_exact(const gm_mesh *mesh, const gm_position *position, int wanted,
+                                   gm_workspace *workspace, gm_mesh_result *result);
 
-void __wrap_gmi_mesh_evaluate_exact(const gm_mesh *mesh, const gm_position *position, int wanted,
-                                    gm_mesh_result *result) {
+int __wrap_gmi_mesh_evaluate_exact(const gm_mesh *mesh, const gm_position *position, int wanted,
+                                   gm_workspace *workspace, gm_mesh_result *result) {
     ++evaluations;
-    __real_gmi_mesh_evaluate_exact(mesh, position, wanted, result);
+    return __real_gmi_mesh_evaluate_exact(mesh, position, wanted, workspace, result);
 }
 #endif
 

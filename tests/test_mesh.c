@@ -85,8 +85,8 @@ static void a_field_at_fault_is_named(void) {
     } wrong[] = {
         {"model", model, -1},
         {"model", model, 2},
-        {"law", "GM_LAW_CONSTANT or GM_LAW_ISO6336", -1},
-        {"law", "GM_LAW_CONSTANT or GM_LAW_ISO6336", 2},
+        {"law", "GM_LAW_CONSTANT, GM_LAW_ISO6336 or GM_LAW_ELASTIC", -1},
+        {"law", "GM_LAW_CONSTANT, GM_LAW_ISO6336 or GM_LAW_ELASTIC", 3},
         {"stiffness", stiffness, 0.0},
         {"stiffness", stiffness, -1e8},
         {"stiffness", stiffness, 0.99e-30},

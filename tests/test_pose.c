@@ -504,7 +504,7 @@ static void a_cache_of_a_posed_mesh_is_as_good(void) {
         const size_t size = gm_cache_size(&resolution, mesh);
         void *memory = malloc(size);
         GM_ASSERT_INT(gm_cache_init(&cache, &resolution, mesh, memory, size), GM_OK);
-        GM_ASSERT_INT(gm_cache_error(cache, 2000, 3, &found), GM_OK);
+        GM_ASSERT_INT(gm_cache_error(cache, 2000, 3, NULL, &found), GM_OK);
         errors[posed] = found.sum_rms;
         free(memory);
     }

@@ -14,6 +14,7 @@
  * kink moves with delta where the wheel sets the limit; the cell around it is as wide as it moves, and narrow still.
  */
 #include "cache.h"
+#include "elastic_mesh.h"
 #include "internal.h"
 #include "penetration.h"
 
@@ -206,6 +207,14 @@ static int describe(gm_cache *cache, const gm_cache_params *params, const gm_mes
     cache->side = params->side;
     cache->pinion_period = period_of(side->pinion, pair->pinion.teeth);
     cache->wheel_period = period_of(side->wheel, pair->wheel.teeth);
+
+    /* Teeth that are not all as stiff differ as well. */
+    if (gmi_elastic_is_uneven(mesh, GM_PINION)) {
+        cache->pinion_period = pair->pinion.teeth;
+    }
+    if (gmi_elastic_is_uneven(mesh, GM_WHEEL)) {
+        cache->wheel_period = pair->wheel.teeth;
+    }
     cache->common = common_divisor(cache);
 
     /* The grid over phase and delta. */
@@ -283,27 +292,25 @@ int gm_cache_passes(const gm_cache *cache) {
  * Filling
  * ------------------------------------------------------------------------------------------- */
 
-static gmi_side_sum exact_at(const gm_cache *cache, gm_position *position, double delta) {
+static gmi_side_sum exact_at(const gm_cache *cache, gm_position *position, double delta,
+                             gm_workspace *workspace) {
     const double offset = delta + 0.5 * cache->mesh->engagement.backlash;
-    const gmi_side *side = &cache->mesh->side[cache->side];
     gmi_side_sum sum;
     position->offset = gmi_side_sign(cache->side) * offset;
-    if (gmi_side_is_clear(&cache->mesh->engagement, side, cache->side, position->offset)) {
-        return gmi_no_contact();
-    }
-    gmi_side_sum_3d(cache->pair, &cache->mesh->engagement, side, cache->side, position,
-                    GMI_DERIVATIVES | (cache->mesh->engagement.is_tilted ? GMI_MOMENTS : 0), &sum);
+    (void)gmi_side_sum_by_law(
+        cache->mesh, cache->side, position,
+        GMI_DERIVATIVES | (cache->mesh->engagement.is_tilted ? GMI_MOMENTS : 0), workspace, &sum);
     return sum;
 }
 
 /* Where contact begins, or a little below; infinite if no line exists at this phase. */
-static double find_start(const gm_cache *cache, gm_position *position) {
+static double find_start(const gm_cache *cache, gm_position *position, gm_workspace *workspace) {
     const double fine = ldexp(cache->depth, -START_BISECTIONS);
 
     /* In growing steps upwards to the first delta at which something touches. */
     double without = cache->lowest;
     double step = cache->depth;
-    for (; exact_at(cache, position, without + step).sum == 0.0; step *= 2.0) {
+    for (; exact_at(cache, position, without + step, workspace).sum == 0.0; step *= 2.0) {
         without += step;
         if (without > 0.5 * cache->pair->transverse_base_pitch) {
             return HUGE_VAL;
@@ -313,7 +320,7 @@ static double find_start(const gm_cache *cache, gm_position *position) {
     /* Bisection between there and the last delta without contact. */
     while (step > fine) {
         step *= 0.5;
-        if (exact_at(cache, position, without + step).sum == 0.0) {
+        if (exact_at(cache, position, without + step, workspace).sum == 0.0) {
             without += step;
         }
     }
@@ -341,21 +348,21 @@ static void set_node(const gm_cache *cache, float *node, double value, const gmi
     node[NODE_BY_PHASE] = (float)(cache->side == GM_DRIVE ? sum->by_origin : -sum->by_origin);
 }
 
-static void fill_column(gm_cache *cache, int pass, int index) {
+static void fill_column(gm_cache *cache, int pass, int index, gm_workspace *workspace) {
     const size_t column = (size_t)pass * (size_t)cache->columns + (size_t)index;
     gm_position position = {0, 0, cache->phases[index], 0.0, 0.0};
     set_teeth(cache, pass, &position);
 
     /* Nodes from the first touch on; none where no line exists. */
-    const double start = find_start(cache, &position);
+    const double start = find_start(cache, &position, workspace);
     if (start < HUGE_VAL) {
         float *values = values_of(cache, column);
         /* Even flanks touch all at once: the slope at the start is the one behind it. */
         gmi_side_sum sum =
-            exact_at(cache, &position, start + ldexp(cache->depth, -START_BISECTIONS));
+            exact_at(cache, &position, start + ldexp(cache->depth, -START_BISECTIONS), workspace);
         set_node(cache, values, 0.0, &sum);
         for (int n = 1; n < cache->nodes; ++n) {
-            sum = exact_at(cache, &position, start + (double)n * cache->step);
+            sum = exact_at(cache, &position, start + (double)n * cache->step, workspace);
             set_node(cache, values + n * NODE_VALUES, sum.sum, &sum);
         }
         set_mixed(values, cache->nodes);
@@ -364,14 +371,14 @@ static void fill_column(gm_cache *cache, int pass, int index) {
 }
 
 /* Filled already, or fills it. */
-static void need_column(gm_cache *cache, int pass, int index) {
+static void need_column(gm_cache *cache, int pass, int index, gm_workspace *workspace) {
     const double start = cache->starts[(size_t)pass * (size_t)cache->columns + (size_t)index];
     if (start != start) {
-        fill_column(cache, pass, index);
+        fill_column(cache, pass, index, workspace);
     }
 }
 
-int gm_cache_fill(gm_cache *cache, int first_pass, int count) {
+int gm_cache_fill(gm_cache *cache, int first_pass, int count, gm_workspace *workspace) {
     if (cache == NULL) {
         return GM_ERR_NULL;
     }
@@ -380,7 +387,7 @@ int gm_cache_fill(gm_cache *cache, int first_pass, int count) {
     }
     for (int pass = first_pass; pass < first_pass + count; ++pass) {
         for (int index = 0; index < cache->columns; ++index) {
-            need_column(cache, pass, index);
+            need_column(cache, pass, index, workspace);
         }
     }
     return GM_OK;
@@ -496,7 +503,8 @@ static void join_columns(const gm_cache *cache, int index, double phase, const c
     sum->pairs = -1;
 }
 
-int gmi_cache_look_up(gm_cache *cache, const gm_position *position, gmi_side_sum *sum) {
+int gmi_cache_look_up(gm_cache *cache, const gm_position *position, gm_workspace *workspace,
+                      gmi_side_sum *sum) {
     const double delta =
         gmi_ideal_penetration(&cache->mesh->engagement, cache->side, position->offset);
     *sum = gmi_no_contact();
@@ -513,8 +521,8 @@ int gmi_cache_look_up(gm_cache *cache, const gm_position *position, gmi_side_sum
     /* Both columns around the phase, filled where they are not yet. */
     const int index = column_before(cache, position->phase);
     const size_t column = (size_t)pass * (size_t)cache->columns + (size_t)index;
-    need_column(cache, pass, index);
-    need_column(cache, pass, index + 1);
+    need_column(cache, pass, index, workspace);
+    need_column(cache, pass, index + 1, workspace);
 
     column_value a, b;
     if (!read_column(cache, column, delta, &a) || !read_column(cache, column + 1, delta, &b)) {
@@ -533,7 +541,8 @@ static void add_error(double error, double *largest, double *squares) {
     *squares += error * error;
 }
 
-int gm_cache_error(gm_cache *cache, int states, unsigned seed, gm_cache_errors *errors) {
+int gm_cache_error(gm_cache *cache, int states, unsigned seed, gm_workspace *workspace,
+                   gm_cache_errors *errors) {
     if (errors == NULL) {
         return GM_ERR_NULL;
     }
@@ -555,7 +564,7 @@ int gm_cache_error(gm_cache *cache, int states, unsigned seed, gm_cache_errors *
         gm_position position = {0, 0, gmi_random_unit(&random) * last_phase, 0.0, 0.0};
         const int index = column_before(cache, position.phase);
         set_teeth(cache, pass, &position);
-        need_column(cache, pass, index);
+        need_column(cache, pass, index, workspace);
         const double start = cache->starts[(size_t)pass * (size_t)cache->columns + (size_t)index];
         const double depth = gmi_random_unit(&random) * cache->depth;
         if (!(start < HUGE_VAL)) {
@@ -563,8 +572,8 @@ int gm_cache_error(gm_cache *cache, int states, unsigned seed, gm_cache_errors *
         }
 
         gmi_side_sum looked_up;
-        const gmi_side_sum exact = exact_at(cache, &position, start + depth);
-        if (!gmi_cache_look_up(cache, &position, &looked_up)) {
+        const gmi_side_sum exact = exact_at(cache, &position, start + depth, workspace);
+        if (!gmi_cache_look_up(cache, &position, workspace, &looked_up)) {
             continue; /* beyond the cache, which answers exactly there */
         }
         add_error(looked_up.sum - exact.sum, &sum_largest, &sum_squares);

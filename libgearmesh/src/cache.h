@@ -28,6 +28,7 @@ struct gm_cache {
 };
 
 /* The sum of the side that the cache holds. Returns 0 where the exact evaluation has to answer. */
-int gmi_cache_look_up(gm_cache *cache, const gm_position *position, gmi_side_sum *sum);
+int gmi_cache_look_up(gm_cache *cache, const gm_position *position, gm_workspace *workspace,
+                      gmi_side_sum *sum);
 
 #endif

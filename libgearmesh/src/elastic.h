@@ -44,8 +44,10 @@ enum {
     GMI_ELASTIC_ITERATIONS = 20
 };
 
-/* Statuses beside those of gearmesh.h: positive, a smaller step may help. */
-enum { GMI_ELASTIC_NO_CONVERGENCE = 5 };
+/* Materials beyond these are refused. */
+#define GMI_ELASTIC_LEAST_MODULUS   1e6  /* (N/m2) */
+#define GMI_ELASTIC_LARGEST_MODULUS 1e15 /* (N/m2) */
+#define GMI_ELASTIC_LARGEST_RATIO   0.499
 
 /* Constants of the model, fitted to finite elements; elastic.md says how. */
 #define GMI_ELASTIC_HERTZ_OFFSET 0.06 /* kappa_H */
@@ -292,7 +294,7 @@ typedef struct gmi_elastic_result {
 } gmi_elastic_result;
 
 /*
- * Deflections of all teeth at the approach x, all lines together. GM_OK or GMI_ELASTIC_NO_CONVERGENCE (results NaN).
+ * Deflections of all teeth at the approach x, all lines together. GM_OK or GM_NO_CONVERGENCE (results NaN).
  * Fills load, approach_at and stiffness over the points.
  */
 int gmi_elastic_solve(const gmi_elastic *law, gmi_elastic_work *work, double approach,

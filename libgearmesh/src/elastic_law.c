@@ -12,10 +12,6 @@
 #include <math.h>
 #include <string.h>
 
-#define LEAST_YOUNGS_MODULUS   1e6  /* N/m2 */
-#define LARGEST_YOUNGS_MODULUS 1e15 /* N/m2 */
-#define LARGEST_POISSON_RATIO  0.499
-
 int gmi_elastic_lines(double total_contact_ratio) {
     /* A path of that many pitches holds one line more at times; and one for a path that a pose lengthens. */
     return (int)fmin(total_contact_ratio, 1e6) + 2;
@@ -27,9 +23,9 @@ static int check(const gmi_elastic_params *params) {
                params->lines <= GMI_ELASTIC_LINES_MAX;
     for (int g = 0; g < 2; ++g) {
         const gmi_elastic_gear_params *gear = &params->gear[g];
-        good = good && gear->youngs_modulus >= LEAST_YOUNGS_MODULUS &&
-               gear->youngs_modulus <= LARGEST_YOUNGS_MODULUS && gear->poisson_ratio >= 0.0 &&
-               gear->poisson_ratio <= LARGEST_POISSON_RATIO && gear->rack_dedendum > 0.0 &&
+        good = good && gear->youngs_modulus >= GMI_ELASTIC_LEAST_MODULUS &&
+               gear->youngs_modulus <= GMI_ELASTIC_LARGEST_MODULUS && gear->poisson_ratio >= 0.0 &&
+               gear->poisson_ratio <= GMI_ELASTIC_LARGEST_RATIO && gear->rack_dedendum > 0.0 &&
                gear->rack_fillet_radius >= 0.0 && gear->rack_fillet_radius < gear->rack_dedendum &&
                gear->start_roll_length >= 0.0 && gear->tip_roll_length > gear->start_roll_length;
     }

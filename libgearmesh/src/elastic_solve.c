@@ -385,5 +385,5 @@ int gmi_elastic_solve(const gmi_elastic *law, gmi_elastic_work *work, double app
         last = fall;
     }
     answer_nan(work, result);
-    return GMI_ELASTIC_NO_CONVERGENCE;
+    return GM_NO_CONVERGENCE;
 }

@@ -19,6 +19,7 @@
 
 typedef struct problem {
     const gm_mesh *mesh;
+    gm_workspace *workspace;
     const gm_pair *pair;
     gm_position position; /* phase and teeth; offset is the unknown */
     double direction;     /* +1: x grows with the load, -1: it falls */
@@ -43,7 +44,7 @@ typedef struct bracket {
 static double residual(const problem *p, double travel, gm_mesh_result *result) {
     gm_position position = p->position;
     position.offset = p->direction * travel;
-    gmi_mesh_evaluate_exact(p->mesh, &position, GM_WANT_DERIVATIVES, result);
+    (void)gmi_mesh_evaluate_exact(p->mesh, &position, GM_WANT_DERIVATIVES, p->workspace, result);
     return p->direction * result->contact.penetration - p->target;
 }
 
@@ -89,6 +90,9 @@ static int solve(const problem *p, bracket within, double travel, double reach, 
         *found = travel;
         if (fabs(value) <= p->resolution * slope) {
             return 1;
+        }
+        if (isnan(value)) {
+            return 0; /* elastic teeth that found no balance */
         }
 
         /* Where the load is reached is the upper end, where it is not the lower one. */
@@ -239,8 +243,8 @@ static int find(const problem *p, double guess, double *found, gm_mesh_result *r
 }
 
 int gm_static_equilibrium(const gm_mesh *mesh, double pinion_angle, double wheel_torque,
-                          double guess, void *workspace, double *offset, gm_mesh_result *result) {
-    (void)workspace;
+                          double guess, gm_workspace *workspace, double *offset,
+                          gm_mesh_result *result) {
     if (result != NULL) {
         gmi_mesh_result_set_nan(result); /* until found */
     }
@@ -255,7 +259,7 @@ int gm_static_equilibrium(const gm_mesh *mesh, double pinion_angle, double wheel
         return GM_ERR_PARAMETER;
     }
 
-    problem p = {mesh, mesh->pair, {0, 0, 0.0, 0.0, 0.0}, 1.0, 0.0, 0.0};
+    problem p = {mesh, workspace, mesh->pair, {0, 0, 0.0, 0.0, 0.0}, 1.0, 0.0, 0.0};
     int status = gm_position_from_pinion_angle(p.pair, pinion_angle, 0.0, 0.0, &p.position);
     if (status != GM_OK) {
         return status;

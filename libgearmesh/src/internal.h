@@ -161,6 +161,7 @@ enum gmi_wanted {
     GMI_SUM = 0,
     GMI_DERIVATIVES = 1,        /* of the sum, by the origin of the lines and by delta */
     GMI_MOMENTS = 2,            /* first moments over t1 and rho_p */
+    GMI_ROLL = 8,               /* what a common roll of all lines does to the energy */
     GMI_CONTACT_DERIVATIVES = 4 /* of the touching part; only together with GMI_DERIVATIVES */
 };
 
@@ -180,10 +181,13 @@ typedef struct gmi_side_sum {
     double sum_rho;     /* of max(0, delta) rho_p (m2) */
     double contact_t1;  /* of t1 (1) */
     double contact_rho; /* of rho_p (m) */
+
+    double
+        roll; /* GMI_ROLL: energy by a common roll of all lines, over the stiffness; 0 with constant stiffness (m) */
 } gmi_side_sum;
 
 static inline gmi_side_sum gmi_no_contact(void) {
-    const gmi_side_sum none = {0.0, 0.0, 0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0};
+    const gmi_side_sum none = {0.0, 0.0, 0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0};
     return none;
 }
 
@@ -547,12 +551,13 @@ struct gm_mesh {
     gmi_side side[2]; /* GM_DRIVE, GM_COAST */
     int model;        /* enum gm_model */
     gmi_law law;
-    gm_cache *cache; /* NULL = exact */
+    const struct gmi_elastic_mesh *elastic; /* NULL = constant stiffness */
+    gm_cache *cache;                        /* NULL = exact */
 };
 
-/* As gm_mesh_evaluate_at() without the cache, of a position that has been checked and posed. */
-void gmi_mesh_evaluate_exact(const gm_mesh *mesh, const gm_position *position, int wanted,
-                             gm_mesh_result *result);
+/* As gm_mesh_evaluate_at() without the cache, of a position that has been checked and posed. GM_OK or GM_NO_CONVERGENCE. */
+int gmi_mesh_evaluate_exact(const gm_mesh *mesh, const gm_position *position, int wanted,
+                            gm_workspace *workspace, gm_mesh_result *result);
 void gmi_mesh_result_set_nan(gm_mesh_result *result);
 
 /* The position in the coordinates of the posed pair. */

@@ -6,6 +6,7 @@
  * overlaps is found by penetration.c or cache.c, law.c makes a force of it, wrench.c says where it acts.
  */
 #include "cache.h"
+#include "elastic_mesh.h"
 #include "internal.h"
 #include "penetration.h"
 
@@ -28,6 +29,18 @@ void gm_mesh_params_default(gm_mesh_params *params) {
         .damping = 0.0,
         .simple_stiffness = gmi_nan(),
         .pose = {0.0, 0.0, 0.0, 0.0, 0.0},
+
+        /* Steel. */
+        .pinion_youngs_modulus = 206e9,
+        .wheel_youngs_modulus = 206e9,
+        .pinion_poisson_ratio = 0.3,
+        .wheel_poisson_ratio = 0.3,
+        .pinion_bore_radius = gmi_nan(),
+        .wheel_bore_radius = gmi_nan(),
+        .pinion_tooth_stiffness = NULL,
+        .wheel_tooth_stiffness = NULL,
+        .reference_torque = gmi_nan(),
+        .stations = 17,
     };
     *params = defaults;
 }
@@ -36,35 +49,41 @@ static int is_stiffness(double value) {
     return value >= GMI_SMALLEST_STIFFNESS && value <= GMI_LARGEST_STIFFNESS;
 }
 
+/* The first field at fault, in the order of the struct; NULL if all is well. */
+static const char *field_at_fault(const gm_mesh_params *params, const char **wanted) {
+    static const char stiffness[] = "a stiffness from 1e-30 to 1e30 N/m";
+    if (params->model != GM_MODEL_3D && params->model != GM_MODEL_SIMPLE) {
+        *wanted = "GM_MODEL_3D or GM_MODEL_SIMPLE";
+        return "model";
+    }
+    if (params->law != GM_LAW_CONSTANT && params->law != GM_LAW_ISO6336 &&
+        params->law != GM_LAW_ELASTIC) {
+        *wanted = "GM_LAW_CONSTANT, GM_LAW_ISO6336 or GM_LAW_ELASTIC";
+        return "law";
+    }
+    if (params->law == GM_LAW_CONSTANT && !is_stiffness(params->stiffness)) {
+        *wanted = stiffness;
+        return "stiffness";
+    }
+    if (!(params->iso_blank_factor >= 0.01 && params->iso_blank_factor <= 2.0)) {
+        *wanted = "a factor from 0.01 to 2";
+        return "iso_blank_factor";
+    }
+    if (!(params->damping >= 0.0 && params->damping <= GMI_LARGEST_STIFFNESS)) {
+        *wanted = "a damping from 0 to 1e30 N s/m";
+        return "damping";
+    }
+    if (!isnan(params->simple_stiffness) && !is_stiffness(params->simple_stiffness)) {
+        *wanted = stiffness;
+        return "simple_stiffness";
+    }
+    return params->law == GM_LAW_ELASTIC ? gmi_elastic_field_at_fault(params, wanted) : NULL;
+}
+
 int gm_mesh_params_check(const gm_mesh_params *params, const char **field,
                          const char **requirement) {
-    static const char stiffness[] = "a stiffness from 1e-30 to 1e30 N/m";
-    const char *at_fault = NULL;
     const char *wanted = NULL;
-
-    /* The first field at fault, in the order of the struct. */
-    if (params == NULL) {
-        at_fault = NULL;
-    } else if (params->model != GM_MODEL_3D && params->model != GM_MODEL_SIMPLE) {
-        at_fault = "model";
-        wanted = "GM_MODEL_3D or GM_MODEL_SIMPLE";
-    } else if (params->law != GM_LAW_CONSTANT && params->law != GM_LAW_ISO6336) {
-        at_fault = "law";
-        wanted = "GM_LAW_CONSTANT or GM_LAW_ISO6336";
-    } else if (params->law == GM_LAW_CONSTANT && !is_stiffness(params->stiffness)) {
-        at_fault = "stiffness";
-        wanted = stiffness;
-    } else if (!(params->iso_blank_factor >= 0.01 && params->iso_blank_factor <= 2.0)) {
-        at_fault = "iso_blank_factor";
-        wanted = "a factor from 0.01 to 2";
-    } else if (!(params->damping >= 0.0 && params->damping <= GMI_LARGEST_STIFFNESS)) {
-        at_fault = "damping";
-        wanted = "a damping from 0 to 1e30 N s/m";
-    } else if (!isnan(params->simple_stiffness) && !is_stiffness(params->simple_stiffness)) {
-        at_fault = "simple_stiffness";
-        wanted = stiffness;
-    }
-
+    const char *at_fault = params == NULL ? NULL : field_at_fault(params, &wanted);
     if (field != NULL) {
         *field = at_fault;
     }
@@ -92,12 +111,31 @@ static int check(const gm_mesh_params *params, const gm_pair *pair) {
     }
 
     /* Gears may be too far off for the stiffness of a law that has its own. */
-    const int is_given = params->law == GM_LAW_CONSTANT;
-    return is_given || is_stiffness(gmi_law_of(params, pair).stiffness) ? GM_OK : GM_ERR_GEOMETRY;
+    const int has_own = params->law == GM_LAW_ISO6336;
+    return !has_own || is_stiffness(gmi_law_of(params, pair).stiffness) ? GM_OK : GM_ERR_GEOMETRY;
 }
 
 size_t gm_mesh_size(const gm_mesh_params *params, const gm_pair *pair) {
-    return check(params, pair) == GM_OK ? sizeof(gm_mesh) + sizeof(gm_pair) : 0;
+    if (check(params, pair) != GM_OK) {
+        return 0;
+    }
+    const size_t rigid = sizeof(gm_mesh) + sizeof(gm_pair);
+    if (params->law != GM_LAW_ELASTIC) {
+        return rigid;
+    }
+    const size_t elastic = gmi_elastic_mesh_size(params, pair);
+    return elastic == 0 ? 0 : rigid + elastic;
+}
+
+/* Elastic teeth behind the pair; what follows from them as parameters of the force law. */
+static int make_elastic(gm_mesh *mesh, gmi_elastic_mesh *elastic, gm_mesh_params *params) {
+    const int status =
+        gmi_elastic_mesh_init(elastic, params, mesh->pair, &mesh->engagement, NULL, NULL);
+    if (status == GM_OK) {
+        mesh->elastic = elastic;
+        params->stiffness = elastic->stiffness.mesh_mean / mesh->pair->transverse_contact_ratio;
+    }
+    return status;
 }
 
 int gm_mesh_init(gm_mesh **mesh, const gm_mesh_params *params, const gm_pair *pair,
@@ -111,6 +149,9 @@ int gm_mesh_init(gm_mesh **mesh, const gm_mesh_params *params, const gm_pair *pa
     int status = memory == NULL ? GM_ERR_NULL : check(params, pair);
     if (status == GM_OK) {
         status = gmi_check_flanks(pair, pinion_flanks, wheel_flanks);
+    }
+    if (status == GM_OK && gm_mesh_size(params, pair) == 0) {
+        status = GM_ERR_GEOMETRY;
     }
     if (status == GM_OK && (memory_size < gm_mesh_size(params, pair) || !gmi_is_aligned(memory))) {
         status = GM_ERR_MEMORY;
@@ -132,8 +173,15 @@ int gm_mesh_init(gm_mesh **mesh, const gm_mesh_params *params, const gm_pair *pa
     made->model = params->model;
 
     /* What its evaluations have in common. */
-    made->law = gmi_law_of(params, pair);
     made->engagement = engagement;
+    gm_mesh_params law = *params;
+    if (params->law == GM_LAW_ELASTIC) {
+        status = make_elastic(made, (gmi_elastic_mesh *)(own_pair + 1), &law);
+        if (status != GM_OK) {
+            return status;
+        }
+    }
+    made->law = gmi_law_of(&law, pair);
     made->is_posed = engagement.offset_shift != 0.0 || engagement.phase_shift != 0.0;
     if (params->model == GM_MODEL_SIMPLE) {
         pinion_flanks = wheel_flanks = NULL;
@@ -143,6 +191,72 @@ int gm_mesh_init(gm_mesh **mesh, const gm_mesh_params *params, const gm_pair *pa
                       side);
     }
     *mesh = made;
+    return GM_OK;
+}
+
+int gm_mesh_check_teeth(const gm_mesh_params *params, const gm_pair *pair, const char **field,
+                        const char **requirement, void *memory, size_t memory_size) {
+    if (field != NULL) {
+        *field = NULL;
+    }
+    if (requirement != NULL) {
+        *requirement = NULL;
+    }
+    gmi_engagement at;
+    int status = memory == NULL ? GM_ERR_NULL : check(params, pair);
+    if (status == GM_OK && params->law != GM_LAW_ELASTIC) {
+        status = GM_ERR_PARAMETER;
+    }
+    if (status == GM_OK && (memory_size < gm_mesh_size(params, pair) || !gmi_is_aligned(memory))) {
+        status = GM_ERR_MEMORY;
+    }
+    if (status == GM_OK) {
+        status = gmi_engagement_find(pair, &params->pose, &at);
+    }
+    return status == GM_OK ? gmi_elastic_mesh_init(memory, params, pair, &at, field, requirement)
+                           : status;
+}
+
+size_t gm_workspace_size(const gm_mesh *mesh) {
+    return mesh == NULL || mesh->elastic == NULL || mesh->model == GM_MODEL_SIMPLE
+               ? 0
+               : gmi_workspace_size(&mesh->elastic->law);
+}
+
+int gm_workspace_init(gm_workspace **workspace, const gm_mesh *mesh, void *memory,
+                      size_t memory_size) {
+    if (workspace == NULL) {
+        return GM_ERR_NULL;
+    }
+    *workspace = NULL;
+    const size_t size = gm_workspace_size(mesh);
+    if (mesh == NULL || (size > 0 && memory == NULL)) {
+        return GM_ERR_NULL;
+    }
+    if (memory_size < size || !gmi_is_aligned(memory)) {
+        return GM_ERR_MEMORY;
+    }
+    if (size > 0) {
+        *workspace = memory;
+        gmi_workspace_init(*workspace, &mesh->elastic->law);
+    }
+    return GM_OK;
+}
+
+int gm_mesh_elastic_stiffness(const gm_mesh *mesh, gm_mesh_stiffness *stiffness) {
+    if (stiffness == NULL) {
+        return GM_ERR_NULL;
+    }
+    const double nan = gmi_nan();
+    const gm_mesh_stiffness none = {nan, nan, nan, nan, nan, nan};
+    *stiffness = none;
+    if (mesh == NULL) {
+        return GM_ERR_NULL;
+    }
+    if (mesh->elastic == NULL) {
+        return GM_ERR_PARAMETER;
+    }
+    *stiffness = mesh->elastic->stiffness;
     return GM_OK;
 }
 
@@ -295,37 +409,84 @@ SPECIALIZED void evaluate(const gm_mesh *mesh, const gm_position *position, int 
     set_result(mesh, drive, coast, position->offset_rate, wanted, result);
 }
 
-void gmi_mesh_evaluate_exact(const gm_mesh *mesh, const gm_position *position, int wanted,
-                             gm_mesh_result *result) {
+/*
+ * Elastic teeth do work when all lines roll on together, with x held: the torque on the pinion exceeds F r_bp by it, or the
+ * energy would not be kept. Its derivative by the roll itself, below 1e-4 of the gradient, is left out of that.
+ */
+static void add_roll(const gm_mesh *mesh, const gmi_side_sum *drive, const gmi_side_sum *coast,
+                     int wanted, gm_mesh_result *result) {
+    const double r_bp = mesh->pair->pinion.base_radius;
+    const double k = mesh->law.stiffness;
+    result->pinion_torque += k * (drive->roll - coast->roll) * r_bp;
+    if (wanted & GM_WANT_DERIVATIVES) {
+        const double by_offset = k * (drive->by_origin + coast->by_origin) * r_bp;
+        result->pinion_torque_by.pinion_angle += by_offset * r_bp;
+        result->pinion_torque_by.wheel_angle -= by_offset * mesh->pair->wheel.base_radius;
+    }
+}
+
+static int evaluate_elastic(const gm_mesh *mesh, const gm_position *position, int wanted,
+                            gm_workspace *workspace, gm_mesh_result *result) {
+    gmi_side_sum sums[2];
+    const int mask = accumulated(mesh, position->offset_rate, wanted) | GMI_ROLL;
+    for (int side = GM_DRIVE; side <= GM_COAST; ++side) {
+        const int status = gmi_side_sum_by_law(mesh, side, position, mask, workspace, &sums[side]);
+        if (status != GM_OK) {
+            gmi_mesh_result_set_nan(result);
+            return status;
+        }
+    }
+    set_result(mesh, &sums[GM_DRIVE], &sums[GM_COAST], position->offset_rate, wanted, result);
+    add_roll(mesh, &sums[GM_DRIVE], &sums[GM_COAST], wanted, result);
+    return GM_OK;
+}
+
+/* Teeth that bend: the simple model has none. */
+static inline int is_elastic(const gm_mesh *mesh) {
+    return mesh->elastic != NULL && mesh->model != GM_MODEL_SIMPLE;
+}
+
+int gmi_mesh_evaluate_exact(const gm_mesh *mesh, const gm_position *position, int wanted,
+                            gm_workspace *workspace, gm_mesh_result *result) {
+    if (is_elastic(mesh)) {
+        return evaluate_elastic(mesh, position, wanted, workspace, result);
+    }
     evaluate(mesh, position, wanted, result);
+    return GM_OK;
 }
 
 /* The cache holds one side; the other one hardly ever touches, and is exact. */
-static void evaluate_cached(const gm_mesh *mesh, const gm_position *position, int wanted,
-                            gm_mesh_result *result) {
+static int evaluate_cached(const gm_mesh *mesh, const gm_position *position, int wanted,
+                           gm_workspace *workspace, gm_mesh_result *result) {
     const int held = mesh->cache->side;
-    gmi_side_sum memory[2];
-    if ((wanted & GM_WANT_WRENCH) || !gmi_cache_look_up(mesh->cache, position, &memory[held])) {
-        gmi_mesh_evaluate_exact(mesh, position, wanted, result);
-        return;
+    gmi_side_sum sums[2];
+    if ((wanted & GM_WANT_WRENCH) ||
+        !gmi_cache_look_up(mesh->cache, position, workspace, &sums[held])) {
+        return gmi_mesh_evaluate_exact(mesh, position, wanted, workspace, result);
     }
 
     const int other = held == GM_DRIVE ? GM_COAST : GM_DRIVE;
-    const gmi_side_sum *sums[2];
-    sums[held] = &memory[held];
-    sums[other] = exact_sum(mesh, other, position, wanted, &memory[other]);
+    const int mask = accumulated(mesh, position->offset_rate, wanted);
+    int status = gmi_side_sum_by_law(mesh, other, position, mask, workspace, &sums[other]);
 
     /* Only the exact evaluation counts pairs. */
-    if ((wanted & GM_WANT_PAIRS) && memory[held].pairs < 0) {
+    if (status == GM_OK && (wanted & GM_WANT_PAIRS) && sums[held].pairs < 0) {
         gmi_side_sum counted;
-        memory[held].pairs = exact_sum(mesh, held, position, GM_WANT_FORCE, &counted)->pairs;
+        status = gmi_side_sum_by_law(mesh, held, position, GMI_SUM, workspace, &counted);
+        sums[held].pairs = counted.pairs;
     }
-    set_result(mesh, sums[GM_DRIVE], sums[GM_COAST], position->offset_rate, wanted, result);
+    if (status != GM_OK) {
+        gmi_mesh_result_set_nan(result);
+        return status;
+    }
+    set_result(mesh, &sums[GM_DRIVE], &sums[GM_COAST], position->offset_rate, wanted, result);
+    return GM_OK;
 }
 
-static inline int check_evaluation(const gm_mesh *mesh, const gm_position *position, int wanted) {
+static inline int check_evaluation(const gm_mesh *mesh, const gm_position *position, int wanted,
+                                   const gm_workspace *workspace) {
     const int all = GM_WANT_DERIVATIVES | GM_WANT_WRENCH | GM_WANT_PAIRS;
-    if (mesh == NULL || position == NULL) {
+    if (mesh == NULL || position == NULL || (workspace == NULL && is_elastic(mesh))) {
         return GM_ERR_NULL;
     }
     if ((wanted & ~all) != 0) {
@@ -337,8 +498,7 @@ static inline int check_evaluation(const gm_mesh *mesh, const gm_position *posit
 }
 
 int gm_mesh_evaluate_at(const gm_mesh *mesh, const gm_position *position, int wanted,
-                        void *workspace, gm_mesh_result *result) {
-    (void)workspace;
+                        gm_workspace *workspace, gm_mesh_result *result) {
     if (result == NULL) {
         return GM_ERR_NULL;
     }
@@ -347,7 +507,7 @@ int gm_mesh_evaluate_at(const gm_mesh *mesh, const gm_position *position, int wa
         posed = gmi_mesh_posed(mesh, position);
         position = &posed;
     }
-    const int status = check_evaluation(mesh, position, wanted);
+    const int status = check_evaluation(mesh, position, wanted, workspace);
     if (status != GM_OK) {
         gmi_mesh_result_set_nan(result);
         return status;
@@ -355,8 +515,12 @@ int gm_mesh_evaluate_at(const gm_mesh *mesh, const gm_position *position, int wa
 
     /* Most calls want the force alone: a copy for them leaves all else out. */
     if (mesh->cache != NULL) {
-        evaluate_cached(mesh, position, wanted, result);
-    } else if (wanted == GM_WANT_FORCE) {
+        return evaluate_cached(mesh, position, wanted, workspace, result);
+    }
+    if (is_elastic(mesh)) {
+        return evaluate_elastic(mesh, position, wanted, workspace, result);
+    }
+    if (wanted == GM_WANT_FORCE) {
         evaluate(mesh, position, GM_WANT_FORCE, result);
     } else {
         evaluate(mesh, position, wanted, result);
@@ -364,8 +528,8 @@ int gm_mesh_evaluate_at(const gm_mesh *mesh, const gm_position *position, int wa
     return GM_OK;
 }
 
-int gm_mesh_evaluate(const gm_mesh *mesh, const gm_state *state, int wanted, void *workspace,
-                     gm_mesh_result *result) {
+int gm_mesh_evaluate(const gm_mesh *mesh, const gm_state *state, int wanted,
+                     gm_workspace *workspace, gm_mesh_result *result) {
     if (result == NULL) {
         return GM_ERR_NULL;
     }

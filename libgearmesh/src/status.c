@@ -21,6 +21,8 @@ const char *gm_status_text(int status) {
         return "the gears are posed so that they do not mesh: tips or faces miss each other, or a "
                "tip meets the "
                "mate's root";
+    case GM_NO_CONVERGENCE:
+        return "elastic teeth found no balance in the steps allowed";
     case GM_ERR_NULL:
         return "a required pointer is NULL";
     case GM_ERR_PARAMETER:

@@ -109,6 +109,7 @@ enum gm_status {
     GM_UNDETERMINED = 4,   /**< no torque: any position within the backlash is in equilibrium */
     GM_POSE_OUT_OF_MESH =
         5, /**< tilted by more than p_bt / 8 over the face, or posed so that tips or faces miss each other, or a tip meets the root of its mate */
+    GM_NO_CONVERGENCE = 6, /**< elastic teeth found no balance in the steps allowed */
 
     GM_ERR_NULL = -1,      /**< a required pointer is NULL */
     GM_ERR_PARAMETER = -2, /**< a parameter is out of its range, see gm_pair_params_check() */
@@ -201,13 +202,13 @@ typedef struct gm_pair_params {
  * What belongs to one gear alone, as drawn. Nothing of it moves with a pose. Read-only after gm_pair_init().
  */
 typedef struct gm_gear {
-    int teeth;            /**< z, of a ring its absolute value */
-    int start_is_given;   /**< 1: the drawing gives the start radius; 0: the mate's tip sets it */
+    int teeth;          /**< z, of a ring its absolute value */
+    int start_is_given; /**< 1: the drawing gives the start radius; 0: the mate's tip sets it */
     /** +1: external teeth; -1: a ring, of which ISO 21771 counts z and all lengths below 0. Here they are above. */
     double sign;
-    double profile_shift; /**< x, nominal (1) */
-    double rack_addendum; /**< h_aP / m_n (1) */
-    double rack_dedendum; /**< h_fP / m_n (1) */
+    double profile_shift;      /**< x, nominal (1) */
+    double rack_addendum;      /**< h_aP / m_n (1) */
+    double rack_dedendum;      /**< h_fP / m_n (1) */
     double rack_fillet_radius; /**< rho_fP / m_n (1) */
     double tip_alteration;   /**< k = (r_a - r) / m_n - h_aP - x, whichever of them was given (1) */
     double reference_radius; /**< r (m) */
@@ -692,10 +693,12 @@ enum gm_model {
 
 /** How force follows from overlap. */
 enum gm_law {
-    GM_LAW_CONSTANT =
-        0, /**< constant stiffness K of a pair of teeth, uniform over face and profile [Paper, Eq. 3] */
-    GM_LAW_ISO6336 =
-        1 /**< the same with K = c' times the common face width, gm_iso6336_single_stiffness() */
+    GM_LAW_CONSTANT = 0, /**< constant stiffness K of a pair of teeth, uniform over face and profile
+                              [Paper, Eq. 3] */
+    GM_LAW_ISO6336 = 1,  /**< the same with K = c' times the common face width,
+                              gm_iso6336_single_stiffness() */
+    GM_LAW_ELASTIC = 2 /**< teeth that bend, share the load and flatten, from drawing and material:
+                              docs/elastic.md */
 };
 
 /* ISO 6336-1, method B: stiffness of steel teeth from the gear data. What a constant stiffness of a pair of teeth cannot
@@ -763,6 +766,24 @@ typedef struct gm_mesh_params {
     double
         simple_stiffness; /**< spring of the simple model, 1e-30 .. 1e30 N/m [NaN: K eps_alpha] */
     gm_pose pose;         /**< of the wheel [as drawn] */
+
+    /* Of elastic teeth alone. The stiffness is then not needed: it follows. */
+    double pinion_youngs_modulus; /**< E, 1e6 .. 1e15 N/m2 [206e9] */
+    double wheel_youngs_modulus;  /**< as for the pinion */
+    double pinion_poisson_ratio;  /**< nu, 0 .. 0.499 [0.3] */
+    double wheel_poisson_ratio;   /**< as for the pinion */
+    double
+        pinion_bore_radius; /**< of a disc that winds up between bore and root, in series with the teeth, m, 0 < r < r_f
+                                       [NaN: rigid body] */
+    double wheel_bore_radius; /**< as for the pinion */
+    const double *
+        pinion_tooth_stiffness; /**< [pinion_teeth] factor of each tooth's stiffness, 0.01 .. 100: below 1 for cracks and
+                                       spalls; must stay where it is as long as the mesh is used [NULL: 1] */
+    const double *wheel_tooth_stiffness; /**< [wheel_teeth] likewise */
+    double
+        reference_torque; /**< load on the wheel, > 0 N m, at which the stiffness is taken that eigenfrequency and damping
+                                       go by [NaN: 100 N per mm of face] */
+    int stations; /**< along the face, 2 .. 97; docs/elastic.md has the error of each number [17] */
 } gm_mesh_params;
 
 /**
@@ -806,6 +827,56 @@ GM_API size_t gm_mesh_size(const gm_mesh_params *params, const gm_pair *pair);
 GM_API int gm_mesh_init(gm_mesh **mesh, const gm_mesh_params *params, const gm_pair *pair,
                         const gm_flanks *pinion_flanks, const gm_flanks *wheel_flanks, void *memory,
                         size_t memory_size);
+
+/**
+ * Checks whether the teeth of a pair can be elastic: a fillet at the root, no undercut, contact on the involute.
+ *
+ * @param[in]  params       law GM_LAW_ELASTIC
+ * @param[in]  pair         from gm_pair_init()
+ * @param[out] field        field of gm_pair_params or gm_mesh_params that is to be changed, a constant string; NULL if all
+ *                          is well. May be NULL
+ * @param[out] requirement  what would be right, likewise
+ * @param[in]  memory       at least gm_mesh_size() bytes, aligned for double; overwritten
+ * @param[in]  memory_size  bytes in memory
+ * @return GM_OK, GM_ERR_GEOMETRY, and as gm_mesh_init()
+ */
+GM_API int gm_mesh_check_teeth(const gm_mesh_params *params, const gm_pair *pair,
+                               const char **field, const char **requirement, void *memory,
+                               size_t memory_size);
+
+/** Memory of elastic teeth: where their last balance was, one for each thread that evaluates a mesh. */
+typedef struct gm_workspace gm_workspace;
+
+/** Bytes of memory that gm_workspace_init() needs; 0 where the law needs none, and for NULL. */
+GM_API size_t gm_workspace_size(const gm_mesh *mesh);
+
+/**
+ * Prepares a workspace in memory of the caller. An evaluation begins from the last one; what it gives does not depend on that
+ * beyond the accuracy of docs/elastic.md, and a workspace as it comes from here is always valid. No pointer of it leads
+ * outside the memory. For one mesh at a time.
+ *
+ * @param[out] workspace    the workspace, which begins at `memory`; NULL on an error, and where the law needs none
+ * @param[in]  mesh         the mesh
+ * @param[in]  memory       at least gm_workspace_size() bytes, aligned for double
+ * @param[in]  memory_size  bytes in memory
+ * @return GM_OK, GM_ERR_NULL, GM_ERR_MEMORY
+ */
+GM_API int gm_workspace_init(gm_workspace **workspace, const gm_mesh *mesh, void *memory,
+                             size_t memory_size);
+
+/** Stiffness of elastic teeth at the reference torque, between ideal flanks, along the line of action (N/m). */
+typedef struct gm_mesh_stiffness {
+    double mesh_mean;     /**< dF/dx of all pairs, mean over a mesh cycle */
+    double mesh_smallest; /**< in it */
+    double mesh_largest;  /**< in it */
+    double
+        single_mean; /**< of one pair that carries the force alone, all along the face, mean over its path */
+    double single_smallest; /**< on it */
+    double single_largest;  /**< on it */
+} gm_mesh_stiffness;
+
+/** The stiffness of elastic teeth. GM_OK, GM_ERR_NULL, GM_ERR_PARAMETER (another law); NaN on an error. */
+GM_API int gm_mesh_elastic_stiffness(const gm_mesh *mesh, gm_mesh_stiffness *stiffness);
 
 /** The pair of a mesh; NULL for NULL. */
 GM_API const gm_pair *gm_mesh_pair(const gm_mesh *mesh);
@@ -893,14 +964,14 @@ typedef struct gm_mesh_result {
  * @param[in]     mesh       the mesh
  * @param[in]     state      angles and speeds
  * @param[in]     wanted     a sum of enum gm_wanted
- * @param[in,out] workspace  what an iterative law needs, one per thread; NULL: the constant law needs none
+ * @param[in,out] workspace  of this thread; NULL: the constant law needs none
  * @param[out]    result     all fields, NaN where not wanted; on an error all NaN, pairs 0
- * @return GM_OK, GM_ERR_NULL, GM_ERR_PARAMETER (wanted), GM_STATE_NOT_FINITE, GM_STATE_OUT_OF_RANGE
+ * @return GM_OK, GM_ERR_NULL, GM_ERR_PARAMETER (wanted), GM_STATE_NOT_FINITE, GM_STATE_OUT_OF_RANGE, GM_NO_CONVERGENCE
  *
  * Validity and accuracy as gm_penetration_3d(), or gm_penetration_simple(). Cost: docs/performance.md.
  */
-GM_API int gm_mesh_evaluate(const gm_mesh *mesh, const gm_state *state, int wanted, void *workspace,
-                            gm_mesh_result *result);
+GM_API int gm_mesh_evaluate(const gm_mesh *mesh, const gm_state *state, int wanted,
+                            gm_workspace *workspace, gm_mesh_result *result);
 
 /**
  * As gm_mesh_evaluate(), from a reduced position: the hot entry, without trigonometry.
@@ -908,7 +979,7 @@ GM_API int gm_mesh_evaluate(const gm_mesh *mesh, const gm_state *state, int want
  * @return as gm_mesh_evaluate(), and GM_ERR_TOOTH (no such teeth)
  */
 GM_API int gm_mesh_evaluate_at(const gm_mesh *mesh, const gm_position *position, int wanted,
-                               void *workspace, gm_mesh_result *result);
+                               gm_workspace *workspace, gm_mesh_result *result);
 
 /** Stiffness of what touches in a result: K times the touching part of the face width, all pairs and both sides (N/m).
  *  NaN for NULL. */
@@ -935,7 +1006,7 @@ GM_API double gm_mesh_touching_stiffness(const gm_mesh *mesh, const gm_mesh_resu
  * Accuracy: x to 1e-15 of the centre distance. Cost: some 8 evaluations with derivatives, 4 from a good guess.
  */
 GM_API int gm_static_equilibrium(const gm_mesh *mesh, double pinion_angle, double wheel_torque,
-                                 double guess, void *workspace, double *offset,
+                                 double guess, gm_workspace *workspace, double *offset,
                                  gm_mesh_result *result);
 
 /* ---------------------------------------------------------------------------------------------
@@ -997,12 +1068,12 @@ GM_API int gm_cache_passes(const gm_cache *cache);
 
 /**
  * Fills a range of tooth passes (0 .. gm_cache_passes() - 1) up front. Several threads may fill disjoint
- * ranges at once. After all are filled nothing writes to the cache any more, and any number of threads
- * may evaluate with it.
+ * ranges at once, each with a workspace of its own where the law needs one. After all are filled nothing writes to the
+ * cache any more, and any number of threads may evaluate with it.
  *
  * @return GM_OK, GM_ERR_NULL, GM_ERR_PARAMETER (no such passes)
  */
-GM_API int gm_cache_fill(gm_cache *cache, int first_pass, int count);
+GM_API int gm_cache_fill(gm_cache *cache, int first_pass, int count, gm_workspace *workspace);
 
 /**
  * Lets a mesh answer from a cache of its own sums, approximately and much faster; NULL: exactly again. What a position
@@ -1034,10 +1105,12 @@ GM_API int gm_mesh_use_cache(gm_mesh *mesh, gm_cache *cache);
  * @param[in,out] cache   the cache
  * @param[in]     states  how many, > 0
  * @param[in]     seed    same seed, same states
+ * @param[in,out] workspace  as gm_mesh_evaluate()
  * @param[out]    errors  NaN on an error
  * @return GM_OK, GM_ERR_NULL, GM_ERR_PARAMETER
  */
-GM_API int gm_cache_error(gm_cache *cache, int states, unsigned seed, gm_cache_errors *errors);
+GM_API int gm_cache_error(gm_cache *cache, int states, unsigned seed, gm_workspace *workspace,
+                          gm_cache_errors *errors);
 
 #ifdef __cplusplus
 }

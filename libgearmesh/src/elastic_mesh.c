@@ -1,0 +1,616 @@
+/* SPDX-FileCopyrightText: The gearmesh authors */
+/* SPDX-License-Identifier: BSD-3-Clause */
+
+/*
+ * Elastic teeth as the law of a mesh. Lines of contact are those of contact.c between flanks that just touch: what elastic
+ * teeth give way by does not move the path. Deviations of the flanks, tilted axes and pitch act as material at the points
+ * of each line.
+ */
+#include "elastic_mesh.h"
+
+#include "internal.h"
+#include "penetration.h"
+#include "surface.h"
+
+#include <math.h>
+#include <string.h>
+
+enum {
+    STIFFNESS_POSITIONS = 32, /* of the mesh cycle, at which the mean stiffness is taken */
+    LOAD_STEPS_MAX = 40,      /* until the force is found */
+};
+
+/* Force and wind-up of the bodies agree to this part of the force, where steps stop. */
+static const double force_accuracy = 1e-12;
+
+/* Lines of contact that there are, and some beside them that may touch. */
+enum { NUMBERS_MAX = GMI_ELASTIC_LINES_MAX + 4 };
+
+/* ---------------------------------------------------------------------------------------------
+ * Preparing
+ * ------------------------------------------------------------------------------------------- */
+
+static int is_modulus(double value) {
+    return value >= GMI_ELASTIC_LEAST_MODULUS && value <= GMI_ELASTIC_LARGEST_MODULUS;
+}
+
+static int is_ratio(double value) {
+    return value >= 0.0 && value <= GMI_ELASTIC_LARGEST_RATIO;
+}
+
+/* Of a bore that is not given, or of one that is above 0: against the root radius the pair is needed. */
+static int is_bore(double radius) {
+    return isnan(radius) || (radius >= GMI_SMALLEST_LENGTH && radius <= GMI_LARGEST_LENGTH);
+}
+
+const char *gmi_elastic_field_at_fault(const gm_mesh_params *params, const char **wanted) {
+    const struct {
+        const char *field;
+        int is_right;
+        const char *wanted;
+    } checks[] = {
+        {"pinion_youngs_modulus", is_modulus(params->pinion_youngs_modulus),
+         "a modulus from 1e6 to 1e15 N/m2"},
+        {"wheel_youngs_modulus", is_modulus(params->wheel_youngs_modulus),
+         "a modulus from 1e6 to 1e15 N/m2"},
+        {"pinion_poisson_ratio", is_ratio(params->pinion_poisson_ratio), "a ratio from 0 to 0.499"},
+        {"wheel_poisson_ratio", is_ratio(params->wheel_poisson_ratio), "a ratio from 0 to 0.499"},
+        {"pinion_bore_radius", is_bore(params->pinion_bore_radius), "a radius from 1e-6 to 1e9 m"},
+        {"wheel_bore_radius", is_bore(params->wheel_bore_radius), "a radius from 1e-6 to 1e9 m"},
+        {"reference_torque",
+         isnan(params->reference_torque) ||
+             (params->reference_torque > 0.0 && gmi_is_finite(params->reference_torque)),
+         "a torque above 0 N m"},
+        {"stations", params->stations >= 2 && params->stations <= GMI_ELASTIC_STATIONS_MAX,
+         "a whole number from 2 to 97"},
+    };
+    for (size_t k = 0; k < sizeof checks / sizeof checks[0]; ++k) {
+        if (!checks[k].is_right) {
+            *wanted = checks[k].wanted;
+            return checks[k].field;
+        }
+    }
+    return NULL;
+}
+
+/* The workspace, and behind it the arrays of both sides. */
+size_t gmi_workspace_size(const gmi_elastic *law) {
+    return sizeof(gm_workspace) + 2 * gmi_elastic_work_size(law->stations, law->lines_max);
+}
+
+void gmi_workspace_init(gm_workspace *workspace, const gmi_elastic *law) {
+    unsigned char *memory = (unsigned char *)(workspace + 1);
+    for (int side = GM_DRIVE; side <= GM_COAST; ++side) {
+        gmi_elastic_work_init(&workspace->side[side], law->stations, law->lines_max, memory);
+        memory += gmi_elastic_work_size(law->stations, law->lines_max);
+    }
+}
+
+static int lines_of(const gm_pair *pair) {
+    return gmi_elastic_lines(pair->total_contact_ratio);
+}
+
+size_t gmi_elastic_mesh_size(const gm_mesh_params *params, const gm_pair *pair) {
+    const size_t work = gmi_elastic_work_size(params->stations, lines_of(pair));
+    return work == 0 ? 0 : sizeof(gmi_elastic_mesh) + sizeof(gmi_elastic_work) + work;
+}
+
+static gmi_elastic_gear_params gear_params(const gm_gear *gear, const gmi_engagement *at, int role,
+                                           double youngs_modulus, double poisson_ratio) {
+    const gmi_elastic_gear_params params = {
+        .teeth = (double)gear->teeth,
+        .profile_shift = gear->profile_shift,
+        .normal_thickness = gear->normal_thickness,
+        .rack_dedendum = gear->rack_dedendum,
+        .rack_fillet_radius = gear->rack_fillet_radius,
+        .youngs_modulus = youngs_modulus,
+        .poisson_ratio = poisson_ratio,
+        .start_roll_length = at->start_roll_length[role],
+        .tip_roll_length = gear->tip_roll_length,
+    };
+    return params;
+}
+
+static int refuse(const char *at_fault, const char *wanted, const char **field,
+                  const char **requirement) {
+    if (field != NULL) {
+        *field = at_fault;
+    }
+    if (requirement != NULL) {
+        *requirement = wanted;
+    }
+    return 0;
+}
+
+/* Why a tooth has no compliance, in the words of a drawing; [enum gm_role]. */
+static void explain(int fault, int role, const char **field, const char **requirement) {
+    static const char *const fields[][2] = {
+        [GMI_TOOTH_FINE] = {"pinion_teeth", "wheel_teeth"},
+        [GMI_TOOTH_FILLET] = {"pinion_rack_fillet_radius", "wheel_rack_fillet_radius"},
+        [GMI_TOOTH_UNDERCUT] = {"pinion_profile_shift", "wheel_profile_shift"},
+        [GMI_TOOTH_FOOT] = {"pinion_rack_fillet_radius", "wheel_rack_fillet_radius"},
+        [GMI_TOOTH_CONTACT] = {"pinion_start_radius", "wheel_start_radius"},
+        [GMI_TOOTH_POINTED] = {"pinion_tip_radius", "wheel_tip_radius"},
+    };
+    static const char *const requirements[] = {
+        [GMI_TOOTH_FINE] = "teeth that give way by more than the rim under them",
+        [GMI_TOOTH_FILLET] = "a rounding that fits between the rack's flanks: up to "
+                             "(pi/4 - h_fP tan(alpha_n)) cos(alpha_n) / (1 - sin(alpha_n))",
+        [GMI_TOOTH_UNDERCUT] = "a shift that leaves the teeth without undercut",
+        [GMI_TOOTH_FOOT] = "a rounding with a tangent of 30 degrees at the foot",
+        [GMI_TOOTH_CONTACT] = "contact above the end of the root fillet: a deeper rack, or less "
+                              "addendum of the mate",
+        [GMI_TOOTH_POINTED] = "a tip below the point where the flanks meet",
+    };
+    (void)refuse(fields[fault][role], requirements[fault], field, requirement);
+}
+
+/*
+ * Wind-up of a disc between bore and root circle under a torque, along the line of action:
+ * r_b^2 / (4 pi G b) (1 / r_bore^2 - 1 / r_f^2), from the shear stress T / (2 pi r^2 b).
+ */
+static double wind_up(const gm_gear *gear, double bore_radius, double youngs_modulus,
+                      double poisson_ratio) {
+    if (isnan(bore_radius)) {
+        return 0.0;
+    }
+    const double shear_modulus = 0.5 * youngs_modulus / (1.0 + poisson_ratio);
+    const double r_b = gear->base_radius;
+    const double r_f = gear->root_radius;
+    return r_b * r_b / (4.0 * GMI_PI * shear_modulus * gear->face_width) *
+           (1.0 / (bore_radius * bore_radius) - 1.0 / (r_f * r_f));
+}
+
+/* What is wrong with bores and factors, which only the pair can tell. */
+static int is_given_well(const gm_mesh_params *params, const gm_pair *pair, const char **field,
+                         const char **requirement) {
+    const struct {
+        const char *bore_field, *factor_field;
+        const gm_gear *gear;
+        double bore;
+        const double *factors;
+    } given[2] = {{"pinion_bore_radius", "pinion_tooth_stiffness", &pair->pinion,
+                   params->pinion_bore_radius, params->pinion_tooth_stiffness},
+                  {"wheel_bore_radius", "wheel_tooth_stiffness", &pair->wheel,
+                   params->wheel_bore_radius, params->wheel_tooth_stiffness}};
+    for (int role = GM_PINION; role <= GM_WHEEL; ++role) {
+        if (given[role].bore >= given[role].gear->root_radius) {
+            return refuse(given[role].bore_field, "a bore below the root circle", field,
+                          requirement);
+        }
+        for (int k = 0; given[role].factors != NULL && k < given[role].gear->teeth; ++k) {
+            if (!(given[role].factors[k] >= 0.01 && given[role].factors[k] <= 100.0)) {
+                return refuse(given[role].factor_field, "factors from 0.01 to 100", field,
+                              requirement);
+            }
+        }
+    }
+    return 1;
+}
+
+static void find_stiffness(gmi_elastic_mesh *made, const gm_pair *pair, const gmi_engagement *at,
+                           double force, gmi_elastic_work *work);
+
+int gmi_elastic_mesh_init(gmi_elastic_mesh *made, const gm_mesh_params *params, const gm_pair *pair,
+                          const gmi_engagement *at, const char **field, const char **requirement) {
+    const double face = (at->face_to - at->face_from) * pair->face_width;
+    const gmi_elastic_params law = {
+        .normal_module = pair->normal_module,
+        .normal_pressure_angle = pair->normal_pressure_angle,
+        .helix_angle = pair->helix_angle,
+        .base_helix_angle = pair->base_helix_angle,
+        .face_width = face,
+        .line_of_action = at->line_of_action,
+        .stations = params->stations,
+        .lines = lines_of(pair),
+        .gear = {gear_params(&pair->pinion, at, GM_PINION, params->pinion_youngs_modulus,
+                             params->pinion_poisson_ratio),
+                 gear_params(&pair->wheel, at, GM_WHEEL, params->wheel_youngs_modulus,
+                             params->wheel_poisson_ratio)},
+    };
+    const double contact_start[2] = {
+        fmax(at->start_roll_length[GM_PINION], at->line_of_action - pair->wheel.tip_roll_length),
+        fmax(at->start_roll_length[GM_WHEEL], at->line_of_action - pair->pinion.tip_roll_length)};
+    if (!is_given_well(params, pair, field, requirement)) {
+        return GM_ERR_GEOMETRY;
+    }
+    int fault;
+    int role;
+    const int status = gmi_elastic_init(&made->law, &law, contact_start, &fault, &role);
+    if (status != GM_OK) {
+        explain(fault, role, field, requirement);
+        return GM_ERR_GEOMETRY;
+    }
+
+    made->tooth_stiffness[GM_PINION] = params->pinion_tooth_stiffness;
+    made->tooth_stiffness[GM_WHEEL] = params->wheel_tooth_stiffness;
+    made->body_compliance = wind_up(&pair->pinion, params->pinion_bore_radius,
+                                    params->pinion_youngs_modulus, params->pinion_poisson_ratio) +
+                            wind_up(&pair->wheel, params->wheel_bore_radius,
+                                    params->wheel_youngs_modulus, params->wheel_poisson_ratio);
+
+    /* The scale of forces: stiffness at the torque that is to be carried, or at 100 N/mm. */
+    const double force = isnan(params->reference_torque)
+                             ? 1e5 * pair->face_width
+                             : params->reference_torque / pair->wheel.base_radius;
+    gmi_elastic_work *work = (gmi_elastic_work *)(made + 1);
+    gmi_elastic_work_init(work, params->stations, law.lines, work + 1);
+    find_stiffness(made, pair, at, force, work);
+    return GM_OK;
+}
+
+/* ---------------------------------------------------------------------------------------------
+ * Stiffness between ideal flanks
+ * ------------------------------------------------------------------------------------------- */
+
+/* dF/dx of lines that carry the force, and the place x where they do; NaN where none does. */
+static double stiffness_at(const gmi_elastic *law, const gmi_elastic_lines_at *lines, double force,
+                           double *approach, gmi_elastic_work *work) {
+    gmi_elastic_result result;
+    int status = gmi_elastic_place(law, lines, work);
+    memset(work->deviation, 0, 2 * sizeof(double) * (size_t)work->slots);
+    double x = *approach;
+    for (int step = 0; step < LOAD_STEPS_MAX && status == GM_OK && work->count > 0; ++step) {
+        status = gmi_elastic_solve(law, work, x, &result);
+        const double missing = force - result.force;
+        if (fabs(missing) <= 1e-9 * force) {
+            *approach = x;
+            return result.by_approach;
+        }
+
+        /* The force bends upwards: a step from above stays above; from no contact the way is doubled. */
+        const double next = x + missing / result.by_approach;
+        x = next > 0.25 * x && result.by_approach > 0.0 ? next : (missing > 0.0 ? 2.0 : 0.5) * x;
+    }
+    return gmi_nan();
+}
+
+typedef struct spread {
+    double sum, smallest, largest;
+    int count;
+} spread;
+
+static void add_to_spread(spread *values, double value) {
+    if (value > 0.0) {
+        values->smallest = values->count == 0 ? value : fmin(values->smallest, value);
+        values->largest = values->count == 0 ? value : fmax(values->largest, value);
+        values->sum += value;
+        ++values->count;
+    }
+}
+
+static void find_stiffness(gmi_elastic_mesh *made, const gm_pair *pair, const gmi_engagement *at,
+                           double force, gmi_elastic_work *work) {
+    const gmi_elastic *law = &made->law;
+    const double start =
+        fmax(at->start_roll_length[GM_PINION], at->line_of_action - pair->wheel.tip_roll_length);
+    const double end =
+        fmin(pair->pinion.tip_roll_length, at->line_of_action - at->start_roll_length[GM_WHEEL]);
+    const double pitch = pair->transverse_base_pitch;
+    const double climb = pair->face_advance / pair->face_width;
+    const double rise = climb * law->face_width;
+    gmi_elastic_lines_at lines = {.pitch = pitch,
+                                  .climb = climb,
+                                  .lower = start,
+                                  .upper = end,
+                                  .line_of_action = at->line_of_action,
+                                  .step = 1,
+                                  .teeth = pair->pinion.teeth};
+
+    /* A first guess of x: 10 N/(mm um). */
+    double approach = force / (1e10 * law->face_width);
+    spread mesh = {0.0, 0.0, 0.0, 0};
+    for (int k = 0; k < STIFFNESS_POSITIONS; ++k) {
+        lines.origin = start + pitch * ((double)k + 0.5) / STIFFNESS_POSITIONS;
+        lines.first = (int)ceil((start - lines.origin - fmax(rise, 0.0)) / pitch);
+        lines.last = (int)floor((end - lines.origin - fmin(rise, 0.0)) / pitch);
+        lines.tooth = (lines.first % lines.teeth + lines.teeth) % lines.teeth;
+        add_to_spread(&mesh, stiffness_at(law, &lines, force, &approach, work));
+    }
+
+    /* One pair alone, all along the face, over its path. */
+    gmi_elastic_lines_at alone = lines;
+    alone.climb = 0.0;
+    alone.first = alone.last = alone.tooth = 0;
+    spread single = {0.0, 0.0, 0.0, 0};
+    gmi_elastic_work_reset(work);
+    for (int k = 0; k < STIFFNESS_POSITIONS; ++k) {
+        alone.origin = start + (end - start) * ((double)k + 0.5) / STIFFNESS_POSITIONS;
+        add_to_spread(&single, stiffness_at(law, &alone, force, &approach, work));
+    }
+
+    const gm_mesh_stiffness stiffness = {
+        .mesh_mean = mesh.sum / mesh.count,
+        .mesh_smallest = mesh.smallest,
+        .mesh_largest = mesh.largest,
+        .single_mean = single.sum / single.count,
+        .single_smallest = single.smallest,
+        .single_largest = single.largest,
+    };
+    made->stiffness = stiffness;
+}
+
+/* ---------------------------------------------------------------------------------------------
+ * Lines of a mesh
+ * ------------------------------------------------------------------------------------------- */
+
+/* One side at one position, as the elastic law sees it. */
+typedef struct side_view {
+    const gm_mesh *mesh;
+    const gmi_elastic_mesh *elastic;
+    int side;
+    double approach;                 /* x of the rigid flanks (m) */
+    gmi_lines lines;                 /* between flanks that just touch */
+    gmi_teeth teeth;                 /* of line lines.first */
+    double gain;                     /* of x between tilted axes (1) */
+    double softness[2][NUMBERS_MAX]; /* [enum gm_role], by lines from lines.first on */
+} side_view;
+
+static int next_tooth(int tooth, int step, int teeth) {
+    const int next = tooth + step;
+    return next < 0 ? teeth - 1 : next == teeth ? 0 : next;
+}
+
+static void set_softness(side_view *view, int count) {
+    const gm_pair *pair = view->mesh->pair;
+    const int all[2] = {pair->pinion.teeth, pair->wheel.teeth};
+    int tooth[2] = {view->teeth.pinion, view->teeth.wheel};
+    for (int k = 0; k < count; ++k) {
+        for (int role = GM_PINION; role <= GM_WHEEL; ++role) {
+            const double *factors = view->elastic->tooth_stiffness[role];
+            view->softness[role][k] = factors == NULL ? 1.0 : 1.0 / factors[tooth[role]];
+            tooth[role] = next_tooth(tooth[role], view->teeth.step, all[role]);
+        }
+    }
+}
+
+/* Where the lines are; GM_STATE_OUT_OF_RANGE for more of them than there is room for. */
+static int place(side_view *view, const gm_position *position, int wanted, gmi_elastic_work *work) {
+    const gm_mesh *mesh = view->mesh;
+    const gm_pair *pair = mesh->pair;
+    const gmi_engagement *at = &mesh->engagement;
+    const gmi_elastic *law = &view->elastic->law;
+    gm_position touching = *position;
+    touching.offset = gmi_side_sign(view->side) * 0.5 * at->backlash;
+    gmi_lines_find(pair, at, view->side, &touching, &view->lines);
+    view->teeth = gmi_lines_teeth(pair, view->side, &touching, &view->lines);
+    view->approach = gmi_ideal_penetration(at, view->side, position->offset);
+    view->gain = at->is_tilted ? gmi_tilt_gain(pair, at, view->side) : 1.0;
+
+    const int count = view->lines.last - view->lines.first + 1;
+    if (count > NUMBERS_MAX) {
+        return GM_STATE_OUT_OF_RANGE;
+    }
+    const int is_even = view->elastic->tooth_stiffness[GM_PINION] == NULL &&
+                        view->elastic->tooth_stiffness[GM_WHEEL] == NULL;
+    if (!is_even) {
+        set_softness(view, count);
+    }
+    const gmi_elastic_lines_at lines = {
+        .origin = view->lines.origin + view->lines.advance * at->face_from,
+        .pitch = pair->transverse_base_pitch,
+        .climb = view->lines.advance * (at->face_to - at->face_from) / law->face_width,
+        .lower = view->lines.lower,
+        .upper = view->lines.upper,
+        .line_of_action = at->line_of_action,
+        .first = view->lines.first,
+        .last = view->lines.last,
+        .slopes = wanted & (GMI_DERIVATIVES | GMI_ROLL) ? 1 : 0,
+        .tooth = view->teeth.pinion,
+        .step = view->teeth.step,
+        .teeth = pair->pinion.teeth,
+        .pinion_softness = is_even ? NULL : view->softness[GM_PINION],
+        .wheel_softness = is_even ? NULL : view->softness[GM_WHEEL],
+    };
+    return gmi_elastic_place(law, &lines, work);
+}
+
+/* Material of both flanks at a point of a line; slopes along z and along the pinion's roll length. */
+typedef struct material {
+    double value, by_z, by_roll;
+} material;
+
+/* The flanks that meet on a line, and what tilted axes do there. */
+typedef struct line_view {
+    const side_view *side;
+    gmi_flank pinion, wheel;
+    gmi_tilted_line tilted;
+} line_view;
+
+static line_view view_line(const side_view *view, const gmi_elastic_line *line) {
+    const gm_mesh *mesh = view->mesh;
+    const gm_pair *pair = mesh->pair;
+    const gmi_engagement *at = &mesh->engagement;
+    const gmi_side *prepared = &mesh->side[view->side];
+    const int steps = view->teeth.step * (line->index - view->lines.first);
+    const int pinion = (view->teeth.pinion + steps) % pair->pinion.teeth;
+    const int wheel = (view->teeth.wheel + steps) % pair->wheel.teeth;
+    line_view seen = {
+        .side = view,
+        .pinion = gmi_flank_of(prepared->pinion, pinion < 0 ? pinion + pair->pinion.teeth : pinion),
+        .wheel = gmi_flank_of(prepared->wheel, wheel < 0 ? wheel + pair->wheel.teeth : wheel),
+    };
+    if (at->is_tilted) {
+        const double origin =
+            view->lines.origin + (double)line->index * pair->transverse_base_pitch;
+        gmi_tilt_line(pair, at, view->side, origin, view->lines.advance, at->face_from, at->face_to,
+                      &seen.tilted);
+    }
+    return seen;
+}
+
+static material material_at(const line_view *line, double z, double roll) {
+    const side_view *view = line->side;
+    const gm_mesh *mesh = view->mesh;
+    const gm_pair *pair = mesh->pair;
+    const gmi_engagement *at = &mesh->engagement;
+    const gmi_side *prepared = &mesh->side[view->side];
+    const double per_width = 1.0 / pair->face_width;
+    const double t1 = at->face_from + z * per_width;
+    material sum = {line->pinion.pitch + line->wheel.pitch, 0.0, 0.0};
+
+    /* Each flank at its own roll length; the wheel's falls as the pinion's grows. */
+    if (prepared->pinion != NULL) {
+        const gmi_surface flank =
+            gmi_surface_at(prepared->pinion, &prepared->pinion_grid, line->pinion.values, t1,
+                           roll - pair->pinion.start_roll_length);
+        sum.value += flank.value;
+        sum.by_z += flank.by_t1 * per_width;
+        sum.by_roll += flank.by_roll;
+    }
+    if (prepared->wheel != NULL) {
+        const gmi_surface flank =
+            gmi_surface_at(prepared->wheel, &prepared->wheel_grid, line->wheel.values, t1,
+                           at->line_of_action - roll - pair->wheel.start_roll_length);
+        sum.value += flank.value;
+        sum.by_z += flank.by_t1 * per_width;
+        sum.by_roll -= flank.by_roll;
+    }
+
+    /* Tilted axes: a parabola along the line. */
+    if (at->is_tilted) {
+        const gmi_tilted_line *tilted = &line->tilted;
+        const double beyond = t1 - at->face_from;
+        const double by_roll = tilted->by_rho + tilted->by_rho_slope * beyond;
+        const double along = 2.0 * (tilted->half_slope + tilted->curvature * beyond) * per_width;
+        sum.value +=
+            tilted->shift + (2.0 * tilted->half_slope + tilted->curvature * beyond) * beyond;
+        sum.by_roll += by_roll;
+        sum.by_z += along - view->lines.advance * per_width * by_roll;
+    }
+    return sum;
+}
+
+/* Whether there is anything at all beside the drawing. */
+static int is_drawn(const gm_mesh *mesh, int side) {
+    const gmi_side *prepared = &mesh->side[side];
+    return prepared->pinion == NULL && prepared->wheel == NULL && !prepared->is_tilted;
+}
+
+static void set_material(const side_view *view, gmi_elastic_work *work) {
+    const size_t bytes = 2 * sizeof(double) * (size_t)work->slots;
+    if (is_drawn(view->mesh, view->side)) {
+        memset(work->deviation, 0, bytes);
+        memset(work->deviation_by_roll, 0, bytes);
+        memset(work->deviation_by_z, 0, bytes);
+        return;
+    }
+    for (int row = 0; row < work->count; ++row) {
+        const gmi_elastic_line *line = &work->line[row];
+        const line_view seen = view_line(view, line);
+        for (int half = 0; half < 2; ++half) {
+            const int first = line->slot + half * work->slots;
+            for (int p = first; p < first + line->elements; ++p) {
+                const material point = material_at(&seen, work->z[p], work->roll[p]);
+                work->deviation[p] = point.value;
+                work->deviation_by_z[p] = point.by_z;
+                work->deviation_by_roll[p] = point.by_roll;
+            }
+        }
+    }
+}
+
+/* ---------------------------------------------------------------------------------------------
+ * One evaluation
+ * ------------------------------------------------------------------------------------------- */
+
+/*
+ * Teeth, and bodies in series: x of both is x of the teeth and the wind-up c F. The force grows with x and bends upwards,
+ * so Newton's method converges from above.
+ */
+static int solve(const gmi_elastic_mesh *elastic, gmi_elastic_work *work, double approach,
+                 gmi_elastic_result *result) {
+    const double compliance = elastic->body_compliance;
+    double x = approach;
+    int status = gmi_elastic_solve(&elastic->law, work, x, result);
+    for (int step = 0; compliance > 0.0 && status == GM_OK && step < LOAD_STEPS_MAX; ++step) {
+        const double excess = x + compliance * result->force - approach;
+        if (fabs(excess) <= force_accuracy * fabs(approach)) {
+            return GM_OK;
+        }
+        x -= excess / (1.0 + compliance * result->by_approach);
+        status = gmi_elastic_solve(&elastic->law, work, x, result);
+        if (status == GM_OK && step == LOAD_STEPS_MAX - 1) {
+            status = GM_NO_CONVERGENCE;
+        }
+    }
+    return status;
+}
+
+/* Whether the loads of a line are more than nothing. */
+static int is_loaded(const gmi_elastic_work *work, const gmi_elastic_line *line) {
+    double load = 0.0;
+    for (int p = line->slot; p < line->slot + line->elements; ++p) {
+        load += work->load[p] + work->load[p + work->slots];
+    }
+    return load > 0.0;
+}
+
+/* First moments of the loads, and of the stiffness at the points, over t1 and rho_p. */
+static void add_moments(const side_view *view, const gmi_elastic_work *work, double per_stiffness,
+                        gmi_side_sum *total) {
+    const gm_pair *pair = view->mesh->pair;
+    for (int p = 0; p < 2 * work->slots; ++p) {
+        const double t1 = view->mesh->engagement.face_from + work->z[p] / pair->face_width;
+        const double sum = work->force[p] * per_stiffness;
+        const double contact = work->by_deviation[p] * per_stiffness;
+        total->sum_t1 += sum * t1;
+        total->sum_rho += sum * work->roll[p];
+        total->contact_t1 += contact * t1;
+        total->contact_rho += contact * work->roll[p];
+    }
+}
+
+static int elastic_sum(const gm_mesh *mesh, int side, const gm_position *position, int wanted,
+                       gm_workspace *workspace, gmi_side_sum *total) {
+    side_view view = {.mesh = mesh, .elastic = mesh->elastic, .side = side};
+    gmi_elastic_work *work = &workspace->side[side];
+    gmi_elastic_result result;
+    int status = place(&view, position, wanted, work);
+    if (status == GM_OK) {
+        set_material(&view, work);
+        status = solve(view.elastic, work, view.gain * view.approach, &result);
+    }
+    if (status == GM_NO_CONVERGENCE) {
+        /* Once more without what the last balance suggests. */
+        gmi_elastic_work_reset(work);
+        status = solve(view.elastic, work, view.gain * view.approach, &result);
+    }
+    if (status != GM_OK) {
+        return status;
+    }
+
+    /* In the measure of the law's stiffness; bodies in series make a change of x smaller. */
+    const double per_stiffness = 1.0 / mesh->law.stiffness;
+    const double share = 1.0 / (1.0 + view.elastic->body_compliance * result.by_approach);
+    const double by_delta = view.gain * share * result.by_approach * per_stiffness;
+    total->sum = result.force * per_stiffness;
+    total->contact = total->by_delta = by_delta;
+    for (int row = 0; row < work->count; ++row) {
+        total->pairs += is_loaded(work, &work->line[row]);
+    }
+    if (wanted & (GMI_DERIVATIVES | GMI_ROLL)) {
+        gmi_elastic_gradient force, energy;
+        gmi_elastic_differentiate(&view.elastic->law, work, &force, &energy);
+        total->by_origin = share * force.by_roll * per_stiffness;
+        total->roll = energy.by_roll * per_stiffness;
+    }
+    if (wanted & GMI_MOMENTS) {
+        add_moments(&view, work, per_stiffness, total);
+    }
+    return GM_OK;
+}
+
+int gmi_side_sum_by_law(const gm_mesh *mesh, int side, const gm_position *position, int wanted,
+                        gm_workspace *workspace, gmi_side_sum *total) {
+    *total = gmi_no_contact();
+    if (gmi_side_is_clear(&mesh->engagement, &mesh->side[side], side, position->offset)) {
+        return GM_OK;
+    }
+    if (mesh->elastic != NULL) {
+        return elastic_sum(mesh, side, position, wanted, workspace, total);
+    }
+    gmi_side_sum_3d(mesh->pair, &mesh->engagement, &mesh->side[side], side, position, wanted,
+                    total);
+    return GM_OK;
+}

@@ -1,0 +1,55 @@
+/* SPDX-FileCopyrightText: The gearmesh authors */
+/* SPDX-License-Identifier: BSD-3-Clause */
+
+/*
+ * Elastic teeth as the law of a mesh: from pair, pose and flanks to what elastic.h solves, and back to the sums of a side
+ * that mesh.c makes forces of.
+ */
+#ifndef GEARMESH_ELASTIC_MESH_H
+#define GEARMESH_ELASTIC_MESH_H
+
+#include "elastic.h"
+#include "internal.h"
+
+/* The law of one mesh; both sides share it, as the coast side is the drive side in a mirror. */
+typedef struct gmi_elastic_mesh {
+    gmi_elastic law;
+    const double *tooth_stiffness[2]; /* [enum gm_role][teeth] factors, NULL = 1 */
+    double body_compliance;      /* wind-up of both bodies between bore and root, in series (m/N) */
+    gm_mesh_stiffness stiffness; /* at the reference torque, between ideal flanks */
+} gmi_elastic_mesh;
+
+struct gm_workspace {
+    gmi_elastic_work side[2]; /* GM_DRIVE, GM_COAST */
+};
+
+/* The first field of elastic teeth at fault; NULL if all is well. */
+const char *gmi_elastic_field_at_fault(const gm_mesh_params *params, const char **wanted);
+
+size_t gmi_workspace_size(const gmi_elastic *law);
+void gmi_workspace_init(gm_workspace *workspace, const gmi_elastic *law);
+
+/* Bytes of the law with what its preparation needs; 0 where the pair has too many lines at once. */
+size_t gmi_elastic_mesh_size(const gm_mesh_params *params, const gm_pair *pair);
+
+/*
+ * Prepares the law in that memory. GM_OK or GM_ERR_GEOMETRY, with the field of gm_mesh_params or gm_pair_params at fault and
+ * what would be right, both constant strings; NULL: not wanted.
+ */
+int gmi_elastic_mesh_init(gmi_elastic_mesh *made, const gm_mesh_params *params, const gm_pair *pair,
+                          const gmi_engagement *at, const char **field, const char **requirement);
+
+/* Whether the teeth of a gear are not all as stiff. */
+static inline int gmi_elastic_is_uneven(const gm_mesh *mesh, int role) {
+    return mesh->elastic != NULL && mesh->elastic->tooth_stiffness[role] != NULL;
+}
+
+/*
+ * The sums of one side by the law of the mesh, without its cache; elastic teeth need the workspace. Theirs are what a mesh of
+ * constant stiffness K (the law's, of one pair of teeth) has to overlap for the same force: sum = F / K,
+ * contact = dF/dx / K. GM_OK, GM_STATE_OUT_OF_RANGE (more lines than there is room for), GM_NO_CONVERGENCE.
+ */
+int gmi_side_sum_by_law(const gm_mesh *mesh, int side, const gm_position *position, int wanted,
+                        gm_workspace *workspace, gmi_side_sum *total);
+
+#endif

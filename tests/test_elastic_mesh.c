@@ -1,0 +1,669 @@
+/* SPDX-FileCopyrightText: The gearmesh authors */
+/* SPDX-License-Identifier: BSD-3-Clause */
+
+/*
+ * Elastic teeth as the law of a mesh, through the public interface: the check values of an independent implementation, and
+ * what physics demands of any pair, flank, pose and side.
+ */
+#include "gearmesh/gearmesh.h"
+#include "gm_test.h"
+#include "random_gears.h"
+
+#define DEGREE 0.017453292519943296
+
+/* A mesh with its memory. */
+typedef struct elastic_mesh {
+    gm_pair pair;
+    gm_mesh *mesh;
+    gm_workspace *workspace;
+    void *mesh_memory, *workspace_memory;
+} elastic_mesh;
+
+static int make(elastic_mesh *m, const gm_pair_params *gears, const gm_mesh_params *law,
+                const gm_flanks *pinion, const gm_flanks *wheel) {
+    memset(m, 0, sizeof *m);
+    int status = gm_pair_init(&m->pair, gears);
+    if (status != GM_OK) {
+        return status;
+    }
+    const size_t size = gm_mesh_size(law, &m->pair);
+    m->mesh_memory = malloc(size);
+    status = gm_mesh_init(&m->mesh, law, &m->pair, pinion, wheel, m->mesh_memory, size);
+    if (status != GM_OK) {
+        return status;
+    }
+    const size_t room = gm_workspace_size(m->mesh);
+    GM_ASSERT(room > 0);
+    m->workspace_memory = malloc(room);
+    return gm_workspace_init(&m->workspace, m->mesh, m->workspace_memory, room);
+}
+
+static void release(elastic_mesh *m) {
+    free(m->mesh_memory);
+    free(m->workspace_memory);
+}
+
+static gm_mesh_params elastic_law(void) {
+    gm_mesh_params law;
+    gm_mesh_params_default(&law);
+    law.law = GM_LAW_ELASTIC;
+    return law;
+}
+
+static gm_pair_params spur62(void) {
+    gm_pair_params p;
+    gm_pair_params_default(&p);
+    p.pinion_teeth = p.wheel_teeth = 62;
+    p.normal_module = 2e-3;
+    p.normal_pressure_angle = 20.0 * DEGREE;
+    p.face_width = 20e-3;
+    p.center_distance = 124e-3;
+    p.pinion_profile_shift = p.wheel_profile_shift = 0.0;
+    return p;
+}
+
+static gm_pair_params paper(void) {
+    gm_pair_params p;
+    gm_pair_params_default(&p);
+    p.pinion_teeth = 45;
+    p.wheel_teeth = 41;
+    p.normal_module = 1.65e-3;
+    p.normal_pressure_angle = 16.0 * DEGREE;
+    p.helix_angle = 33.0 * DEGREE;
+    p.face_width = 17.5e-3;
+    p.center_distance = 85.0000164e-3;
+    p.pinion_profile_shift = p.wheel_profile_shift = 0.1242;
+    p.pinion_tip_alteration = p.wheel_tip_alteration = 0.0;
+    return p;
+}
+
+static gm_pair_params nrel3(void) {
+    gm_pair_params p;
+    gm_pair_params_default(&p);
+    p.pinion_teeth = 24;
+    p.wheel_teeth = 95;
+    p.normal_module = 14e-3;
+    p.normal_pressure_angle = 20.0 * DEGREE;
+    p.helix_angle = 10.0 * DEGREE;
+    p.face_width = 360e-3;
+    p.center_distance = 861.0001467e-3;
+    p.pinion_profile_shift = 0.48;
+    p.wheel_profile_shift = 0.6691;
+    p.pinion_tip_radius = 190.3736708e-3;
+    p.wheel_tip_radius = 697.6880969e-3;
+    return p;
+}
+
+/* x less half the backlash, force, dF/dx and dU/do of the specification's table. */
+static void check_values_are_met(void) {
+    const struct {
+        gm_pair_params gears;
+        double roll, force, approach, stiffness, roll_force;
+        int stations;
+    } cases[] = {
+        {spur62(), 16.21679662e-3, 2000.0, 3.5204755e-6, 5.9267690e8, 0.1399209, 17},
+        {spur62(), 18.87371492e-3, 2000.0, 3.3983351e-6, 6.1402245e8, -0.0395395, 17},
+        {paper(), 12.06805254e-3, 1500.0, 4.3705490e-6, 3.5962402e8, 0.0357711, 17},
+        {nrel3(), 60.71594136e-3, 259200.0, 31.313399e-6, 8.7153952e9, -61.00005, 17},
+        {paper(), 12.06805254e-3, 1500.0, 4.3519989e-6, 0.0, 0.0, 9},
+        {paper(), 12.06805254e-3, 1500.0, 4.3813663e-6, 0.0, 0.0, 97},
+        {nrel3(), 60.71594136e-3, 259200.0, 31.085570e-6, 0.0, 0.0, 9},
+        {nrel3(), 60.71594136e-3, 259200.0, 31.380103e-6, 0.0, 0.0, 97},
+    };
+    for (size_t k = 0; k < sizeof cases / sizeof cases[0]; ++k) {
+        gm_test_context("case %zu", k);
+        gm_mesh_params law = elastic_law();
+        law.stations = cases[k].stations;
+        elastic_mesh m;
+        GM_ASSERT_INT(make(&m, &cases[k].gears, &law, NULL, NULL), GM_OK);
+
+        /* The pinion angle at which tooth 0 touches there at z = 0. */
+        const double r_bp = m.pair.pinion.base_radius;
+        const double r_bw = m.pair.wheel.base_radius;
+        const double angle = (cases[k].roll - m.pair.phase_origin[GM_DRIVE]) / r_bp;
+        double offset;
+        gm_mesh_result r;
+        GM_ASSERT_INT(gm_static_equilibrium(m.mesh, angle, cases[k].force * r_bw, (double)NAN,
+                                            m.workspace, &offset, &r),
+                      GM_OK);
+        GM_ASSERT_REL(r.force, cases[k].force, 1e-9);
+        GM_ASSERT_REL(offset - 0.5 * m.pair.backlash, cases[k].approach, 1e-6);
+        if (cases[k].stiffness > 0.0) {
+            GM_ASSERT_REL(-r.force_by.wheel_angle / r_bw, cases[k].stiffness, 1e-5);
+            GM_ASSERT_REL(r.pinion_torque / r_bp - r.force, cases[k].roll_force, 1e-4);
+            GM_ASSERT_REL(r.wheel_torque, r.force * r_bw, 1e-15);
+        }
+        release(&m);
+    }
+}
+
+/* A state with its side pressed together by some micrometres, in any mesh. */
+static gm_state pressed_state(const elastic_mesh *m, double pinion_angle, double offset) {
+    gm_state state = {.pinion_angle = pinion_angle};
+    state.wheel_angle =
+        (m->pair.pinion.base_radius * pinion_angle - offset) / m->pair.wheel.base_radius;
+    return state;
+}
+
+/* Forgets what the workspace knows. */
+static void forget(elastic_mesh *m) {
+    GM_ASSERT_INT(
+        gm_workspace_init(&m->workspace, m->mesh, m->workspace_memory, gm_workspace_size(m->mesh)),
+        GM_OK);
+}
+
+static gm_mesh_result evaluate(elastic_mesh *m, const gm_state *state, int wanted) {
+    gm_mesh_result r;
+    GM_ASSERT_INT(gm_mesh_evaluate(m->mesh, state, wanted, m->workspace, &r), GM_OK);
+    return r;
+}
+
+/* Some pairs, posed and not, with and without flanks; k counts them. */
+enum { VARIANTS = 12 };
+typedef struct variant {
+    elastic_mesh mesh;
+    random_flanks flanks[2];
+    int has_flanks;
+} variant;
+
+static void variant_make(variant *v, int k) {
+    uint64_t seed = 7u + (uint64_t)k;
+    const gm_pair_params gears[3] = {spur62(), paper(), nrel3()};
+    gm_pair_params params = gears[k % 3];
+    gm_mesh_params law = elastic_law();
+    gm_pair pair;
+    memset(v, 0, sizeof *v);
+    params.helix_angle *= k % 2 == 0 ? 1.0 : -1.0;
+    params.backlash = 20e-6;
+    GM_ASSERT_INT(gm_pair_init(&pair, &params), GM_OK);
+
+    v->has_flanks = k >= 3;
+    for (int gear = 0; v->has_flanks && gear < 2; ++gear) {
+        random_flanks_make(&v->flanks[gear], &seed, &pair, gear, 1e-3 * params.normal_module);
+    }
+    if (k >= 6) {
+        law.pose.center_distance_change = 5e-3 * params.normal_module;
+        law.pose.offset = -3e-3 * params.normal_module;
+        law.pose.axial_shift = k >= 9 ? 0.05 * params.face_width : 0.0;
+    }
+    if (k >= 9) {
+        law.pose.skew = 1e-4;
+        law.pose.inclination = -7e-5;
+        law.wheel_bore_radius = 0.5 * pair.wheel.root_radius;
+    }
+    GM_ASSERT_INT(make(&v->mesh, &params, &law, v->has_flanks ? v->flanks[0].flanks : NULL,
+                       v->has_flanks ? v->flanks[1].flanks : NULL),
+                  GM_OK);
+}
+
+static void variant_free(variant *v) {
+    release(&v->mesh);
+    for (int gear = 0; v->has_flanks && gear < 2; ++gear) {
+        random_flanks_free(&v->flanks[gear]);
+    }
+}
+
+/* Presses the flanks of a side together by a thousandth of a module beyond the clearance. */
+static double pressed_offset(const elastic_mesh *m, int side) {
+    const double clearance = gm_mesh_clearance(m->mesh, side);
+    return (side == GM_DRIVE ? 1.0 : -1.0) * (clearance + 4e-3 * m->pair.normal_module);
+}
+
+/* Three values of a quantity around a state decide: the middle difference, and whether there is a kink. */
+static void assert_slope(double before, double at, double after, double step, double slope,
+                         double scale, double accuracy) {
+    const double left = (at - before) / step;
+    const double right = (after - at) / step;
+    if (fabs(right - left) < 1e-3 * scale) { /* no pair enters or leaves here */
+        GM_ASSERT_ABS(slope, 0.5 * (left + right), accuracy * scale + 0.51 * fabs(right - left));
+    }
+}
+
+static void derivatives_are_those_of_differences(void) {
+    for (int k = 0; k < VARIANTS; ++k) {
+        variant v;
+        variant_make(&v, k);
+        elastic_mesh *m = &v.mesh;
+        for (int n = 0; n < 8; ++n) {
+            gm_test_context("variant %d, state %d", k, n);
+            const double angle = 0.013 + 0.37 * n / m->pair.pinion.teeth;
+            const gm_state state = pressed_state(m, angle, pressed_offset(m, n % 2));
+            forget(m);
+            const gm_mesh_result at = evaluate(m, &state, GM_WANT_DERIVATIVES);
+            GM_ASSERT(fabs(at.force) > 0.0);
+
+            /* By both angles: force and both torques. */
+            const double radii[2] = {m->pair.pinion.base_radius, m->pair.wheel.base_radius};
+            for (int gear = 0; gear < 2; ++gear) {
+                const double step = 2e-9 / radii[gear];
+                gm_mesh_result beside[2];
+                for (int sign = 0; sign < 2; ++sign) {
+                    gm_state moved = state;
+                    *(gear == 0 ? &moved.pinion_angle : &moved.wheel_angle) +=
+                        sign == 0 ? -step : step;
+                    forget(m);
+                    beside[sign] = evaluate(m, &moved, GM_WANT_FORCE);
+                }
+                forget(m);
+                const gm_mesh_result here = evaluate(m, &state, GM_WANT_FORCE);
+                const double scale = fabs(at.force_by.wheel_angle / radii[1]) * radii[gear];
+                const gm_gradient *const gradients[3] = {&at.force_by, &at.pinion_torque_by,
+                                                         &at.wheel_torque_by};
+                const double values[3][3] = {
+                    {beside[0].force, here.force, beside[1].force},
+                    {beside[0].pinion_torque, here.pinion_torque, beside[1].pinion_torque},
+                    {beside[0].wheel_torque, here.wheel_torque, beside[1].wheel_torque}};
+                for (int q = 0; q < 3; ++q) {
+                    const double unit = q == 0 ? 1.0 : radii[q - 1];
+
+                    /* The work of the roll has no derivative by the roll itself. */
+                    const double accuracy = gear == 0 && q == 1 ? 1e-4 : 2e-5;
+                    assert_slope(values[q][0], values[q][1], values[q][2], step,
+                                 gear == 0 ? gradients[q]->pinion_angle : gradients[q]->wheel_angle,
+                                 scale * unit, accuracy);
+                }
+            }
+        }
+        variant_free(&v);
+    }
+}
+
+/* Work of the torques around a closed path of both angles, by Simpson's rule on each of its four sides. */
+static double work_around(elastic_mesh *m, double angle, double offset, double turn, double press,
+                          double *throughput) {
+    enum { PARTS = 512 };
+    const double r_bp = m->pair.pinion.base_radius;
+    double work = 0.0;
+    *throughput = 0.0;
+    for (int side = 0; side < 4; ++side) {
+        for (int k = 0; k <= PARTS; ++k) {
+            /* Along phi_p at fixed x, along x at fixed phi_p, and back. */
+            const double share = (double)k / PARTS;
+            const double along = side == 0   ? share
+                                 : side == 1 ? 1.0
+                                 : side == 2 ? 1.0 - share
+                                             : 0.0;
+            const double deep = side == 0 ? 0.0 : side == 1 ? share : side == 2 ? 1.0 : 1.0 - share;
+            const gm_state state = pressed_state(m, angle + turn * along, offset + press * deep);
+            const gm_mesh_result r = evaluate(m, &state, GM_WANT_FORCE);
+            const double weight = (k == 0 || k == PARTS ? 1.0
+                                   : k % 2 == 1         ? 4.0
+                                                        : 2.0) /
+                                  (3.0 * PARTS);
+            const double direction = side < 2 ? 1.0 : -1.0;
+
+            /* At fixed x the wheel follows; at fixed phi_p it turns back as x grows. */
+            const double power =
+                side % 2 == 0
+                    ? (r.pinion_torque - r.wheel_torque * r_bp / m->pair.wheel.base_radius) * turn
+                    : r.wheel_torque / m->pair.wheel.base_radius * press;
+            work += direction * weight * power;
+            *throughput += weight * fabs(r.pinion_torque * turn);
+        }
+    }
+    return work;
+}
+
+/* Helical gears between smooth flanks: what goes in comes out. */
+static void energy_is_kept_around_closed_paths(void) {
+    const gm_pair_params gears[2] = {paper(), nrel3()};
+    for (int k = 0; k < 2; ++k) {
+        gm_mesh_params law = elastic_law();
+        elastic_mesh m;
+        GM_ASSERT_INT(make(&m, &gears[k], &law, NULL, NULL), GM_OK);
+        const double deep = 2e-3 * m.pair.normal_module;
+        double throughput;
+        const double work =
+            work_around(&m, 0.02, deep, 0.3 / m.pair.pinion.teeth, 0.5 * deep, &throughput);
+        GM_ASSERT_ABS(work, 0.0, 1e-7 * throughput);
+
+        /* F r_bp alone would not keep it: the work of the roll is there to be found. */
+        const gm_state state = pressed_state(&m, 0.02, deep);
+        const gm_mesh_result r = evaluate(&m, &state, GM_WANT_FORCE);
+        GM_ASSERT(fabs(r.pinion_torque - r.force * m.pair.pinion.base_radius) >
+                  1e-7 * r.pinion_torque);
+        release(&m);
+    }
+}
+
+/* A mirror turns helix and rotation round, and drive into coast. */
+static void coast_is_drive_in_a_mirror(void) {
+    gm_pair_params gears = nrel3();
+    const gm_mesh_params law = elastic_law();
+    elastic_mesh right, left;
+    GM_ASSERT_INT(make(&right, &gears, &law, NULL, NULL), GM_OK);
+    gears.helix_angle = -gears.helix_angle;
+    GM_ASSERT_INT(make(&left, &gears, &law, NULL, NULL), GM_OK);
+    for (int n = 0; n < 10; ++n) {
+        const double angle = 0.011 + 0.03 * n;
+        const gm_state state = pressed_state(&right, angle, pressed_offset(&right, GM_DRIVE));
+        const gm_state mirrored = {-state.pinion_angle, -state.wheel_angle, 0.0, 0.0};
+        const gm_mesh_result a = evaluate(&right, &state, GM_WANT_DERIVATIVES);
+        const gm_mesh_result b = evaluate(&left, &mirrored, GM_WANT_DERIVATIVES);
+        GM_ASSERT_REL(b.force, -a.force, 1e-8);
+        GM_ASSERT_REL(b.coast_force, a.drive_force, 1e-8);
+        GM_ASSERT_REL(b.pinion_torque, -a.pinion_torque, 1e-8);
+        GM_ASSERT_REL(b.force_by.wheel_angle, a.force_by.wheel_angle, 1e-5);
+    }
+    release(&right);
+    release(&left);
+}
+
+static void answer_does_not_depend_on_the_one_before(void) {
+    for (int k = 0; k < VARIANTS; ++k) {
+        variant v;
+        variant_make(&v, k);
+        elastic_mesh *m = &v.mesh;
+        for (int n = 0; n < 40; ++n) {
+            gm_test_context("variant %d, state %d", k, n);
+            const double angle = 0.004 * n * (n % 7 == 0 ? -5.0 : 1.0);
+            const double offset = pressed_offset(m, GM_DRIVE) * (1.0 + 0.1 * sin(3.0 * n));
+            const gm_state state = pressed_state(m, angle, offset);
+            const gm_mesh_result warm = evaluate(m, &state, GM_WANT_FORCE);
+            void *const memory = malloc(gm_workspace_size(m->mesh));
+            gm_workspace *fresh;
+            gm_mesh_result cold;
+            GM_ASSERT_INT(gm_workspace_init(&fresh, m->mesh, memory, gm_workspace_size(m->mesh)),
+                          GM_OK);
+            GM_ASSERT_INT(gm_mesh_evaluate(m->mesh, &state, GM_WANT_FORCE, fresh, &cold), GM_OK);
+            GM_ASSERT_REL(warm.force, cold.force, 1e-8);
+            free(memory);
+        }
+        variant_free(&v);
+    }
+}
+
+/* The same material on all teeth is a turn of the gears. */
+static void even_material_is_approach(void) {
+    const gm_pair_params gears = paper();
+    const gm_mesh_params law = elastic_law();
+    elastic_mesh plain, thick;
+    gm_pair pair;
+    GM_ASSERT_INT(gm_pair_init(&pair, &gears), GM_OK);
+    const gm_flanks_params sizes = {.teeth = gears.pinion_teeth,
+                                    .drive_tables = 1,
+                                    .drive_face_nodes = 3,
+                                    .drive_profile_nodes = 4};
+    const size_t size = gm_flanks_size(&sizes);
+    void *const memory = malloc(size);
+    gm_flanks *flanks;
+    double values[12];
+    for (int k = 0; k < 12; ++k) {
+        values[k] = 1.5e-6;
+    }
+    GM_ASSERT_INT(gm_flanks_init(&flanks, &sizes, memory, size), GM_OK);
+    GM_ASSERT_INT(gm_flanks_set_table(flanks, GM_DRIVE, GM_ALL_TEETH, values, 1.0), GM_OK);
+    GM_ASSERT_INT(gm_flanks_set_pitch(flanks, GM_DRIVE, GM_ALL_TEETH, 0.7e-6), GM_OK);
+    GM_ASSERT_INT(make(&plain, &gears, &law, NULL, NULL), GM_OK);
+    GM_ASSERT_INT(make(&thick, &gears, &law, flanks, NULL), GM_OK);
+    for (int n = 0; n < 10; ++n) {
+        const gm_state with = pressed_state(&thick, 0.02 * n, 3e-6);
+        const gm_state without = pressed_state(&plain, 0.02 * n, 3e-6 + 2.2e-6);
+        GM_ASSERT_REL(evaluate(&thick, &with, GM_WANT_FORCE).force,
+                      evaluate(&plain, &without, GM_WANT_FORCE).force, 1e-8);
+    }
+    release(&plain);
+    release(&thick);
+    free(memory);
+}
+
+/* Discs between bore and root: the transmission error moves by the turn of both under the torque. */
+static void bodies_wind_up_in_series(void) {
+    const gm_pair_params gears = spur62();
+    gm_mesh_params law = elastic_law();
+    elastic_mesh rigid, soft;
+    GM_ASSERT_INT(make(&rigid, &gears, &law, NULL, NULL), GM_OK);
+    law.pinion_bore_radius = 20e-3;
+    law.wheel_bore_radius = 30e-3;
+    GM_ASSERT_INT(make(&soft, &gears, &law, NULL, NULL), GM_OK);
+
+    /* Shear of rings, one after the other: T / (2 pi r^2 b G) over r dr. */
+    const double torque = 120.0;
+    const double r_bw = soft.pair.wheel.base_radius;
+    const double shear_modulus = 206e9 / 2.6;
+    double expected = 0.0;
+    for (int gear = 0; gear < 2; ++gear) {
+        const gm_gear *g = gear == 0 ? &soft.pair.pinion : &soft.pair.wheel;
+        const double bore = gear == 0 ? law.pinion_bore_radius : law.wheel_bore_radius;
+        const double step = (g->root_radius - bore) / 20000.0;
+        double turn = 0.0;
+        for (int k = 0; k < 20000; ++k) {
+            const double r = bore + (k + 0.5) * step;
+            turn += torque / r_bw * g->base_radius /
+                    (2.0 * 3.14159265358979 * r * r * r * g->face_width * shear_modulus) * step;
+        }
+        expected += turn * g->base_radius;
+    }
+    for (int n = 0; n < 6; ++n) {
+        double stiff, loose;
+        gm_mesh_result r;
+        GM_ASSERT_INT(gm_static_equilibrium(rigid.mesh, 0.02 * n, torque, (double)NAN,
+                                            rigid.workspace, &stiff, NULL),
+                      GM_OK);
+        GM_ASSERT_INT(gm_static_equilibrium(soft.mesh, 0.02 * n, torque, (double)NAN,
+                                            soft.workspace, &loose, &r),
+                      GM_OK);
+        GM_ASSERT_REL(loose - stiff, expected, 1e-6);
+        GM_ASSERT_REL(r.force * r_bw, torque, 1e-9);
+    }
+    release(&rigid);
+    release(&soft);
+}
+
+/* A cracked tooth: softer while it is in mesh, and nothing else. */
+static void soft_tooth_is_softer_in_mesh_alone(void) {
+    const gm_pair_params gears = spur62();
+    gm_mesh_params law = elastic_law();
+    double factors[62];
+    for (int k = 0; k < 62; ++k) {
+        factors[k] = k == 5 ? 0.6 : 1.0;
+    }
+    elastic_mesh whole, cracked;
+    GM_ASSERT_INT(make(&whole, &gears, &law, NULL, NULL), GM_OK);
+    law.pinion_tooth_stiffness = factors;
+    GM_ASSERT_INT(make(&cracked, &gears, &law, NULL, NULL), GM_OK);
+    int softer = 0, same = 0;
+    for (int n = 0; n < 62; ++n) {
+        /* Tooth n on the centre line: so do its neighbours touch, and no others. */
+        const double angle = -2.0 * 3.14159265358979323846 * n / 62.0;
+        const gm_state state = pressed_state(&whole, angle, 4e-6);
+        const double a = evaluate(&whole, &state, GM_WANT_FORCE).force;
+        const double b = evaluate(&cracked, &state, GM_WANT_FORCE).force;
+        if (n < 4 || n > 6) {
+            GM_ASSERT_REL(b, a, 1e-8); /* teeth of their own are taken from other tables */
+            ++same;
+        }
+        softer += b < 0.97 * a;
+    }
+    GM_ASSERT(softer >= 1 && softer <= 3);
+    GM_ASSERT(same > 50);
+    release(&whole);
+    release(&cracked);
+}
+
+/* Damping goes with the stiffness that is felt; flanks do not pull. */
+static void damping_follows_the_stiffness(void) {
+    const gm_pair_params gears = paper();
+    gm_mesh_params law = elastic_law();
+    law.damping = 800.0;
+    elastic_mesh m;
+    GM_ASSERT_INT(make(&m, &gears, &law, NULL, NULL), GM_OK);
+    gm_state state = pressed_state(&m, 0.03, 4e-6);
+    const gm_mesh_result still = evaluate(&m, &state, GM_WANT_DERIVATIVES);
+    state.pinion_speed = 0.02;
+    const gm_mesh_result moving = evaluate(&m, &state, GM_WANT_DERIVATIVES);
+    const double speed = 0.02 * m.pair.pinion.base_radius;
+    const double stiffness = -still.force_by.wheel_angle / m.pair.wheel.base_radius;
+    const double relaxation = gm_mesh_mean_damping(m.mesh) / gm_mesh_mean_stiffness(m.mesh);
+    GM_ASSERT_REL(moving.force - still.force, relaxation * stiffness * speed, 1e-6);
+    state.pinion_speed = -1e3;
+    GM_ASSERT(evaluate(&m, &state, GM_WANT_FORCE).force == 0.0);
+    release(&m);
+}
+
+/* Stiffness of the mesh, known from its derivative over a cycle at the reference torque. */
+static void stiffness_is_that_at_the_reference_torque(void) {
+    const gm_pair_params gears = spur62();
+    gm_mesh_params law = elastic_law();
+    gm_mesh_stiffness s;
+    law.reference_torque = 100.0;
+    elastic_mesh m;
+    GM_ASSERT_INT(make(&m, &gears, &law, NULL, NULL), GM_OK);
+    GM_ASSERT_INT(gm_mesh_elastic_stiffness(m.mesh, &s), GM_OK);
+    double sum = 0.0;
+    for (int n = 0; n < 200; ++n) {
+        double offset;
+        gm_mesh_result r;
+        GM_ASSERT_INT(gm_static_equilibrium(m.mesh, 0.1013 * (n + 0.5) / 200.0, 100.0, (double)NAN,
+                                            m.workspace, &offset, &r),
+                      GM_OK);
+        sum += -r.force_by.wheel_angle / m.pair.wheel.base_radius / 200.0;
+    }
+    GM_ASSERT_REL(s.mesh_mean, sum, 1e-2);
+    GM_ASSERT_REL(gm_mesh_mean_stiffness(m.mesh), s.mesh_mean, 1e-12);
+    GM_ASSERT(s.mesh_smallest < s.mesh_mean && s.mesh_mean < s.mesh_largest);
+
+    /* One pair alone is softer than two, and as stiff as where one carries all. */
+    GM_ASSERT(s.single_smallest < s.single_mean && s.single_mean < s.single_largest);
+    GM_ASSERT(s.single_largest < s.mesh_largest && s.single_largest > 0.9 * s.mesh_smallest);
+    release(&m);
+}
+
+static void cache_holds_elastic_teeth(void) {
+    const gm_pair_params gears = paper();
+    const gm_mesh_params law = elastic_law();
+    elastic_mesh m;
+    GM_ASSERT_INT(make(&m, &gears, &law, NULL, NULL), GM_OK);
+    gm_cache_params params;
+    gm_cache_errors errors;
+    gm_cache *cache;
+    gm_cache_params_default(&params);
+    const size_t size = gm_cache_size(&params, m.mesh);
+    void *const memory = malloc(size);
+    GM_ASSERT_INT(gm_cache_init(&cache, &params, m.mesh, memory, size), GM_OK);
+    GM_ASSERT_INT(gm_cache_error(cache, 300, 5, m.workspace, &errors), GM_OK);
+    GM_ASSERT(errors.sum_largest < 5e-3 * params.depth);
+    GM_ASSERT(errors.contact_largest < 0.05);
+
+    /* And answers for the mesh. */
+    const gm_state state = pressed_state(&m, 0.2, 4e-6);
+    const gm_mesh_result exact = evaluate(&m, &state, GM_WANT_DERIVATIVES);
+    GM_ASSERT_INT(gm_mesh_use_cache(m.mesh, cache), GM_OK);
+    const gm_mesh_result held = evaluate(&m, &state, GM_WANT_DERIVATIVES);
+    GM_ASSERT_REL(held.force, exact.force, 1e-3);
+    GM_ASSERT_REL(held.force_by.wheel_angle, exact.force_by.wheel_angle, 3e-2);
+    GM_ASSERT(held.force != exact.force);
+    release(&m);
+    free(memory);
+}
+
+static void wrench_acts_where_the_load_is(void) {
+    const gm_pair_params gears = spur62();
+    gm_mesh_params law = elastic_law();
+    elastic_mesh even, skewed;
+    GM_ASSERT_INT(make(&even, &gears, &law, NULL, NULL), GM_OK);
+    law.pose.inclination = 2e-4;
+    GM_ASSERT_INT(make(&skewed, &gears, &law, NULL, NULL), GM_OK);
+    const gm_state state = pressed_state(&even, 0.01, 4e-6);
+    const gm_mesh_result a = evaluate(&even, &state, GM_WANT_WRENCH);
+    const gm_mesh_result b = evaluate(&skewed, &state, GM_WANT_WRENCH);
+
+    /* At mid-face; and beside it where the axes lean. The turning moment is F r_bw. */
+    const double middle = a.wrench.wheel_moment[1] / a.wrench.wheel_force[0];
+    const double beside = b.wrench.wheel_moment[1] / b.wrench.wheel_force[0];
+    GM_ASSERT_REL(middle, 0.5 * gears.face_width, 1e-9);
+    GM_ASSERT(fabs(beside - middle) > 0.02 * gears.face_width);
+    GM_ASSERT_REL(a.wrench.wheel_moment[2], -a.force * even.pair.wheel.base_radius, 1e-12);
+    release(&even);
+    release(&skewed);
+}
+
+static void bad_input_is_refused(void) {
+    const gm_pair_params gears = spur62();
+    gm_mesh_params law = elastic_law();
+    elastic_mesh m;
+    gm_mesh_result r;
+    GM_ASSERT_INT(make(&m, &gears, &law, NULL, NULL), GM_OK);
+    const gm_state state = pressed_state(&m, 0.01, 4e-6);
+    GM_ASSERT_INT(gm_mesh_evaluate(m.mesh, &state, GM_WANT_FORCE, NULL, &r), GM_ERR_NULL);
+    GM_ASSERT_NAN(r.force);
+    gm_workspace *workspace;
+    const size_t room = gm_workspace_size(m.mesh);
+    GM_ASSERT_INT(gm_workspace_init(&workspace, m.mesh, m.workspace_memory, room - 1),
+                  GM_ERR_MEMORY);
+    GM_ASSERT_INT(gm_workspace_init(&workspace, m.mesh, NULL, room), GM_ERR_NULL);
+    GM_ASSERT_INT(gm_workspace_init(&workspace, NULL, m.workspace_memory, room), GM_ERR_NULL);
+    release(&m);
+
+    /* Parameters, with the field that is at fault. */
+    const struct {
+        const char *field;
+        size_t place;
+        double value;
+    } wrong[] = {
+        {"pinion_youngs_modulus", offsetof(gm_mesh_params, pinion_youngs_modulus), 0.0},
+        {"wheel_youngs_modulus", offsetof(gm_mesh_params, wheel_youngs_modulus), (double)NAN},
+        {"pinion_poisson_ratio", offsetof(gm_mesh_params, pinion_poisson_ratio), 0.5},
+        {"wheel_poisson_ratio", offsetof(gm_mesh_params, wheel_poisson_ratio), -0.1},
+        {"pinion_bore_radius", offsetof(gm_mesh_params, pinion_bore_radius), 0.0},
+        {"wheel_bore_radius", offsetof(gm_mesh_params, wheel_bore_radius), -1.0},
+        {"reference_torque", offsetof(gm_mesh_params, reference_torque), 0.0},
+    };
+    const char *field;
+    for (size_t k = 0; k < sizeof wrong / sizeof wrong[0]; ++k) {
+        law = elastic_law();
+        memcpy((char *)&law + wrong[k].place, &wrong[k].value, sizeof wrong[k].value);
+        GM_ASSERT_INT(gm_mesh_params_check(&law, &field, NULL), GM_ERR_PARAMETER);
+        GM_ASSERT_STRING(field, wrong[k].field);
+    }
+    law = elastic_law();
+    law.stations = 98;
+    GM_ASSERT_INT(gm_mesh_params_check(&law, &field, NULL), GM_ERR_PARAMETER);
+    GM_ASSERT_STRING(field, "stations");
+
+    /* Teeth that have no fillet, a bore in the rim, and few teeth that are undercut. */
+    gm_pair_params deep = spur62();
+    gm_pair_params few = spur62();
+    deep.wheel_rack_dedendum = 1.75;
+    few.pinion_teeth = 12;
+    few.center_distance = 74e-3;
+    const gm_pair_params cases[3] = {deep, gears, few};
+    const char *const fields[3] = {"wheel_rack_fillet_radius", "pinion_bore_radius",
+                                   "pinion_profile_shift"};
+    for (int k = 0; k < 3; ++k) {
+        gm_pair pair;
+        const char *requirement;
+        law = elastic_law();
+        law.pinion_bore_radius = k == 1 ? 61e-3 : (double)NAN;
+        GM_ASSERT_INT(gm_pair_init(&pair, &cases[k]), GM_OK);
+        const size_t size = gm_mesh_size(&law, &pair);
+        void *const memory = malloc(size);
+        gm_mesh *mesh;
+        GM_ASSERT_INT(gm_mesh_init(&mesh, &law, &pair, NULL, NULL, memory, size), GM_ERR_GEOMETRY);
+        GM_ASSERT(mesh == NULL);
+        GM_ASSERT_INT(gm_mesh_check_teeth(&law, &pair, &field, &requirement, memory, size),
+                      GM_ERR_GEOMETRY);
+        GM_ASSERT_STRING(field, fields[k]);
+        GM_ASSERT(requirement != NULL);
+        free(memory);
+    }
+}
+
+int main(int argc, char **argv) {
+    static const gm_test tests[] = {
+        GM_TEST(check_values_are_met),
+        GM_TEST(derivatives_are_those_of_differences),
+        GM_TEST(energy_is_kept_around_closed_paths),
+        GM_TEST(coast_is_drive_in_a_mirror),
+        GM_TEST(answer_does_not_depend_on_the_one_before),
+        GM_TEST(even_material_is_approach),
+        GM_TEST(bodies_wind_up_in_series),
+        GM_TEST(soft_tooth_is_softer_in_mesh_alone),
+        GM_TEST(damping_follows_the_stiffness),
+        GM_TEST(stiffness_is_that_at_the_reference_torque),
+        GM_TEST(cache_holds_elastic_teeth),
+        GM_TEST(wrench_acts_where_the_load_is),
+        GM_TEST(bad_input_is_refused),
+    };
+    return gm_test_main("unit.elastic_mesh", tests, GM_TEST_COUNT(tests), argc, argv);
+}
