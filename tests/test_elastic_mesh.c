@@ -203,10 +203,14 @@ static void variant_free(variant *v) {
     }
 }
 
-/* Presses the flanks of a side together by a thousandth of a module beyond the clearance. */
-static double pressed_offset(const elastic_mesh *m, int side) {
-    const double clearance = gm_mesh_clearance(m->mesh, side);
-    return (side == GM_DRIVE ? 1.0 : -1.0) * (clearance + 4e-3 * m->pair.normal_module);
+/* x at which the flanks of a side carry 100 N per mm of face. */
+static double pressed_offset(elastic_mesh *m, int side, double angle) {
+    const double torque = 1e5 * m->pair.face_width * m->pair.wheel.base_radius;
+    double offset;
+    GM_ASSERT_INT(gm_static_equilibrium(m->mesh, angle, side == GM_DRIVE ? torque : -torque,
+                                        (double)NAN, m->workspace, &offset, NULL),
+                  GM_OK);
+    return offset;
 }
 
 /* Three values of a quantity around a state decide: the middle difference, and whether there is a kink. */
@@ -227,7 +231,7 @@ static void derivatives_are_those_of_differences(void) {
         for (int n = 0; n < 8; ++n) {
             gm_test_context("variant %d, state %d", k, n);
             const double angle = 0.013 + 0.37 * n / m->pair.pinion.teeth;
-            const gm_state state = pressed_state(m, angle, pressed_offset(m, n % 2));
+            const gm_state state = pressed_state(m, angle, pressed_offset(m, n % 2, angle));
             forget(m);
             const gm_mesh_result at = evaluate(m, &state, GM_WANT_DERIVATIVES);
             GM_ASSERT(fabs(at.force) > 0.0);
@@ -336,7 +340,8 @@ static void coast_is_drive_in_a_mirror(void) {
     GM_ASSERT_INT(make(&left, &gears, &law, NULL, NULL), GM_OK);
     for (int n = 0; n < 10; ++n) {
         const double angle = 0.011 + 0.03 * n;
-        const gm_state state = pressed_state(&right, angle, pressed_offset(&right, GM_DRIVE));
+        const gm_state state =
+            pressed_state(&right, angle, pressed_offset(&right, GM_DRIVE, angle));
         const gm_state mirrored = {-state.pinion_angle, -state.wheel_angle, 0.0, 0.0};
         const gm_mesh_result a = evaluate(&right, &state, GM_WANT_DERIVATIVES);
         const gm_mesh_result b = evaluate(&left, &mirrored, GM_WANT_DERIVATIVES);
@@ -357,7 +362,7 @@ static void answer_does_not_depend_on_the_one_before(void) {
         for (int n = 0; n < 40; ++n) {
             gm_test_context("variant %d, state %d", k, n);
             const double angle = 0.004 * n * (n % 7 == 0 ? -5.0 : 1.0);
-            const double offset = pressed_offset(m, GM_DRIVE) * (1.0 + 0.1 * sin(3.0 * n));
+            const double offset = pressed_offset(m, GM_DRIVE, angle) * (1.0 + 0.1 * sin(3.0 * n));
             const gm_state state = pressed_state(m, angle, offset);
             const gm_mesh_result warm = evaluate(m, &state, GM_WANT_FORCE);
             void *const memory = malloc(gm_workspace_size(m->mesh));

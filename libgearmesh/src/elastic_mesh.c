@@ -209,8 +209,13 @@ int gmi_elastic_mesh_init(gmi_elastic_mesh *made, const gm_mesh_params *params, 
                              params->wheel_poisson_ratio)},
     };
     const double contact_start[2] = {
-        fmax(at->start_roll_length[GM_PINION], at->line_of_action - pair->wheel.tip_roll_length),
-        fmax(at->start_roll_length[GM_WHEEL], at->line_of_action - pair->pinion.tip_roll_length)};
+        fmax(at->start_roll_length[GM_PINION], at->line_of_action - at->tip_roll_length[GM_WHEEL]),
+        fmax(at->start_roll_length[GM_WHEEL], at->line_of_action - at->tip_roll_length[GM_PINION])};
+    if (pair->wheel.sign < 0.0) {
+        (void)refuse("wheel_teeth", "external teeth: those of a ring have no elastic law", field,
+                     requirement);
+        return GM_ERR_GEOMETRY;
+    }
     if (!is_given_well(params, pair, field, requirement)) {
         return GM_ERR_GEOMETRY;
     }
@@ -283,9 +288,9 @@ static void find_stiffness(gmi_elastic_mesh *made, const gm_pair *pair, const gm
                            double force, gmi_elastic_work *work) {
     const gmi_elastic *law = &made->law;
     const double start =
-        fmax(at->start_roll_length[GM_PINION], at->line_of_action - pair->wheel.tip_roll_length);
+        fmax(at->start_roll_length[GM_PINION], at->line_of_action - at->tip_roll_length[GM_WHEEL]);
     const double end =
-        fmin(pair->pinion.tip_roll_length, at->line_of_action - at->start_roll_length[GM_WHEEL]);
+        fmin(at->tip_roll_length[GM_PINION], at->line_of_action - at->start_roll_length[GM_WHEEL]);
     const double pitch = pair->transverse_base_pitch;
     const double climb = pair->face_advance / pair->face_width;
     const double rise = climb * law->face_width;
@@ -433,8 +438,7 @@ static line_view view_line(const side_view *view, const gmi_elastic_line *line) 
     if (at->is_tilted) {
         const double origin =
             view->lines.origin + (double)line->index * pair->transverse_base_pitch;
-        gmi_tilt_line(pair, at, view->side, origin, view->lines.advance, at->face_from, at->face_to,
-                      &seen.tilted);
+        gmi_tilt_line(pair, at, view->side, origin, &seen.tilted);
     }
     return seen;
 }
@@ -461,7 +465,7 @@ static material material_at(const line_view *line, double z, double roll) {
     if (prepared->wheel != NULL) {
         const gmi_surface flank =
             gmi_surface_at(prepared->wheel, &prepared->wheel_grid, line->wheel.values, t1,
-                           at->line_of_action - roll - pair->wheel.start_roll_length);
+                           at->line_of_action - roll - at->wheel_profile_start);
         sum.value += flank.value;
         sum.by_z += flank.by_t1 * per_width;
         sum.by_roll -= flank.by_roll;
@@ -470,11 +474,10 @@ static material material_at(const line_view *line, double z, double roll) {
     /* Tilted axes: a parabola along the line. */
     if (at->is_tilted) {
         const gmi_tilted_line *tilted = &line->tilted;
-        const double beyond = t1 - at->face_from;
-        const double by_roll = tilted->by_rho + tilted->by_rho_slope * beyond;
-        const double along = 2.0 * (tilted->half_slope + tilted->curvature * beyond) * per_width;
-        sum.value +=
-            tilted->shift + (2.0 * tilted->half_slope + tilted->curvature * beyond) * beyond;
+        const double *shift = tilted->shift;
+        const double by_roll = tilted->by_origin[0] + tilted->by_origin[1] * t1;
+        const double along = (shift[1] + 2.0 * shift[2] * t1) * per_width;
+        sum.value += shift[0] + (shift[1] + shift[2] * t1) * t1;
         sum.by_roll += by_roll;
         sum.by_z += along - view->lines.advance * per_width * by_roll;
     }

@@ -9,7 +9,7 @@
 #include <math.h>
 
 static int evaluate_states(const gm_mesh *mesh, size_t count, const gm_state *states, int wanted,
-                           void *workspace, gm_mesh_result *results) {
+                           gm_workspace *workspace, gm_mesh_result *results) {
     int status = GM_OK;
     for (size_t k = 0; k < count && status >= GM_OK; ++k) {
         status = gm_mesh_evaluate(mesh, &states[k], wanted, workspace, &results[k]);
@@ -19,7 +19,7 @@ static int evaluate_states(const gm_mesh *mesh, size_t count, const gm_state *st
 
 /* coordinates: [count][3] pinion angle (rad), x (m), dx/dt (m/s). */
 static int evaluate_offsets(const gm_mesh *mesh, size_t count, const double *coordinates,
-                            int wanted, void *workspace, gm_mesh_result *results) {
+                            int wanted, gm_workspace *workspace, gm_mesh_result *results) {
     int status = GM_OK;
     for (size_t k = 0; k < count && status >= GM_OK; ++k) {
         const double *given = &coordinates[3 * k];
@@ -35,7 +35,7 @@ static int evaluate_offsets(const gm_mesh *mesh, size_t count, const double *coo
 }
 
 /* loads: [count][2] pinion angle (rad), torque on the wheel (N m). */
-static int solve_static(const gm_mesh *mesh, size_t count, const double *loads, void *workspace,
+static int solve_static(const gm_mesh *mesh, size_t count, const double *loads, gm_workspace *workspace,
                         double *offsets, gm_mesh_result *results) {
     const gm_pair *pair = gm_mesh_pair(mesh);
     const double r_bp = pair->pinion.base_radius;
