@@ -570,6 +570,25 @@ class Values(Case):
         for value in [".5", "5."]:
             self.accepted("run.ini", "--check", "--set", f"gears.face_width_mm={value}")
 
+    def test_rings_that_cannot_be(self):
+        ring = PARAMS
+        for key, value in [("normal_module_mm", 2), ("normal_pressure_angle_deg", 20), ("helix_angle_deg", 0)]:
+            ring = with_key(ring, "gears", key, value)
+        for key in ("pinion_tip_diameter_mm", "wheel_tip_diameter_mm"):
+            ring = without_key(ring, key)
+        for pinion, wheel, fragments in [
+                (20, -40, ["gears.wheel_tip_diameter_mm: must be a larger diameter", "(involute interference)"]),
+                (60, -66, ["gears.wheel_teeth: must be a ring with more teeth", "(trochoid interference) (got -66)"]),
+                (60, -72, ["gears.wheel_teeth: must be a ring with more teeth", "(trimming) (got -72)"]),
+                (60, -50, ["gears.wheel_teeth: must be a ring with more teeth than the pinion (got -50)"]),
+                (60, -60, ["gears.wheel_teeth: must be a ring with more teeth than the pinion (got -60)"])]:
+            with self.subTest(pinion=pinion, wheel=wheel):
+                text = ring
+                for key, value in [("pinion_teeth", pinion), ("wheel_teeth", wheel),
+                                   ("center_distance_mm", abs(wheel + pinion) or 1)]:
+                    text = with_key(text, "gears", key, value)
+                self.refused(*fragments, params=text, arguments=["--check"])
+
     def test_locale_does_not_matter(self):
         self.write("run.ini", PARAMS)
         environment = dict(os.environ, LC_ALL="de_DE.UTF-8", LC_NUMERIC="de_DE.UTF-8")
@@ -580,7 +599,7 @@ class Values(Case):
     def test_ranges(self):
         for section, key, values, requirement in [
                 ("gears", "pinion_teeth", ["0", "-45", "2", "100001"], "from 3 to 100000"),
-                ("gears", "wheel_teeth", ["0", "-41", "2"], "from 3 to 100000"),
+                ("gears", "wheel_teeth", ["0", "-2", "2", "-100001"], "from 3 to 100000, or from -100000 to -3"),
                 ("gears", "normal_module_mm", ["0", "-1.65", "1e-400", "0.9e-3", "1.1e12"], "from 0.001 to 1e+12"),
                 ("gears", "face_width_mm", ["0", "-1", "1e300"], "from 0.001 to 1e+12"),
                 ("gears", "center_distance_mm", ["0", "-85", "1e80"], "from 0.001 to 1e+12"),

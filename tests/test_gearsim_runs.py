@@ -868,6 +868,104 @@ class Static(Case):
         self.assertGreater(min(coast["te_um"]), 50.0)
 
 
+class Ring(Case):
+    """A spur pinion in a ring: its numbers in closed form. All pairs that touch share the load alike."""
+
+    Z_P, Z_W, R_BW, BACKLASH, TORQUE = 31, 88, 88e-3 * math.cos(math.radians(20)), 60e-6, 190.0
+    RING = ["gears.pinion_teeth=31", "gears.wheel_teeth=-88", "gears.normal_module_mm=2",
+            "gears.normal_pressure_angle_deg=20", "gears.helix_angle_deg=0", "gears.center_distance_mm=57.4",
+            "gears.backlash_um=60", "gears.pinion_tip_diameter_mm=", "gears.wheel_tip_diameter_mm=",
+            "gears.pinion_rack_dedendum=", "gears.wheel_rack_dedendum=", f"load.mean_Nm={TORQUE}"]
+
+    def test_geometry(self):
+        g = self.geometry(self.RING)
+        alpha = math.acos(57 * math.cos(math.radians(20)) / 57.4)
+        self.assert_close(g["working_pressure_angle_deg"], math.degrees(alpha), 1e-13)
+        self.assert_close(g["line_of_action_mm"], 57.4 * math.sin(alpha), 1e-13)
+        self.assert_close(g["gear_ratio"], -self.Z_W / self.Z_P, 1e-15)
+        self.assert_close(g["reference_center_distance_mm"], 57, 1e-14)
+
+        # The shifts without backlash, of which half belongs to each gear; the axes are further apart than they ask for.
+        inv = lambda angle: math.tan(angle) - angle  # noqa: E731
+        shifts = (self.Z_P - self.Z_W) * (inv(alpha) - inv(math.radians(20))) / (2 * math.tan(math.radians(20)))
+        k = min(0, (57 - 57.4) / 2 - shifts)
+        self.assert_close(g["pinion_profile_shift"], shifts / 2, 1e-11)
+        self.assert_close(g["wheel_tip_alteration"], k, 1e-12, 1e-15)
+        self.assert_close(g["wheel_tip_radius_mm"], 88 - 2 * (1 + shifts / 2 + k), 1e-13)
+        self.assert_close(g["wheel_root_radius_mm"], 88 + 2 * (1.25 - shifts / 2), 1e-13)
+        self.assert_close(g["wheel_tip_clearance_mm"], g["wheel_tip_radius_mm"] - 57.4 - g["pinion_root_radius_mm"], 0, 1e-12)
+        self.assertGreater(g["wheel_start_radius_mm"], g["wheel_tip_radius_mm"])
+
+    def test_static_error_is_that_of_one_pair_or_two(self):
+        for sign in (1, -1):
+            columns = self.run_columns(self.RING + STATIC + [f"load.mean_Nm={sign * self.TORQUE}"])
+            force = self.TORQUE / self.R_BW
+            expected = [1e6 * (self.BACKLASH / 2 + force / K / n) for n in (1, 2)]
+            seen = set()
+            for te in columns["te_um"]:
+                nearest = min(expected, key=lambda value: abs(-sign * te - value))
+                seen.add(nearest)
+                self.assert_close(-sign * te, nearest, 1e-10)
+            self.assertEqual(len(seen), 2)
+
+    def test_material_on_the_rings_flanks_comes_off_the_error(self):
+        with open(self.path("ring.csv"), "w") as file:
+            file.write("tooth,flank,t1,t2,deviation_um\n")
+            for tooth in range(self.Z_W):
+                file.writelines(f"{tooth},drive,{t1},{t2},5\n" for t1 in (0, 1) for t2 in (0, 1))
+        ideal = self.run_columns(self.RING + STATIC)["te_um"]
+        filled = self.run_columns(self.RING + STATIC + ["flanks.wheel=ring.csv"])["te_um"]
+        self.assert_all_close([b - a for a, b in zip(ideal, filled)], [5.0] * len(ideal), absolute=1e-7)
+
+        # The teeth of a ring are counted as they are.
+        with open(self.path("ring.csv"), "a") as file:
+            file.write(f"{self.Z_W},drive,0,0,5\n")
+        result = self.gearsim(self.RING + STATIC + ["flanks.wheel=ring.csv"])
+        self.assertEqual(result.returncode, 2)
+        self.assertIn("87", result.stderr)
+
+    def test_profiles_of_a_ring_run_from_its_root_to_its_tip(self):
+        """A slope of the ring's profiles is seen by the pair that carries alone, at the place where it touches."""
+        slope, g = 20.0, self.geometry(self.RING)
+        many = self.RING + STATIC + ["analysis.positions=600"]
+        ideal = self.run_columns(many)
+        sloped = self.run_columns(many + [f"modifications.wheel_profile_slope_um={slope}"])
+        r_b, alpha = g["pinion_base_radius_mm"], math.radians(g["working_pressure_angle_deg"])
+        roll = {name: math.sqrt(g[f"wheel_{name}_radius_mm"] ** 2 - g["wheel_base_radius_mm"] ** 2) for name in ("start", "tip")}
+
+        # Half the pinion's tooth on the base circle, thinned by half the backlash.
+        alpha_t, shift = math.radians(20), g["pinion_profile_shift"]
+        thickness = 2 * (math.pi / 2 + 2 * shift * math.tan(alpha_t)) - 1e3 * self.BACKLASH / (2 * math.cos(alpha_t))
+        psi = thickness / 62 + math.tan(alpha_t) - alpha_t
+        compared = 0
+        for angle, te, other in zip(ideal["pinion_angle_rad"], ideal["te_um"], sloped["te_um"]):
+            if -te < 1e6 * (self.BACKLASH / 2 + 0.9 * self.TORQUE / self.R_BW / K):
+                continue  # two pairs
+            if abs(other - te) > slope / 2:
+                continue  # two with the slope: a loaded path is shorter
+            rho = r_b * (alpha + psi + angle)
+            pitch = g["transverse_base_pitch_mm"]
+            inside = [rho + n * pitch for n in range(-9, 10) if g["path_start_mm"] + 0.04 < rho + n * pitch < g["path_end_mm"]]
+            self.assertEqual(len(inside), 1)
+            wheel = g["line_of_action_mm"] + inside[0]
+            place = (wheel - roll["start"]) / (roll["tip"] - roll["start"])
+            # The point looked up is that of the flank under load, some 10 um of 10 mm along it.
+            self.assert_close(other - te, slope * (place - 0.5), absolute=0.05)
+            compared += 1
+        self.assertGreater(compared, 10)
+
+    def test_both_turn_the_same_way(self):
+        # Few steps would pass over the short time with one pair.
+        columns = self.run_columns(self.RING + ["analysis.duration_s=0.1", "drive.start_rpm=300", "drive.end_rpm=300",
+                                                "solver.max_step_s=5e-5"])
+        half = len(columns["time_s"]) // 2
+        mean = statistics.fmean(columns["wheel_speed_rpm"][half:])
+        self.assert_close(mean, 300 * self.Z_P / self.Z_W, 1e-3)
+        # In the mean the mesh carries the load, which resists that turn.
+        force = statistics.fmean(columns["contact_force_N"][half:])
+        self.assert_close(force, self.TORQUE / self.R_BW, 2e-2)
+
+
 class Ends(Case):
     ENDLESS = ["analysis.duration_s=30000", "load.noise_amplitude_Nm=10"]
 

@@ -5,6 +5,7 @@
 
 #include <math.h>
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 
 /* ---------------------------------------------------------------------------------------------
@@ -34,7 +35,7 @@ static double base_diameter(const gm_pair_params *gears, int teeth) {
     const double cos_helix = cos(gears->helix_angle);
     const double transverse_pressure_angle = atan(tan(gears->normal_pressure_angle) / cos_helix);
 
-    return teeth * gears->normal_module / cos_helix * cos(transverse_pressure_angle);
+    return abs(teeth) * gears->normal_module / cos_helix * cos(transverse_pressure_angle);
 }
 
 /* The measures that a fault is judged by: where the faces lie, or the base circles (mm). */
@@ -145,7 +146,7 @@ static void warn_of_clearance(const config *conf, const gm_pair *pair, const gm_
                               const gear_words *words, double clearance) {
     const double usual = 0.25;
     const double excess = usual - clearance / pair->normal_module; /* of the tooth, in modules */
-    const double tip_radius = gear->tip_radius - excess * pair->normal_module;
+    const double tip_radius = gear->tip_radius - gear->sign * excess * pair->normal_module;
 
     config_warn(conf, words->tip_key,
                 "the tip clearance to the root of the %s is %.3f normal modules, less than 0.1: a "

@@ -77,7 +77,7 @@ static void print_teeth(const gm_pair *pair, const listing *to) {
     print_value(to, "wheel_tip_thickness_mm", millimetres(wheel->tip_thickness));
     print_value(to, "pinion_tip_alteration", pinion->tip_alteration);
     print_value(to, "wheel_tip_alteration", wheel->tip_alteration);
-    print_value(to, "gear_ratio", (double)wheel->teeth / pinion->teeth);
+    print_value(to, "gear_ratio", wheel->sign * wheel->teeth / pinion->teeth);
     print_value(to, "face_width_mm", millimetres(pair->face_width));
 }
 

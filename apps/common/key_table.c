@@ -164,7 +164,10 @@ static void describe_range(const key_range *range, char *text, size_t size) {
         {"from %.9g to %.9g", "from %.9g to below %.9g"},
         {"above %.9g, up to %.9g", "between %.9g and %.9g, both excluded"}};
 
-    if (isfinite(range->low) && isfinite(range->high)) {
+    if (range->either_sign) {
+        snprintf(text, size, "from %.9g to %.9g, or from -%.9g to -%.9g", range->low, range->high,
+                 range->high, range->low);
+    } else if (isfinite(range->low) && isfinite(range->high)) {
         snprintf(text, size, bounded[range->open_low][range->open_high], range->low, range->high);
     } else if (isfinite(range->low)) {
         snprintf(text, size, "%s %.9g", range->open_low ? ">" : ">=", range->low);
@@ -186,10 +189,11 @@ static void describe_slip(const key_spec *key, double value, char *text, size_t 
 
 static int check_range(const key_spec *key, double value, const char *text, char *fault) {
     const key_range *range = &key->range;
-    const int low = range->open_low ? value <= range->low : value < range->low;
-    const int high = range->open_high ? value >= range->high : value > range->high;
+    const double size = range->either_sign ? fabs(value) : value;
+    const int low = range->open_low ? size <= range->low : size < range->low;
+    const int high = range->open_high ? size >= range->high : size > range->high;
     const int broken = key->kind == KEY_COUNT && value != floor(value);
-    char requirement[80];
+    char requirement[120];
     char slip[80];
 
     if (!low && !high && !broken) {

@@ -37,6 +37,7 @@ enum key_unit {
 typedef struct key_range {
     double low, high;        /* in the unit of the file */
     int open_low, open_high; /* the bound itself is excluded */
+    int either_sign;         /* the range is that of the absolute value */
 } key_range;
 
 /* Situations that use or require a key. A mask with bits of several pairs means all of these pairs. */

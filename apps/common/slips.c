@@ -106,10 +106,23 @@ static double judge_helix_angle(const config *conf) {
  * Module and centre distance
  * ------------------------------------------------------------------------------------------- */
 
-/* Sum of the profile shifts that gives no backlash at a centre distance (mm); NaN: the gears do not reach or overlap. */
+/* Of a ring below 0, as centre distances of its pair are then. */
+static double tooth_sum(const config *conf) {
+    return conf->gears.pinion_teeth + conf->gears.wheel_teeth;
+}
+
+/* +1, -1 with a ring: its axes are too close where external ones are too far apart. */
+static double sign_of_pair(const config *conf) {
+    return conf->gears.wheel_teeth < 0 ? -1 : 1;
+}
+
+/*
+ * Sum of the profile shifts that gives no backlash at a centre distance (mm), with a ring its opposite; NaN: the gears do
+ * not reach or overlap.
+ */
 static double shift_sum(const config *conf, double module, double pressure_angle, double cos_helix,
                         double center_distance) {
-    const double teeth = conf->gears.pinion_teeth + conf->gears.wheel_teeth;
+    const double teeth = fabs(tooth_sum(conf));
     const double tan_normal = tan(pressure_angle * pi / 180);
     const double transverse = atan(tan_normal / cos_helix);
     const double reference = module * teeth / (2 * cos_helix);
@@ -118,19 +131,27 @@ static double shift_sum(const config *conf, double module, double pressure_angle
     return teeth * ((tan(working) - working) - (tan(transverse) - transverse)) / (2 * tan_normal);
 }
 
+/* The same of the shifts that are given; NaN where one of them is not. */
+static double given_shift_sum(const config *conf) {
+    return sign_of_pair(conf) *
+           (conf->gears.pinion_profile_shift + conf->gears.wheel_profile_shift);
+}
+
 /*
  * Does a module fit the centre distance? Sums of profile shifts beyond these are not made; where both shifts are
  * given, the sum is known but for the backlash.
  */
 static int fits(const config *conf, double sum) {
-    const double given = conf->gears.pinion_profile_shift + conf->gears.wheel_profile_shift;
+    const double given = given_shift_sum(conf);
+    const int is_ring = conf->gears.wheel_teeth < 0;
 
-    return isnan(given) ? is_within(sum, -0.6, 3) : fabs(sum - given) <= 0.15;
+    return isnan(given) ? is_within(sum, is_ring ? -1.5 : -0.6, is_ring ? 1.5 : 3)
+                        : fabs(sum - given) <= 0.15;
 }
 
 /* A transverse module in place of the normal one is too large by 1 / cos(beta), and the shifts become negative. */
 static int is_transverse_module(const config *conf, double as_given, double as_transverse) {
-    const double given = conf->gears.pinion_profile_shift + conf->gears.wheel_profile_shift;
+    const double given = given_shift_sum(conf);
 
     if (!isnan(given)) {
         return !fits(conf, as_given) && fabs(as_transverse - given) <= 0.03;
@@ -166,7 +187,7 @@ static double judge_against_distance(const config *conf, double module, double d
 
 /* A drawing in inches: the diametral pitch P in place of the module, and a = sum(z) / (2 P cos(beta)) in inches. */
 static int is_inch_drawing(const config *conf, double cos_helix) {
-    const double teeth = conf->gears.pinion_teeth + conf->gears.wheel_teeth;
+    const double teeth = fabs(tooth_sum(conf));
     const double pitch = 1e3 * conf->gears.normal_module;
     const double inches = 1e3 * conf->gears.center_distance;
 
@@ -276,7 +297,7 @@ static double judge_module(const config *conf, double pressure_angle, double cos
     static const double module_possible[] = {0.05, 120}, module_usual[] = {0.1, 100};
     static const double possible[] = {0.5, 2}, usual[] = {0.8, 1.25};
     static const other_unit metric[] = {{"in metres", 1e3}, {"in micrometres", 1e-3}, {NULL, 0}};
-    const double teeth = conf->gears.pinion_teeth + conf->gears.wheel_teeth;
+    const double teeth = fabs(tooth_sum(conf));
     const double distance = 1e3 * conf->gears.center_distance;
     const double module =
         judge(conf, "gears.normal_module_mm", 1e3 * conf->gears.normal_module, " mm", 1,
@@ -298,8 +319,10 @@ static double judge_module(const config *conf, double pressure_angle, double cos
     if (other == NULL || of_pitch < fabs(log(share * other->size))) {
         return judge_against_distance(conf, module, distance, pressure_angle, cos_helix);
     }
-    (void)judge(conf, "gears.center_distance_mm", distance, " mm", reference, possible, usual,
-                lengths, "far from half the sum of the reference diameters");
+    (void)judge(
+        conf, "gears.center_distance_mm", distance, " mm", reference, possible, usual, lengths,
+        conf->gears.wheel_teeth < 0 ? "far from half the difference of the reference diameters"
+                                    : "far from half the sum of the reference diameters");
     return module;
 }
 
@@ -313,7 +336,7 @@ static usual_gear judge_drawing(const config *conf) {
     usual.cos_helix = cos(judge_helix_angle(conf) * pi / 180);
     usual.module = judge_module(conf, pressure_angle, usual.cos_helix);
     usual.diameter[0] = usual.module * gears->pinion_teeth / usual.cos_helix;
-    usual.diameter[1] = usual.module * gears->wheel_teeth / usual.cos_helix;
+    usual.diameter[1] = usual.module * fabs((double)gears->wheel_teeth) / usual.cos_helix;
 
     usual.face_width = judge_face_widths(conf, usual.module);
 

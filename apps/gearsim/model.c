@@ -80,8 +80,8 @@ static void add_flanks(gear_model *model, int side, const gm_flanks *flanks, con
     }
     model->is_ideal[side] = 0;
     model->reach[side] += gm_flanks_peak(flanks, side);
-    model->slope[side] +=
-        gm_flanks_profile_slope(flanks, side) / (gear->tip_roll_length - gear->start_roll_length);
+    model->slope[side] += gm_flanks_profile_slope(flanks, side) /
+                          fabs(gear->tip_roll_length - gear->start_roll_length);
 }
 
 /* Bounds of the flanks for the look ahead in free flight; the simple model has ideal flanks. */

@@ -59,7 +59,7 @@ static int is_at_face_ii(int kind) {
  * ------------------------------------------------------------------------------------------- */
 
 static double roll_of(const gm_modifications *of) {
-    return of->gear->tip_roll_length - of->gear->start_roll_length;
+    return fabs(of->gear->tip_roll_length - of->gear->start_roll_length);
 }
 
 /* Roll length of the range, from the tip or from the start of the active profile (m). */
@@ -72,7 +72,7 @@ static double profile_length(const gm_modifications *of, const gm_modification *
         return m->profile_range;
     }
     const double limit = gmi_roll_length(m->profile_range, gear->base_radius);
-    return is_at_tip(m->kind) ? gear->tip_roll_length - limit : limit - gear->start_roll_length;
+    return fabs(limit - (is_at_tip(m->kind) ? gear->tip_roll_length : gear->start_roll_length));
 }
 
 /* Length over which the amount is reached, along the direction of the steepest descent (m). */
@@ -115,6 +115,12 @@ static problem problem_of(const char *field, const char *requirement) {
     return found;
 }
 
+/* The start of a ring's flank lies outside its tip. */
+static int is_on_profile(const gm_gear *gear, double radius) {
+    return radius >= fmin(gear->start_radius, gear->tip_radius) &&
+           radius <= fmax(gear->start_radius, gear->tip_radius);
+}
+
 static problem check_profile_range(const gm_modifications *of, const gm_modification *m) {
     const double range = m->profile_range;
     static const char field[] = "profile_range";
@@ -132,8 +138,7 @@ static problem check_profile_range(const gm_modifications *of, const gm_modifica
         }
         break;
     case GM_RANGE_RADIUS:
-        if (!(range >= of->gear->start_radius && range <= of->gear->tip_radius) ||
-            !(profile_length(of, m) > 0.0)) {
+        if (!is_on_profile(of->gear, range) || !(profile_length(of, m) > 0.0)) {
             return problem_of(field, "a radius within the active profile that leaves a range");
         }
         break;
