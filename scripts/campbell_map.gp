@@ -28,12 +28,16 @@ unset key
 set label 1 title_text at graph 0, screen 0.96 left font ',17' noenhanced
 set label 2 subtitle_text at graph 0, screen 0.925 left font ',11' textcolor '#505050' noenhanced
 
+set label 3 sprintf('rim: order %d and its multiples', pinion_teeth) . (eigenfrequency > 0 ? \
+    sprintf(', f0 = eigenfrequency %.5g Hz', eigenfrequency) : '') at screen 0.985, screen 0.025 right font ',10' \
+    textcolor rgb grey
+
 # Tooth orders: the line goes on outside where it leaves the map, at the right or at the top.
 out = 1.014
 do for [i = 1:words(harmonics)] {
     order = word(harmonics, i) * pinion_teeth
     leaves_rpm = 60.0 * frequency_high / order
-    name = sprintf('%d', i)
+    name = sprintf('%d', order)
     if (over_time) {
         stands_hz = order * constant_rpm / 60.0
         if (stands_hz < frequency_high) {
@@ -60,7 +64,7 @@ if (eigenfrequency > 0 && eigenfrequency < frequency_high) {
         nohead front lw 1.6 dt (8,5)
     set arrow from first eigenfrequency, graph 0 to first eigenfrequency, graph 0.05 \
         nohead front lw 1.6 dt (8,5)
-    set label '0' at first eigenfrequency, graph 1.03 center offset 0,0.6 font ',13'
+    set label 'f0' at first eigenfrequency, graph 1.03 center offset 0,0.6 font ',13'
 }
 
 do for [format in formats] {

@@ -25,12 +25,11 @@ unset key
 
 set label 1 title_text at graph 0, screen 0.965 left font ',17' noenhanced
 set label 2 subtitle_text at graph 0, screen 0.93 left font ',11' textcolor rgb grey noenhanced
-rim_right = 0.835
 load 'rim.gp'
 
 row_height = 1.0 * (row_high - row_low) / rows
 if (eigenfrequency_is_shown) {
-    set label sprintf('dashed: eigenfrequency f0 = %.5g Hz', eigenfrequency) at screen rim_right, screen 0.902 right \
+    set label sprintf('dashed: eigenfrequency f0 = %.5g Hz', eigenfrequency) at screen 0.985, screen 0.02 right \
         font ',10' textcolor rgb grey
 }
 

@@ -21,7 +21,6 @@ set xlabel 'order'
 set ylabel axis_text noenhanced
 set label 1 title_text at screen 0.095, screen 0.965 left font ',17' noenhanced
 set label 2 'Order spectrum, mean square over the record' at screen 0.095, screen 0.93 left font ',12' textcolor rgb grey
-rim_right = 0.965
 load 'rim.gp'
 unset key
 

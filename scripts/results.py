@@ -199,6 +199,8 @@ def read_head(path):
             key, equals, value = line.lstrip("# ").partition("=")
             if equals:
                 provenance[key.strip()] = value.strip()
+            elif number == 1 and key.startswith("gearsim "):
+                provenance["gearsim"] = key.removeprefix("gearsim ")
     raise RunError(f"{path}: no header line")
 
 

@@ -21,8 +21,8 @@ do for [order in hunting_orders] {
     set arrow from first order, graph 1.028 to first order, graph 1.038 nohead lw 1.4 lc rgb hunting_colour
 }
 if (words(pinion_orders) > 0) {
-    set label 'short ticks: turns and sidebands of the pinion,' at screen rim_right, screen 0.968 right font ',10' \
-        textcolor rgb pinion_colour
-    set label 'of the wheel,' at screen rim_right, screen 0.946 right font ',10' textcolor rgb wheel_colour
-    set label 'of the hunting tooth' at screen rim_right, screen 0.924 right font ',10' textcolor rgb hunting_colour
+    set label 'short ticks: turns, sidebands of' at screen 0.012, screen 0.02 left font ',10' textcolor rgb grey
+    set label 'pinion' at screen 0.212, screen 0.02 left font ',10' textcolor rgb pinion_colour
+    set label 'wheel' at screen 0.262, screen 0.02 left font ',10' textcolor rgb wheel_colour
+    set label 'hunting tooth' at screen 0.309, screen 0.02 left font ',10' textcolor rgb hunting_colour
 }

@@ -245,8 +245,8 @@ class Files(Case):
                     self.assertTrue(file.read(8).startswith(begin))
         with open(self.path("run_ordermap.svg"), encoding="utf-8") as file:
             svg = file.read()
-        for text in ("23 mesh 1", "46 mesh 2", "29.677 ghost wheel:40", "eigenfrequency f0 = 500 Hz", "of the hunting tooth"):
-            self.assertIn(text, svg)
+        for text in ("23 mesh 1", "46 mesh 2", "29.677 ghost wheel:40", "eigenfrequency f0 = 500 Hz", "hunting tooth"):
+            self.assertTrue(text in svg, text)
         with open(self.path("run_lines.csv"), encoding="utf-8") as file:
             self.assertIn("\nmesh 1 - 1 wheel,22.258065,", file.read())
 
