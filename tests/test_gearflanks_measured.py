@@ -117,6 +117,114 @@ class Example(Case):
         self.assertIn("drive, pitch: mean of", told)
 
 
+class Mka(Case):
+    """A Klingelnberg text file of known flanks, made here; no genuine file was at hand."""
+
+    COUNT = 480
+
+    @staticmethod
+    def roll(diameter):
+        return math.sqrt(diameter**2 / 4 - RADII["pinion"][0] ** 2)
+
+    @staticmethod
+    def deviation(share, face_mm):
+        """Material in um over share = 0..1 of the measured roll length and the distance from the datum face."""
+        return -9 * max(0, share - 0.7) ** 2 / 0.09 - 6 * (2 * face_mm / FACE_WIDTH_MM - 1) ** 2 + 2 * share
+
+    def trace(self, title, head, values):
+        rows = [values[i : i + 12] for i in range(0, len(values), 12)]
+        lines = [" ".join("-2147483.648" if v is None else f"{v:.3f}" for v in row) for row in rows]
+        return "\r\n".join([title, head, *lines, "", ""])
+
+    def file(self, name, left_sign=1, end=93.8, chamfer_from=1e9):
+        """Teeth 1, 16, 31 on both flanks, with levels as machines have them and ends that were not measured."""
+        begin, n = 85.7, self.COUNT
+        text = (
+            "HEADER KS.MK.FILE\r\nTYPE STI\r\nUNITS mm\r\nPROFILE diameter\r\nUNDEFINED -2147483.648 ! none\r\n"
+            " 21 :Normalmodul mn [mm]....: 1.650\r\n 22 :Zähnezahl z...: 45  Außenverzahnung\r\n"
+            " 23 :Schrägungswinkel...: 33°00'00\"  rechts\r\n 24 :Eingriffswinkel...: 16°00'00\"\r\n"
+            f" 41 :Start Messbereich da [mm].: {begin} {begin}\r\n 44 :Ende Messbereich de [mm]..: {end} {end}\r\n"
+            " 61 :Start Messbereich ba [mm].: 0.0\r\n 64 :Ende Messbereich be [mm]..: 17.5\r\n\r\n"
+        )
+        first, last = self.roll(begin), self.roll(end)
+        for tooth in (1, 16, 31):
+            for flank, sign in (("links", left_sign), ("rechts", 1)):
+                at = first + (last - first) / 2
+                helix = [sign * (self.deviation(0.5, i / (n - 1) * 17.5) - 56) for i in range(n)]
+                text += self.trace(
+                    "Flankenlinie:",
+                    f"Zahn-Nr.: {tooth} {flank} / {n}  Werte  x= {at:.3f}",
+                    [None] * 12 + helix[12:-11] + [None] * 11,
+                )
+                profile = []
+                for i in range(n):
+                    share = i / (n - 1)
+                    diameter = 2 * math.hypot(first + share * (last - first), RADII["pinion"][0])
+                    chamfer = 200 * max(0, diameter - chamfer_from)
+                    profile.append(sign * (self.deviation(share, 8.75) + 20 - chamfer))
+                head = f"Zahn-Nr.: {tooth} {flank} / {n}  Werte  z= 8.75"
+                text += self.trace("Profil:", head, [None] * 3 + profile[3:])
+        for flank in ("linke", "rechte"):
+            rows = "".join(f"  {i}  0.1 {math.sin(i):.3f} 0.0\r\n" for i in range(1, 46))
+            text += f"        {flank} Zahnflanke\r\n        Zahn-Nr.  fp  Fp  Fr\r\n\r\n{rows}"
+        with open(self.path(name), "w", encoding="utf-8-sig", newline="") as file:
+            file.write(text)
+        return ("--traces", name, "--flanks", "f.csv", "--measured-pitch", name, "--pitch", "p.csv")
+
+    def check(self, end=93.8):
+        """The table against the flank that was written."""
+        begin, tip = self.roll(85.7), self.roll(2 * RADII["pinion"][2])
+        start = math.sqrt(RADII["pinion"][1] ** 2 - RADII["pinion"][0] ** 2)
+        zero = None
+        for row in rows_of(self.path("f.csv")):
+            if (row["tooth"], row["flank"]) != ("0", "coast"):
+                continue
+            share = (start + float(row["t2"]) * (tip - start) - begin) / (self.roll(end) - begin)
+            t1 = float(row["t1"])
+            if 0.1 <= t1 <= 0.9 and 0.02 <= share <= 0.98:
+                off = float(row["deviation_um"]) - self.deviation(share, 17.5 * t1)
+                zero = off if zero is None else zero
+                self.assertAlmostEqual(off, zero, delta=0.02)  # digits of the file, linear between 480 points
+        self.assertIsNotNone(zero)
+
+    def test_its_traces_and_pitch_become_flanks(self):
+        told = self.accepted(*EXAMPLE[:7], *self.file("a b.mka"))
+        self.assertIn("coast, profile: 3 traces of 3 teeth, 42 interpolated", told)
+        self.assertIn("helix from t1 = 0.025 to 0.977 on all traces", told)
+        self.check()
+        pitch = [float(row["deviation_um"]) for row in rows_of(self.path("p.csv")) if row["flank"] == "drive"]
+        cos = RADII["pinion"][0] / (0.5 * 45 * 1.65 / math.cos(math.radians(33)))
+        mean = sum(math.sin(i) for i in range(1, 46)) / 45
+        for i, value in enumerate(pitch):
+            self.assertAlmostEqual(value, cos * (math.sin(i + 1) - mean), delta=1e-3)
+
+    def test_the_sign_of_a_probe_is_noticed_and_taken_back(self):
+        files = self.file("probe.mka", left_sign=-1)
+        noticed = "all traces of left flanks standing out at their ends and none of the others"
+        self.refused([noticed, "(see --probe-sign)"], *EXAMPLE[:7], *files)
+        self.accepted(*EXAMPLE[:7], *files, "--probe-sign")
+        self.check()
+        self.refused("left flanks", *EXAMPLE[:7], *self.file("a.mka"), "--probe-sign")
+
+    def test_a_chamfer_is_cut_off_at_the_tip_form_circle(self):
+        files = self.file("chamfer.mka", end=94.1, chamfer_from=93.6)
+        self.refused("leaves the gear", *EXAMPLE[:7], *files)  # the chamfer ends on a larger circle
+        told = self.accepted(*EXAMPLE[:7], *files, "--tip-form-diameter", "93.6")
+        self.assertIn("points left out: beyond the tip form circle", told)
+        rows = [row for row in rows_of(self.path("f.csv")) if (row["tooth"], row["flank"]) == ("0", "drive")]
+        self.assertGreater(min(float(row["deviation_um"]) for row in rows), -25)
+        self.refused("base circle", *EXAMPLE[:7], *files, "--tip-form-diameter", "60")
+        self.refused("tip form circle", *EXAMPLE[:7], *files, "--tip-form-diameter", "84.5")
+
+    def test_another_gear_and_evaluated_values_are_refused(self):
+        files = self.file("a.mka")
+        self.refused("number of teeth: must be 41", PARAMS, "--gear", "wheel", *EXAMPLE[3:7], *files)
+        with open(self.path("a.mew"), "w", encoding="utf-8") as file:
+            file.write("HEADER KS.MW.FILE\n  7 :ME: 1\n10111 : fHb links 1 : 1.0\n")
+        refusal = "a.mew:1: must be a file of measured curves"
+        self.refused(refusal, *EXAMPLE[:7], "--traces", "a.mew", "--flanks", "f.csv")
+
+
 class RoundTrip(Case):
     """Flanks of a class, as a machine prints them of all teeth, measure to the same values again."""
 

@@ -196,11 +196,11 @@ static gm_measurement measurement(void) {
 }
 
 static int read_traces(void) {
-    return gm_traces_read(&traces, path, &gears, 0, &error);
+    return gm_traces_read(&traces, path, &gears, 0, GM_DECIMAL_POINT, &error);
 }
 
 static int read_measured_pitch(void) {
-    return gm_measured_pitch_read(&measured, path, &error);
+    return gm_measured_pitch_read(&measured, path, GM_DECIMAL_POINT, &error);
 }
 
 static int build_traces(void) {
@@ -253,6 +253,18 @@ static void reading_deviations_survives_any_failed_allocation(void) {
     survives_any_failed_allocation(read_deviations, 5); /* rows, two tables, list of sets, work */
     GM_ASSERT_INT(deviations.set_count, 2);
     free_all();
+    GM_ASSERT_INT(alive, 0);
+}
+
+static void reading_an_mka_survives_any_failed_allocation(void) {
+    path = file_of("HEADER KS.MK.FILE\n 41 :x: 90\n 44 :x: 93\n 61 :x: 0\n 64 :x: 10\n"
+                   "Zahn-Nr.: 1 links / 2 Werte z= 3\n1 2\nZahn-Nr.: 1 links / 2 Werte x= 15\n1 2\n"
+                   "linke Zahnflanke\nZahn-Nr. fp Fp\n1 1 2\n");
+    survives_any_failed_allocation(read_traces, 8); /* points, list, three arrays of each trace */
+    GM_ASSERT_INT(traces.count, 2);
+    gm_traces_free(&traces);
+    survives_any_failed_allocation(read_measured_pitch, 1);
+    gm_measured_pitch_free(&measured);
     GM_ASSERT_INT(alive, 0);
 }
 
@@ -447,6 +459,7 @@ static void a_locale_with_a_decimal_comma_changes_nothing(void) {
 int main(int argc, char **argv) {
     static const gm_test tests[] = {
         GM_TEST(reading_deviations_survives_any_failed_allocation),
+        GM_TEST(reading_an_mka_survives_any_failed_allocation),
         GM_TEST(explaining_a_missing_node_survives_any_failed_allocation),
         GM_TEST(reading_pitch_survives_any_failed_allocation),
         GM_TEST(building_flanks_survives_any_failed_allocation),

@@ -199,7 +199,7 @@ static const char *pitch_file(const char *value_column, int teeth, double (*um)(
 }
 
 static int read_and_build(const char *path, int wheel) {
-    int status = gm_measured_pitch_read(&measured, path, &error);
+    int status = gm_measured_pitch_read(&measured, path, GM_DECIMAL_POINT, &error);
     if (status == GM_IO_OK) {
         status = gm_measured_pitch_build(&pitch, &report, &measured, &setup, &pair, wheel, &error);
         gm_measured_pitch_free(&measured);
@@ -392,7 +392,8 @@ static void wrong_set_ups_are_refused(void) {
     GM_ASSERT_INT(gm_measurement_side(&setup, GM_DRIVE), GM_DRIVE);
     GM_ASSERT_INT(gm_measured_pitch_build(NULL, NULL, &measured, &setup, &pair, 0, &error),
                   GM_IO_ERR_NULL);
-    GM_ASSERT_INT(gm_measured_pitch_read(&measured, NULL, &error), GM_IO_ERR_NULL);
+    GM_ASSERT_INT(gm_measured_pitch_read(&measured, NULL, GM_DECIMAL_POINT, &error),
+                  GM_IO_ERR_NULL);
 }
 
 int main(int argc, char **argv) {

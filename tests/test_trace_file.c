@@ -17,7 +17,7 @@ static gm_io_error error;
 
 static int read_traces(const char *text) {
     pair = reference_pair(REFERENCE_FACE_WIDTH);
-    return gm_traces_read(&traces, file_of(text), &pair, 0, &error);
+    return gm_traces_read(&traces, file_of(text), &pair, 0, GM_DECIMAL_POINT, &error);
 }
 
 static void refused(const char *text, long line, const char *value, const char *right) {
@@ -69,6 +69,40 @@ static void a_diameter_is_a_roll_length(void) {
     GM_ASSERT_ABS(traces.traces[0].position[0], 0.0, 1e-12);
     GM_ASSERT_REL(hypot(traces.traces[0].position[1], pair.pinion.base_radius), 93.5e-3 / 2, 1e-14);
     gm_traces_free(&traces);
+}
+
+static void a_roll_angle_is_a_roll_length(void) {
+    GM_ASSERT_INT(read_traces("tooth,flank,trace,face_mm,roll_angle_deg,deviation_um\n"
+                              "1,left,profile,8,18,0\n1,left,profile,8,36,1\n"
+                              "1,left,helix,8,20,1\n1,left,helix,9,20,1\n"),
+                  GM_IO_OK);
+    /* The arc of the base circle that has unwound: a tenth of pi. */
+    GM_ASSERT_REL(traces.traces[0].position[0], 0.31415926535897932 * pair.pinion.base_radius,
+                  1e-15);
+    GM_ASSERT_REL(traces.traces[0].position[1], 2.0 * traces.traces[0].position[0], 1e-15);
+    GM_ASSERT_REL(traces.traces[1].at, traces.traces[0].position[0] / 0.9, 1e-15);
+    gm_traces_free(&traces);
+}
+
+static void numbers_may_have_a_comma_between_semicolons(void) {
+    const char *path = file_of("tooth;flank;trace;face_mm;roll_length_mm;deviation_um\n"
+                               "1;left;profile; 8,75;9,5 ;-1,25\n1;left;profile;8.75;11;0,5\n");
+    pair = reference_pair(REFERENCE_FACE_WIDTH);
+    GM_ASSERT_INT(gm_traces_read(&traces, path, &pair, 0, GM_DECIMAL_COMMA, &error), GM_IO_OK);
+    GM_ASSERT(same_bits(traces.traces[0].at, 8.75e-3));
+    GM_ASSERT(same_bits(traces.traces[0].position[0], 9.5e-3));
+    GM_ASSERT(same_bits(traces.traces[0].deviation[0], -1.25e-6));
+    gm_traces_free(&traces);
+
+    /* Each style refuses the other, and says that there is one. */
+    GM_ASSERT_INT(gm_traces_read(&traces, path, &pair, 0, GM_DECIMAL_POINT, &error),
+                  GM_IO_ERR_FORMAT);
+    assert_error(&error, path, 1, "got semicolons", "must be separated by commas");
+    GM_ASSERT_STRING(error.option, "style");
+    path = file_of(ROLL "1,left,profile,8.75,9.5,-1\n");
+    GM_ASSERT_INT(gm_traces_read(&traces, path, &pair, 0, GM_DECIMAL_COMMA, &error),
+                  GM_IO_ERR_FORMAT);
+    assert_error(&error, path, 1, "got commas", "must be separated by semicolons");
 }
 
 /* r^2 - r_b^2 would lose all digits here; (r - r_b) (r + r_b) has none to lose. */
@@ -123,7 +157,7 @@ static void headers_say_what_is_wrong(void) {
     refused("tooth;flank;trace;face_mm;diameter_mm;deviation_um\n", 1, "semicolons", "commas");
     refused("tooth\tflank\n", 1, "tabs", "commas");
     refused("tooth,flank,t1,t2,deviation_um\n", 1, "'tooth,flank,t1,t2,deviation_um'",
-            "diameter_mm,deviation_um (got");
+            "roll_angle_deg,deviation_um (got");
     refused("1,left,profile,8,9,0\n", 1, "got the row '1,left,profile,8,9,0'",
             "the header must be tooth");
     refused("", 0, "got nothing", "header line tooth,flank,trace");
@@ -158,11 +192,14 @@ static void a_trace_goes_one_way(void) {
 }
 
 static void bad_calls_are_refused(void) {
-    GM_ASSERT_INT(gm_traces_read(NULL, "x.csv", &pair, 0, &error), GM_IO_ERR_NULL);
-    GM_ASSERT_INT(gm_traces_read(&traces, NULL, &pair, 0, NULL), GM_IO_ERR_NULL);
-    GM_ASSERT_INT(gm_traces_read(&traces, "x.csv", NULL, 0, &error), GM_IO_ERR_NULL);
-    GM_ASSERT_INT(gm_traces_read(&traces, IO_TEST_PATH("is not there"), &pair, 0, &error),
-                  GM_IO_ERR_FILE);
+    GM_ASSERT_INT(gm_traces_read(NULL, "x.csv", &pair, 0, GM_DECIMAL_POINT, &error),
+                  GM_IO_ERR_NULL);
+    GM_ASSERT_INT(gm_traces_read(&traces, NULL, &pair, 0, GM_DECIMAL_POINT, NULL), GM_IO_ERR_NULL);
+    GM_ASSERT_INT(gm_traces_read(&traces, "x.csv", NULL, 0, GM_DECIMAL_POINT, &error),
+                  GM_IO_ERR_NULL);
+    GM_ASSERT_INT(
+        gm_traces_read(&traces, IO_TEST_PATH("is not there"), &pair, 0, GM_DECIMAL_POINT, &error),
+        GM_IO_ERR_FILE);
     GM_ASSERT_STRING(error.file, IO_TEST_PATH("is not there"));
     gm_traces_free(NULL);
     gm_measured_pitch_free(NULL);
@@ -172,6 +209,8 @@ int main(int argc, char **argv) {
     static const gm_test tests[] = {
         GM_TEST(rows_become_traces_in_metres),
         GM_TEST(a_diameter_is_a_roll_length),
+        GM_TEST(a_roll_angle_is_a_roll_length),
+        GM_TEST(numbers_may_have_a_comma_between_semicolons),
         GM_TEST(the_roll_length_next_to_the_base_circle_is_exact),
         GM_TEST(a_diameter_may_wander_as_a_face_may),
         GM_TEST(headers_say_what_is_wrong),

@@ -704,7 +704,7 @@ static void a_spike_is_refused_or_left_out(void) {
 #define HELIX(tooth, at)   tooth ",left,helix,0," at ",0\n" tooth ",left,helix,17.5," at ",-3\n"
 
 static int read_and_build(const char *text) {
-    int status = gm_traces_read(&traces, file_of(text), &pair, wheel, &error);
+    int status = gm_traces_read(&traces, file_of(text), &pair, wheel, GM_DECIMAL_POINT, &error);
     if (status == GM_IO_OK) {
         status = build();
     }

@@ -109,6 +109,9 @@ static void print_traces(const measured_gear *of, FILE *file) {
                 "# where traces of a flank cross they contradict each other by %.3f um at most\n",
                 1e6 * found->crossing_error);
     }
+    if (found->chamfer_points > 0) {
+        fprintf(file, "# %d points left out: beyond the tip form circle\n", found->chamfer_points);
+    }
     if (found->spikes > 0) {
         fprintf(file, "# %d point%s left out: spikes\n", found->spikes,
                 found->spikes == 1 ? "" : "s");
@@ -219,7 +222,8 @@ static int read_traces(measured_gear *of) {
     const flanks_options *options = of->options;
     gm_traces traces;
     gm_io_error error;
-    int status = gm_traces_read(&traces, options->traces, of->pair, options->wheel, &error);
+    int status = gm_traces_read(&traces, options->traces, of->pair, options->wheel,
+                                options->number_style, &error);
 
     if (status == GM_IO_OK) {
         status = gm_traces_build(&of->deviations, &of->traces, &traces, &options->measurement,
@@ -237,7 +241,8 @@ static int read_pitch(measured_gear *of) {
     const flanks_options *options = of->options;
     gm_measured_pitch pitch;
     gm_io_error error;
-    int status = gm_measured_pitch_read(&pitch, options->measured_pitch, &error);
+    int status =
+        gm_measured_pitch_read(&pitch, options->measured_pitch, options->number_style, &error);
 
     if (status == GM_IO_OK) {
         status = gm_measured_pitch_build(&of->pitch, &of->pitch_report, &pitch,

@@ -23,7 +23,8 @@ static const char usage[] =
     "                  --measured-pitch FILE --pitch FILE --datum-face I|II\n"
     "                  --count clockwise|counterclockwise [--first-number 0|1] [--first-tooth N]\n"
     "                  [--nodes FACExPROFILE] [--pitch-diameter MM] [--transverse] [--held X]\n"
-    "                  [--hollow] [--remove-spikes]\n"
+    "                  [--tip-form-diameter MM] [--probe-sign]\n"
+    "                  [--decimal-comma] [--hollow] [--remove-spikes]\n"
     "       gearflanks --help | --version";
 
 static const char help[] =
@@ -49,8 +50,10 @@ static const char help[] =
     "  --teeth                with --evaluate: the values of every flank as CSV instead\n"
     "\n"
     "From measurements, of traces and pitch or of one of them:\n"
-    "  --traces FILE          profile and helix traces of some teeth; --flanks is written\n"
-    "  --measured-pitch FILE  pitch of all teeth; --pitch is written\n"
+    "  --traces FILE          profile and helix traces of some teeth, as CSV or as a Klingelnberg "
+    "text\n"
+    "                         file (.mka); --flanks is written\n"
+    "  --measured-pitch FILE  pitch of all teeth, likewise; --pitch is written\n"
     "  --datum-face I|II      where the gear was looked at from and face_mm counts from: seen "
     "from\n"
     "                         face I a driving pinion turns clockwise, from face II the other way\n"
@@ -59,6 +62,11 @@ static const char help[] =
     "  --first-number 0|1     number of the first tooth [1]\n"
     "  --first-tooth N        which tooth of the model that is [0]\n"
     "  --pitch-diameter MM    measuring circle of the pitch [reference circle]\n"
+    "  --tip-form-diameter MM points of profiles beyond it are left out: a chamfer is no flank\n"
+    "  --probe-sign           deviations have the sign of the probe: > 0 is material added on "
+    "right\n"
+    "                         flanks and removed on left ones\n"
+    "  --decimal-comma        numbers are 1,5, and fields are separated by semicolons\n"
     "  --transverse           deviations are in the transverse section [along the normal]\n"
     "  --held X               share of profile or face that may be missing at an end [0.2]\n"
     "  --hollow               flanks that stand out at their edges are meant so\n"
@@ -243,13 +251,31 @@ static int take_first_tooth(parsing *state, const char *value) {
     return parse_count(value, &state->options->measurement.first_tooth);
 }
 
-static int take_pitch_diameter(parsing *state, const char *value) {
-    double *diameter = &state->options->measurement.pitch_diameter;
-
+static int take_diameter(const char *value, double *diameter) {
     if (!parse_number(value, diameter)) {
         return 0;
     }
     *diameter *= 1e-3;
+    return 1;
+}
+
+static int take_pitch_diameter(parsing *state, const char *value) {
+    return take_diameter(value, &state->options->measurement.pitch_diameter);
+}
+
+static int take_tip_form_diameter(parsing *state, const char *value) {
+    return take_diameter(value, &state->options->from_traces.tip_form_diameter);
+}
+
+static int take_probe_sign(parsing *state, const char *value) {
+    (void)value;
+    state->options->from_traces.probe_sign = 1;
+    return 1;
+}
+
+static int take_decimal_comma(parsing *state, const char *value) {
+    (void)value;
+    state->options->number_style = GM_DECIMAL_COMMA;
     return 1;
 }
 
@@ -328,6 +354,9 @@ static const struct {
     {{"--first-number", "0 or 1"}, take_first_number, FOR_MEASURED},
     {{"--first-tooth", "a tooth of the gear, 0 or more"}, take_first_tooth, FOR_MEASURED},
     {{"--pitch-diameter", "a diameter in mm"}, take_pitch_diameter, FOR_MEASURED},
+    {{"--tip-form-diameter", "a diameter in mm"}, take_tip_form_diameter, FOR_MEASURED},
+    {{"--probe-sign", NULL}, take_probe_sign, FOR_MEASURED},
+    {{"--decimal-comma", NULL}, take_decimal_comma, FOR_MEASURED},
     {{"--held", "0 to 0.45"}, take_held, FOR_MEASURED},
     {{"--evaluate", NULL}, take_evaluate, FOR_EVALUATING},
     {{"--teeth", NULL}, take_teeth, FOR_EVALUATING},

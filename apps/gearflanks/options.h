@@ -24,6 +24,7 @@ typedef struct flanks_options {
     int teeth;           /* --teeth: the values of every flank */
     const char *traces;  /* what was measured, NULL = nothing */
     const char *measured_pitch;
+    int number_style; /* enum gm_number_style of what was measured */
     gm_measurement measurement;
     gm_traces_options from_traces;
     gm_generate_options generate;

@@ -104,7 +104,10 @@ static const char *see_option(const char *field) {
                                            {"pitch_diameter", " (see --pitch-diameter)"},
                                            {"held_limit", " (see --held)"},
                                            {"hollow", " (see --hollow)"},
-                                           {"remove_spikes", " (see --remove-spikes)"}};
+                                           {"remove_spikes", " (see --remove-spikes)"},
+                                           {"tip_form_diameter", " (see --tip-form-diameter)"},
+                                           {"probe_sign", " (see --probe-sign)"},
+                                           {"style", " (see --decimal-comma)"}};
 
     for (size_t i = 0; field != NULL && i < sizeof names / sizeof names[0]; ++i) {
         if (strcmp(field, names[i][0]) == 0) {

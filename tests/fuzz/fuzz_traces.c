@@ -31,13 +31,13 @@ static void claim_error(int status, const gm_io_error *error) {
     FUZZ_CLAIM(status < 0 && error->text[0] != '\0' && error->line >= 0);
 }
 
-static void try_traces(const gm_pair *pair, const gm_measurement *how, int wheel,
+static void try_traces(const gm_pair *pair, const gm_measurement *how, int wheel, int style,
                        const gm_traces_options *options) {
     gm_traces traces;
     gm_deviations deviations;
     gm_traces_report report;
     gm_io_error error;
-    int status = gm_traces_read(&traces, fuzz_file_path(&input), pair, wheel, &error);
+    int status = gm_traces_read(&traces, fuzz_file_path(&input), pair, wheel, style, &error);
     if (status != GM_IO_OK) {
         claim_error(status, &error);
         return;
@@ -54,11 +54,11 @@ static void try_traces(const gm_pair *pair, const gm_measurement *how, int wheel
     gm_traces_free(&traces);
 }
 
-static void try_pitch(const gm_pair *pair, const gm_measurement *how, int wheel) {
+static void try_pitch(const gm_pair *pair, const gm_measurement *how, int wheel, int style) {
     gm_measured_pitch measured;
     gm_pitch pitch;
     gm_io_error error;
-    int status = gm_measured_pitch_read(&measured, fuzz_file_path(&input), &error);
+    int status = gm_measured_pitch_read(&measured, fuzz_file_path(&input), style, &error);
     if (status != GM_IO_OK) {
         claim_error(status, &error);
         return;
@@ -89,7 +89,9 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size) {
     options.face_nodes = 3;
     options.profile_nodes = 4;
     fuzz_file_with(&input, data, size);
-    try_traces(&pair, &how, way >> 4 & 1, &options);
-    try_pitch(&pair, &how, way >> 4 & 1);
+    const int style = way >> 5 & 1 ? GM_DECIMAL_COMMA : GM_DECIMAL_POINT;
+    options.tip_form_diameter = way >> 6 & 1 ? 17e-3 : (double)NAN;
+    try_traces(&pair, &how, way >> 4 & 1, style, &options);
+    try_pitch(&pair, &how, way >> 4 & 1, style);
     return 0;
 }

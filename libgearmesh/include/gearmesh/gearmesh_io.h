@@ -512,15 +512,23 @@ GM_API int gm_measurement_side(const gm_measurement *measurement, int flank);
 GM_API int gm_measurement_tooth(const gm_measurement *measurement, const gm_pair *pair, int wheel,
                                 int number);
 
+/** Numbers in files of measured values. */
+enum gm_number_style {
+    GM_DECIMAL_POINT = 0, /**< 1.5, fields separated by commas */
+    GM_DECIMAL_COMMA = 1  /**< 1,5 or 1.5, fields separated by semicolons */
+};
+
 /**
  * Reads traces [libgearmesh/docs/measured-flanks.md]: header `tooth,flank,trace,face_mm,roll_length_mm,deviation_um`,
- * or `diameter_mm` in place of the roll length; the rows of a trace stand together. Strict. Only the text is checked
- * here, all else in gm_traces_build().
+ * or `diameter_mm` or `roll_angle_deg` in place of the roll length; the rows of a trace stand together. Or a text file of
+ * Klingelnberg machines (.mka), known by its first line, with the traces of profile, helix and twist. Strict. Only the
+ * text is checked here, and the gear data of an .mka; all else in gm_traces_build().
  *
  * @param[out] traces  free them with gm_traces_free(). All zero on an error
  * @param[in]  path    the file
  * @param[in]  pair    the gear pair
  * @param[in]  wheel   0 = the pinion was measured, else the wheel; its base circle makes roll lengths of diameters
+ * @param[in]  style   enum gm_number_style
  * @param[out] error   file, line and reason; may be NULL
  * @return GM_IO_OK, GM_IO_ERR_NULL, GM_IO_ERR_FILE, GM_IO_ERR_FORMAT, GM_IO_ERR_MEMORY
  *
@@ -528,21 +536,24 @@ GM_API int gm_measurement_tooth(const gm_measurement *measurement, const gm_pair
  *           to the base circle too.
  */
 GM_API int gm_traces_read(gm_traces *traces, const char *path, const gm_pair *pair, int wheel,
-                          gm_io_error *error);
+                          int style, gm_io_error *error);
 
 /** As gm_deviations_free(). */
 GM_API void gm_traces_free(gm_traces *traces);
 
 /**
  * Reads measured pitch [libgearmesh/docs/measured-flanks.md]: header `tooth,flank,cumulative_pitch_um` or
- * `tooth,flank,single_pitch_um`. Strict. Only the text is checked here, all else in gm_measured_pitch_build().
+ * `tooth,flank,single_pitch_um`; or the column Fp of both tables of a text file of Klingelnberg machines (.mka). Strict.
+ * Only the text is checked here, all else in gm_measured_pitch_build().
  *
  * @param[out] pitch  free it with gm_measured_pitch_free(). All zero on an error
  * @param[in]  path   the file
+ * @param[in]  style  enum gm_number_style
  * @param[out] error  file, line and reason; may be NULL
  * @return as gm_traces_read()
  */
-GM_API int gm_measured_pitch_read(gm_measured_pitch *pitch, const char *path, gm_io_error *error);
+GM_API int gm_measured_pitch_read(gm_measured_pitch *pitch, const char *path, int style,
+                                  gm_io_error *error);
 
 /** As gm_deviations_free(). */
 GM_API void gm_measured_pitch_free(gm_measured_pitch *pitch);
@@ -556,6 +567,11 @@ typedef struct gm_traces_options {
     int hollow; /**< 1 = flanks that stand out at their edges are meant so [0] */
     /** 1 = points far off their neighbours, and those that were filled in, are left out; 0 = an error [0] */
     int remove_spikes;
+    /** Points of profiles beyond this diameter are left out, as those on a chamfer, m [NaN: none are] */
+    double tip_form_diameter;
+    /** 1 = deviations of traces are those of the probe in one direction of rotation: > 0 is material added on right flanks
+     *  and removed on left ones [0] */
+    int probe_sign;
 } gm_traces_options;
 
 /** Fills in the defaults. */
@@ -575,8 +591,9 @@ typedef struct gm_traces_report {
     /** Largest contradiction of profile and helix traces where they cross, after constants are taken out; 0 where each
      *  flank has one of each (m) */
     double crossing_error;
-    int spikes;        /**< points left out: far off their neighbours */
-    int filled_points; /**< points left out: one value in place of a measurement */
+    int chamfer_points; /**< points left out: beyond the tip form circle */
+    int spikes;         /**< points left out: far off their neighbours */
+    int filled_points;  /**< points left out: one value in place of a measurement */
     /** Traces with one value all along while others of their kind vary: were they measured? */
     int constant_traces;
     int constant_trace; /**< index of the first one in gm_traces; -1 = none */

@@ -64,8 +64,7 @@ static void drop_byte_order_mark(char *text) {
     }
 }
 
-/* Reads one line into text, without its end: 1 = a line, 0 = end of the file, < 0 = gm_io_status. */
-static int read_line(gmi_table *table) {
+int gmi_lines_next(gmi_table *table) {
     errno = 0;
     const int first = getc(table->file);
     if (first == EOF) {
@@ -97,7 +96,7 @@ static int read_line(gmi_table *table) {
 /* Reads the next line that is neither blank nor a comment. */
 static int read_content(gmi_table *table) {
     for (;;) {
-        const int status = read_line(table);
+        const int status = gmi_lines_next(table);
         if (status <= 0) {
             return status;
         }
@@ -122,18 +121,28 @@ static char *trim(char *field) {
     return field;
 }
 
-/* Cuts the line at its commas and returns the number of fields, also where they are too many. */
+/* A decimal comma becomes a point. */
+static char *with_point(char *field) {
+    char *comma = strchr(field, ',');
+    if (comma != NULL) {
+        *comma = '.';
+    }
+    return field;
+}
+
+/* Cuts the line at its commas, or semicolons, and returns the number of fields, also where they are too many. */
 static int split_fields(gmi_table *table) {
+    const int with_comma = table->style == GM_DECIMAL_COMMA;
     int count = 0;
     for (char *field = table->text; field != NULL; ++count) {
-        char *comma = strchr(field, ',');
-        if (comma != NULL) {
-            *comma = '\0';
+        char *end = strchr(field, with_comma ? ';' : ',');
+        if (end != NULL) {
+            *end = '\0';
         }
         if (count < table->column_count) {
-            table->fields[count] = trim(field);
+            table->fields[count] = with_comma ? with_point(trim(field)) : trim(field);
         }
-        field = comma != NULL ? comma + 1 : NULL;
+        field = end != NULL ? end + 1 : NULL;
     }
     return count;
 }
@@ -161,7 +170,10 @@ static const char *header_text(const gmi_table *table, char text[GMI_LINE_LENGTH
 }
 
 /* A delimiter that is used in place of the comma, as spreadsheets of some countries do; or NULL. */
-static const char *other_delimiter(const char *line) {
+static const char *other_delimiter(const gmi_table *table, const char *line) {
+    if (table->style == GM_DECIMAL_COMMA) {
+        return strchr(line, ';') == NULL && strchr(line, ',') != NULL ? "commas" : NULL;
+    }
     if (strchr(line, ';') != NULL) {
         return "semicolons";
     }
@@ -172,18 +184,22 @@ static const char *other_delimiter(const char *line) {
 }
 
 static int fail_delimiter(const gmi_table *table, const char *delimiter) {
-    return gmi_error_set(
-        table->error, GM_IO_ERR_FORMAT, table->line,
-        "fields must be separated by commas, with a point as decimal sign (got %s)", delimiter);
+    gmi_error_option(table->error, "style");
+    return gmi_error_set(table->error, GM_IO_ERR_FORMAT, table->line,
+                         "fields must be separated by %s as decimal sign (got %s)",
+                         table->style == GM_DECIMAL_COMMA ? "semicolons, with a comma"
+                                                          : "commas, with a point",
+                         delimiter);
 }
 
 static int fail_field_count(const gmi_table *table, int count) {
     char header[GMI_LINE_LENGTH];
-    return gmi_error_set(
-        table->error, GM_IO_ERR_FORMAT, table->line, "a row must have %d fields, %s (got %d%s)",
-        table->column_count, columns_text(table, table->columns, header), count,
-        count > table->column_count ? "; a decimal comma makes two fields of one number: write 1.5"
-                                    : "");
+    return gmi_error_set(table->error, GM_IO_ERR_FORMAT, table->line,
+                         "a row must have %d fields, %s (got %d%s)", table->column_count,
+                         columns_text(table, table->columns, header), count,
+                         count > table->column_count && table->style == GM_DECIMAL_POINT
+                             ? "; a decimal comma makes two fields of one number: write 1.5"
+                             : "");
 }
 
 int gmi_table_next(gmi_table *table) {
@@ -191,7 +207,7 @@ int gmi_table_next(gmi_table *table) {
     if (status <= 0) {
         return status;
     }
-    const char *delimiter = other_delimiter(table->text);
+    const char *delimiter = other_delimiter(table, table->text);
     if (delimiter != NULL) {
         return fail_delimiter(table, delimiter);
     }
@@ -250,7 +266,7 @@ static const char *unit_hint(const gmi_table *table, int count, char text[GMI_LI
 
 /* `count`: of the fields in the header. */
 static int fail_header(const gmi_table *table, const char *line, int count) {
-    const char *delimiter = other_delimiter(line);
+    const char *delimiter = other_delimiter(table, line);
     if (delimiter != NULL) {
         return fail_delimiter(table, delimiter);
     }
@@ -299,22 +315,29 @@ static int read_header(gmi_table *table, int *which) {
     return fail_header(table, line, count);
 }
 
-int gmi_table_open_any(gmi_table *table, const char *path, const char *const *const *headers,
-                       int header_count, int column_count, int *which, gm_io_error *error) {
+int gmi_lines_open(gmi_table *table, const char *path, gm_io_error *error) {
     table->error = error;
-    table->columns = headers[0];
-    table->column_count = column_count;
-    table->headers = headers;
-    table->header_count = header_count;
     table->line = 0;
     table->text[GMI_LINE_LENGTH] = '\0';
 
     errno = 0;
     table->file = fopen(path, "rb");
-    if (table->file == NULL) {
-        return gmi_error_file(error, 0, "opened", errno);
+    return table->file != NULL ? GM_IO_OK : gmi_error_file(error, 0, "opened", errno);
+}
+
+int gmi_table_open_any(gmi_table *table, const char *path, const char *const *const *headers,
+                       int header_count, int column_count, int style, int *which,
+                       gm_io_error *error) {
+    table->columns = headers[0];
+    table->column_count = column_count;
+    table->headers = headers;
+    table->header_count = header_count;
+    table->style = style;
+
+    int status = gmi_lines_open(table, path, error);
+    if (status == GM_IO_OK) {
+        status = read_header(table, which);
     }
-    const int status = read_header(table, which);
     table->headers = NULL;
     table->header_count = 0;
     return status;
@@ -323,7 +346,8 @@ int gmi_table_open_any(gmi_table *table, const char *path, const char *const *co
 int gmi_table_open(gmi_table *table, const char *path, const char *const *columns, int column_count,
                    gm_io_error *error) {
     int which = 0;
-    return gmi_table_open_any(table, path, &columns, 1, column_count, &which, error);
+    return gmi_table_open_any(table, path, &columns, 1, column_count, GM_DECIMAL_POINT, &which,
+                              error);
 }
 
 void gmi_table_close(gmi_table *table) {

@@ -28,6 +28,7 @@ typedef struct gmi_table {
     const char *const *const *headers; /**< [header_count] lists of columns; while it is opened */
     int header_count;
     long line;                     /**< line last read, from 1 */
+    int style;                     /**< enum gm_number_style of fields and numbers */
     char *fields[GMI_MAX_COLUMNS]; /**< [column_count] of the row last read, within text */
     char text[GMI_LINE_LENGTH + 1];
 } gmi_table;
@@ -36,9 +37,17 @@ typedef struct gmi_table {
 int gmi_table_open(gmi_table *table, const char *path, const char *const *columns, int column_count,
                    gm_io_error *error);
 
-/** The same where there is a choice of headers with as many columns; which = the one that is there. */
+/** The same where there is a choice of headers with as many columns; which = the one that is there. Fields and numbers
+ *  are as in a style, enum gm_number_style. */
 int gmi_table_open_any(gmi_table *table, const char *path, const char *const *const *headers,
-                       int header_count, int column_count, int *which, gm_io_error *error);
+                       int header_count, int column_count, int style, int *which,
+                       gm_io_error *error);
+
+/** Opens a file of lines that are no table. Needs gmi_table_close() whatever it returns. */
+int gmi_lines_open(gmi_table *table, const char *path, gm_io_error *error);
+
+/** Reads the next line into text, without its end: 1 = a line, 0 = end of the file, < 0 = gm_io_status. */
+int gmi_lines_next(gmi_table *table);
 
 /** Reads the next row into fields: 1 = a row, 0 = end of the file, < 0 = gm_io_status. */
 int gmi_table_next(gmi_table *table);

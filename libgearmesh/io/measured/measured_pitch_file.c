@@ -11,6 +11,7 @@
 #include "files/table_reader.h"
 #include "measured_table.h"
 #include "measurement.h"
+#include "mka_file.h"
 
 /* Micrometres in the file, metres in memory. */
 #define MICRO (-6)
@@ -53,7 +54,20 @@ static int read_pitch_rows(gm_measured_pitch *pitch, gmi_table *table) {
     return more == 0 && pitch->count == 0 ? gmi_measured_fail_empty(table) : more;
 }
 
-int gm_measured_pitch_read(gm_measured_pitch *pitch, const char *path, gm_io_error *error) {
+static int read_pitch_table(gm_measured_pitch *pitch, const char *path, int style,
+                            gm_io_error *error) {
+    gmi_table table;
+    int status = gmi_table_open_any(&table, path, pitch_headers, PITCH_HEADERS, PITCH_COLUMNS,
+                                    style, &pitch->single, error);
+    if (status == GM_IO_OK) {
+        status = read_pitch_rows(pitch, &table);
+    }
+    gmi_table_close(&table);
+    return status;
+}
+
+int gm_measured_pitch_read(gm_measured_pitch *pitch, const char *path, int style,
+                           gm_io_error *error) {
     gmi_error_begin(error, path);
     if (pitch != NULL) {
         memset(pitch, 0, sizeof *pitch);
@@ -62,13 +76,8 @@ int gm_measured_pitch_read(gm_measured_pitch *pitch, const char *path, gm_io_err
         return gmi_error_null(error);
     }
 
-    gmi_table table;
-    int status = gmi_table_open_any(&table, path, pitch_headers, PITCH_HEADERS, PITCH_COLUMNS,
-                                    &pitch->single, error);
-    if (status == GM_IO_OK) {
-        status = read_pitch_rows(pitch, &table);
-    }
-    gmi_table_close(&table);
+    const int status = gmi_is_mka(path) ? gmi_mka_pitch(pitch, path, style, error)
+                                        : read_pitch_table(pitch, path, style, error);
     if (status == GM_IO_OK) {
         snprintf(pitch->file, sizeof pitch->file, "%s", path);
     } else {

@@ -183,6 +183,40 @@ static double hollow_limit(int count) {
     return fmax(0.5 * count + 1.55 * sqrt(count), 0.8 * count);
 }
 
+/*
+ * The probe of a machine is pushed one way by left flanks and the other way by right ones. Values with its sign are hollow
+ * on all traces of one flank and on none of the other: by chance less than once in a hundred times with so many traces.
+ */
+enum { LEAST_TRACES_OF_BOTH = 8 };
+
+static int check_probe_sign(const gmi_measured *traces, int count, gm_io_error *error) {
+    int hollow[2] = {0, 0}; /* left, right */
+    int judged[2] = {0, 0};
+    for (int i = 0; i < count; ++i) {
+        const int flank = traces[i].from->flank;
+        if (flank == GM_LEFT || flank == GM_RIGHT) {
+            const double height = end_height(&traces[i]);
+            if (fabs(height) < least_end_height) {
+                return GM_IO_OK;
+            }
+            ++judged[flank == GM_RIGHT];
+            hollow[flank == GM_RIGHT] += height > 0.0;
+        }
+    }
+    const int left = hollow[0] == judged[0] && hollow[1] == 0;
+    const int right = hollow[1] == judged[1] && hollow[0] == 0;
+    if (judged[0] == 0 || judged[1] == 0 || judged[0] + judged[1] < LEAST_TRACES_OF_BOTH ||
+        !(left || right)) {
+        return GM_IO_OK;
+    }
+    gmi_error_option(error, "probe_sign");
+    return gmi_error_set(error, GM_IO_ERR_FORMAT, 0,
+                         "material added: must be > 0 on both flanks (got all traces of %s flanks "
+                         "standing out at their ends and none of the others, as if values had the "
+                         "sign of the probe)",
+                         left ? "left" : "right");
+}
+
 static int check_sign(const gmi_measured *traces, int count, const gm_traces_options *options,
                       gm_traces_report *report, gm_io_error *error) {
     int hollow = 0;
@@ -191,6 +225,12 @@ static int check_sign(const gmi_measured *traces, int count, const gm_traces_opt
     }
     report->hollow_traces = hollow;
     report->judged_traces = count;
+    if (!options->hollow) {
+        const int status = check_probe_sign(traces, count, error);
+        if (status != GM_IO_OK) {
+            return status;
+        }
+    }
 
     /* A wrong sign shows in both kinds of traces, and beyond chance. */
     const double profile = mean_end_height(traces, count, GM_TRACE_PROFILE);

@@ -16,6 +16,7 @@
 #include "files/table_reader.h"
 #include "measured_table.h"
 #include "measurement.h"
+#include "mka_file.h"
 #include "shared.h"
 
 /* Units of the file. */
@@ -29,14 +30,21 @@ enum { KIND_WORDS = 2 };
  * Traces: rows
  * ------------------------------------------------------------------------------------------- */
 
+/* How a profile counts its places. */
+enum { BY_ROLL_LENGTH, BY_DIAMETER, BY_ROLL_ANGLE, TRACE_HEADERS };
+
 enum { TRACE = GMI_COLUMN_FLANK + 1, FACE, ROLL, DEVIATION, TRACE_COLUMNS };
 
 static const char *const roll_header[TRACE_COLUMNS] = {"tooth",   "flank",          "trace",
                                                        "face_mm", "roll_length_mm", "deviation_um"};
 static const char *const diameter_header[TRACE_COLUMNS] = {
     "tooth", "flank", "trace", "face_mm", "diameter_mm", "deviation_um"};
-static const char *const *const trace_headers[] = {roll_header, diameter_header};
-enum { TRACE_HEADERS = 2 };
+static const char *const angle_header[TRACE_COLUMNS] = {
+    "tooth", "flank", "trace", "face_mm", "roll_angle_deg", "deviation_um"};
+static const char *const *const trace_headers[TRACE_HEADERS] = {roll_header, diameter_header,
+                                                                angle_header};
+
+static const double degree = 3.14159265358979323846 / 180.0;
 
 /* How far the place of a trace may wander within it: a machine corrects its path. */
 static const double place_tolerance = 1e-5;
@@ -59,7 +67,7 @@ typedef struct point {
 /* A file on its way into memory. */
 typedef struct loader {
     const gm_gear *gear;
-    int by_diameter;
+    int counting;     /* BY_ROLL_LENGTH ... */
     gm_trace *traces; /* as they will be, still without arrays */
     int trace_count;
     int trace_capacity;
@@ -110,11 +118,16 @@ static int read_trace_row(const loader *load, const gmi_table *table, trace_row 
         status = gmi_table_number(table, FACE, MILLI, &face);
     }
     if (status == GM_IO_OK) {
-        status = gmi_table_number(table, ROLL, MILLI, &length);
-        roll = length;
+        status =
+            gmi_table_number(table, ROLL, load->counting == BY_ROLL_ANGLE ? 0 : MILLI, &length);
     }
 
-    if (status == GM_IO_OK && load->by_diameter) {
+    /* The string that unwinds from the base circle by an angle. */
+    if (load->counting == BY_ROLL_ANGLE) {
+        length *= degree * load->gear->base_radius;
+    }
+    roll = length;
+    if (status == GM_IO_OK && load->counting == BY_DIAMETER) {
         status = roll_of_diameter(load, table, length, &roll);
     }
     if (status == GM_IO_OK) {
@@ -234,7 +247,6 @@ static int make_traces(loader *load, gm_traces *traces) {
     load->traces = NULL;
     for (int i = 0; i < traces->count; ++i) {
         if (!fill_trace(&traces->traces[i], points)) {
-            gm_traces_free(traces);
             return gmi_error_memory(load->error);
         }
         points += traces->traces[i].count;
@@ -242,10 +254,10 @@ static int make_traces(loader *load, gm_traces *traces) {
     return GM_IO_OK;
 }
 
-static int load_traces(loader *load, gm_traces *traces, const char *path) {
+static int load_traces(loader *load, gm_traces *traces, const char *path, int style) {
     gmi_table table;
     int status = gmi_table_open_any(&table, path, trace_headers, TRACE_HEADERS, TRACE_COLUMNS,
-                                    &load->by_diameter, load->error);
+                                    style, &load->counting, load->error);
     if (status == GM_IO_OK) {
         status = read_trace_rows(load, &table);
     }
@@ -253,7 +265,7 @@ static int load_traces(loader *load, gm_traces *traces, const char *path) {
     return status == GM_IO_OK ? make_traces(load, traces) : status;
 }
 
-int gm_traces_read(gm_traces *traces, const char *path, const gm_pair *pair, int wheel,
+int gm_traces_read(gm_traces *traces, const char *path, const gm_pair *pair, int wheel, int style,
                    gm_io_error *error) {
     gmi_error_begin(error, path);
     if (traces != NULL) {
@@ -263,15 +275,22 @@ int gm_traces_read(gm_traces *traces, const char *path, const gm_pair *pair, int
         return gmi_error_null(error);
     }
 
-    loader load;
-    memset(&load, 0, sizeof load);
-    load.gear = gmi_gear_of(pair, wheel);
-    load.error = error;
-    const int status = load_traces(&load, traces, path);
-    free(load.traces);
-    free(load.points);
+    int status;
+    if (gmi_is_mka(path)) {
+        status = gmi_mka_traces(traces, path, pair, wheel, style, error);
+    } else {
+        loader load;
+        memset(&load, 0, sizeof load);
+        load.gear = gmi_gear_of(pair, wheel);
+        load.error = error;
+        status = load_traces(&load, traces, path, style);
+        free(load.traces);
+        free(load.points);
+    }
     if (status == GM_IO_OK) {
         snprintf(traces->file, sizeof traces->file, "%s", path);
+    } else {
+        gm_traces_free(traces);
     }
     return status;
 }

@@ -14,6 +14,7 @@
 #include "files/io_error.h"
 #include "files/number_text.h"
 #include "measurement.h"
+#include "shared.h"
 #include "trace_check.h"
 #include "trace_fill.h"
 
@@ -145,12 +146,44 @@ static int map_place(const gmi_mapping *map, const gm_trace *trace, double *at) 
         gmi_number_text(got, trace->at, 3, 7));
 }
 
+/* How many points of a trace there are up to the tip form circle; a chamfer behind it is no flank. */
+static int count_below_chamfer(const gmi_mapping *map, const gm_trace *trace) {
+    const double form_radius = 0.5 * map->options->tip_form_diameter;
+    if (trace->kind != GM_TRACE_PROFILE || isnan(form_radius)) {
+        return trace->count;
+    }
+
+    const double last = gmi_roll_length(form_radius, map->gear->base_radius);
+    int count = trace->count;
+    while (count > 0 && trace->position[count - 1] > last) {
+        --count;
+    }
+    map->report->chamfer_points += trace->count - count;
+    return count;
+}
+
+static int fail_chamfer(const gmi_mapping *map, const gm_trace *trace) {
+    char name[GMI_TRACE_NAME_SIZE];
+    char diameter[GMI_NUMBER_SIZE];
+    gmi_error_option(map->error, "tip_form_diameter");
+    return gmi_error_set(map->error, GM_IO_ERR_FORMAT, line_of(trace, 0),
+                         "%s: must have points up to the tip form circle (got none below %s mm)",
+                         gmi_trace_name(name, trace),
+                         gmi_number_text(diameter, map->options->tip_form_diameter, 3, 7));
+}
+
 /* Points of a trace as t and deviation along the normal. */
 static int map_points(const gmi_mapping *map, const gm_trace *trace, gmi_measured *to) {
-    const double scale = map->measurement->transverse ? 1.0 / map->pair->normal_to_transverse : 1.0;
+    const double sign = map->options->probe_sign && trace->flank == GM_LEFT ? -1.0 : 1.0;
+    const double scale =
+        sign * (map->measurement->transverse ? 1.0 / map->pair->normal_to_transverse : 1.0);
     const double reach = trace->position[trace->count - 1];
+    to->count = count_below_chamfer(map, trace);
+    if (to->count < 2) {
+        return fail_chamfer(map, trace);
+    }
 
-    for (int i = 0; i < trace->count; ++i) {
+    for (int i = 0; i < to->count; ++i) {
         const double position = trace->position[i];
         const int place = to->turned ? trace->count - 1 - i : i;
         if (trace->kind == GM_TRACE_PROFILE) {

@@ -30,6 +30,7 @@ void gm_traces_options_default(gm_traces_options *options) {
         options->face_nodes = 21;
         options->profile_nodes = 31;
         options->held_limit = 0.2;
+        options->tip_form_diameter = (double)NAN;
     }
 }
 
@@ -51,7 +52,8 @@ typedef struct builder {
  * Arguments
  * ------------------------------------------------------------------------------------------- */
 
-static int check_options(const gm_traces_options *options, gm_io_error *error) {
+static int check_options(const gm_traces_options *options, const gm_gear *gear,
+                         gm_io_error *error) {
     if (options->face_nodes < LEAST_NODES || options->face_nodes > MOST_NODES ||
         options->profile_nodes < LEAST_NODES || options->profile_nodes > MOST_NODES) {
         return gmi_error_set(error, GM_IO_ERR_OPTION, 0,
@@ -63,6 +65,13 @@ static int check_options(const gm_traces_options *options, gm_io_error *error) {
         return gmi_error_set(error, GM_IO_ERR_OPTION, 0,
                              "the part of a flank that traces may leave out at an end must be from "
                              "0 to 0.45");
+    }
+    if (options->tip_form_diameter <= 2.0 * gear->base_radius) {
+        char low[GMI_NUMBER_SIZE];
+        gmi_error_option(error, "tip_form_diameter");
+        return gmi_error_set(error, GM_IO_ERR_OPTION, 0,
+                             "the tip form circle must be larger than the base circle, %s mm",
+                             gmi_number_text(low, 2.0 * gear->base_radius, 3, 7));
     }
     return GM_IO_OK;
 }
@@ -426,7 +435,7 @@ static int build_side(builder *build, gm_deviations *deviations, int side) {
 static int check_arguments(builder *build) {
     int status = gmi_measurement_check(build->measurement, build->pair, build->wheel, build->error);
     if (status == GM_IO_OK) {
-        status = check_options(&build->options, build->error);
+        status = check_options(&build->options, build->gear, build->error);
     }
     if (status == GM_IO_OK && (build->traces->count < 1 || build->traces->traces == NULL)) {
         return gmi_error_set(build->error, GM_IO_ERR_FORMAT, 0,
