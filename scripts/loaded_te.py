@@ -303,7 +303,8 @@ class Gears:
     def deflection_um(self):
         """Of the pairs that always touch, under the mean load."""
         force_N = abs(self.mean_Nm) / (self.geometry["wheel_base_radius_mm"] * 1e-3)
-        return force_N / (self.pairs_without_relief() * float(self.parameters["mesh.stiffness_N_per_m"])) * 1e6
+        pair_N_per_um = self.geometry["mean_mesh_stiffness_N_per_um"] / self.geometry["transverse_contact_ratio"]
+        return force_N / (self.pairs_without_relief() * pair_N_per_um)
 
     def long_tip_relief(self):
         """Amount (um) and length (mm) of the long linear tip relief for the mean load."""

@@ -1,0 +1,50 @@
+# SPDX-FileCopyrightText: The gearmesh authors
+# SPDX-License-Identifier: BSD-3-Clause
+#
+# Panels below each other over the same quantity; scripts/cases sets the variables used here before it loads this file.
+
+load 'style.gp'
+
+colours = "#0072b2 #d55e00 #009e73 #767676"
+top = 0.85
+bottom = 0.11
+height = (top - bottom) / panels
+set lmargin at screen 0.105
+set rmargin at screen 0.965
+set border 3
+set grid xtics ytics lt 1 lw 0.6 lc rgb '#d8d8d8'
+set offsets 0, 0, graph 0.06, graph 0.06
+set autoscale fix
+set key at graph 1, graph 1 bottom right maxrows 1 samplen 2 font ',12'
+
+do for [format in formats] {
+    eval terminal(format, 'cases', 1400, 1000)
+    set output picture . '.' . format
+    set multiplot
+    do for [k = 0:panels - 1] {
+        first_curve = value(sprintf('first_%d', k))
+        last_curve = value(sprintf('last_%d', k))
+        bounds = value(sprintf('bounds_%d', k))
+        unset label
+        unset arrow
+        if (k == 0) {
+            set label title_text at screen 0.025, screen 0.96 left font ',17' noenhanced
+            set label subtitle at screen 0.025, screen 0.92 left font ',12' textcolor rgb grey noenhanced
+        }
+        if (bounds ne 'none') {
+            do for [i = 1:words(bounds)] {
+                set arrow from graph 0, first word(bounds, i) + 0 to graph 1, first word(bounds, i) + 0 nohead \
+                    dt 2 lw 1 lc rgb grey
+            }
+        }
+        set tmargin at screen top - k * height - (k > 0 ? 0.05 : 0)
+        set bmargin at screen top - (k + 1) * height
+        set xlabel (k == panels - 1 ? xlabel_text : '') noenhanced
+        if (k == panels - 1) { set format x '%g' } else { set format x '' }
+        set ylabel value(sprintf('ylabel_%d', k)) noenhanced
+        plot for [i = first_curve:last_curve] data index i using 1:2 with lines lw 2.2 \
+            lc rgb word(colours, i - first_curve + 1) title value(sprintf('label_%d', i)) noenhanced
+    }
+    unset multiplot
+    unset output
+}

@@ -1,0 +1,241 @@
+#!/usr/bin/env python3
+# SPDX-FileCopyrightText: The gearmesh authors
+# SPDX-License-Identifier: BSD-3-Clause
+"""
+The worked cases of data/ show what their pages say, and known results of single vibrations come out.
+
+    test_cases.py GEARSIM [-v] [name of a test]...
+"""
+import math
+import os
+import re
+import subprocess
+import sys
+import tempfile
+import unittest
+
+GEARSIM = os.environ.get("GEARSIM", "gearsim")
+ROOT = os.path.abspath(os.path.join(os.path.dirname(os.path.abspath(__file__)), ".."))
+SIMPLE = ["mesh.model=simple"]
+RPM = math.pi / 30  # rad/s
+
+
+class Case(unittest.TestCase):
+    NAME = ""  # folder of data/
+
+    def setUp(self):
+        scratch = tempfile.TemporaryDirectory()
+        self.addCleanup(scratch.cleanup)
+        self.folder = scratch.name
+
+    def call(self, settings, *options):
+        words = [word for text in settings for word in ("--set", text)]
+        result = subprocess.run([GEARSIM, os.path.join(ROOT, "data", self.NAME, "params.ini"), *options, *words],
+                                cwd=self.folder, capture_output=True, text=True, stdin=subprocess.DEVNULL, timeout=240)
+        self.assertEqual(result.returncode, 0, result.stderr)
+        return result
+
+    def geometry(self, settings=()):
+        lines = self.call(settings, "--geometry").stdout.splitlines()
+        return {name: float(value) for name, value in (line.split(" = ") for line in lines)}
+
+    def run_columns(self, settings=()):
+        self.call(settings, "--output", "run.csv")
+        with open(os.path.join(self.folder, "run.csv")) as file:
+            lines = [line for line in file.read().splitlines() if not line.startswith("#")]
+        rows = [map(float, line.split(",")) for line in lines[1:]]
+        return dict(zip(lines[0].split(","), map(list, zip(*rows))))
+
+    def page(self):
+        with open(os.path.join(ROOT, "data", self.NAME, "README.md")) as file:
+            return " ".join(file.read().split())
+
+
+class Rattle(Case):
+    NAME = "rattle"
+
+    def test_flanks_part_below_the_threshold_alone(self):
+        """Drag torque = I_w times the amplitude of the wheel's acceleration, whatever mesh is behind it."""
+        g = self.geometry()
+        ratio = g["pinion_base_radius_mm"] / g["wheel_base_radius_mm"]
+        speed = 800 * RPM * ratio
+        threshold = 2.1e-3 * 20 * RPM * 2 * speed
+        self.assertIn(f"here {threshold:.3f} N m", self.page())
+        for model in ([], SIMPLE):
+            for share in (0.9, 1.1):
+                for drag in ([f"bodies.wheel_drag_Nms={share * threshold / speed!r}"],
+                             [f"load.mean_Nm={share * threshold!r}", "bodies.wheel_drag_Nms=0"]):
+                    c = self.run_columns([*model, *drag, "analysis.duration_s=0.25", "output.oversampling=1",
+                                          "output.columns=contact_force_N"])
+                    free = sum(force == 0 for force in c["contact_force_N"]) / len(c["contact_force_N"])
+                    if share < 1:
+                        self.assertGreater(free, 0.3)
+                    else:
+                        self.assertEqual(free, 0)
+
+    def test_file_is_below_the_threshold(self):
+        c = self.run_columns(["analysis.duration_s=0.1", "output.oversampling=1"])
+        self.assertGreater(sum(force == 0 for force in c["contact_force_N"]), 0.3 * len(c["time_s"]))
+
+
+class Clunk(Case):
+    NAME = "clunk"
+
+    def test_first_blow_has_the_energy_of_its_way(self):
+        """F = F_m (1 + sqrt(4 + 2 j / x_m)) without damping; with it, less."""
+        g = self.geometry(SIMPLE)
+        static = 20 / (g["wheel_base_radius_mm"] * 1e-3)
+        expected = static * (1 + math.sqrt(4 + 2 * 100 / (static / g["mean_mesh_stiffness_N_per_um"])))
+        self.assertIn(f"= {expected:.0f} N", self.page())
+        c = self.run_columns([*SIMPLE, "mesh.damping_ratio=0", "analysis.duration_s=0.012"])
+        # The blow of half a period, 0.25 ms, has 25 rows: the highest may miss it by cos(pi / 50), 0.2 %.
+        self.assertAlmostEqual(max(c["contact_force_N"]) / expected, 1, delta=0.002)
+        damped = max(self.run_columns()["contact_force_N"])
+        self.assertTrue(0.88 < damped / expected < 0.95)
+        self.assertIn(f"The run has {damped:.0f} N", self.page())
+
+    def test_load_steps_at_its_time(self):
+        c = self.run_columns(["analysis.duration_s=0.012"])
+        self.assertEqual(c["load_torque_Nm"], [-20 if t < 0.01 else 20 for t in c["time_s"]])
+
+
+class Nrel(Case):
+    NAME = "nrel5mw"
+
+    def test_published_numbers_come_out(self):
+        """To half a unit of the last published place."""
+        g = self.geometry()
+        path = g["path_end_mm"] - g["path_start_mm"]
+        for got, expected, unit in [(g["transverse_contact_ratio"], 1.463, 1e-3), (g["overlap_ratio"], 1.421, 1e-3),
+                                    (g["working_pressure_angle_deg"], 22.856, 1e-3),
+                                    (g["base_helix_angle_deg"], 9.391, 1e-3),
+                                    (2 * g["pinion_base_radius_mm"], 320.026, 1e-3),
+                                    (2 * g["wheel_base_radius_mm"], 1266.770, 1e-3), (path, 61.276, 1e-3),
+                                    (g["iso_single_stiffness_N_per_mm_um"], 13.832, 1e-3),
+                                    (g["iso_mesh_stiffness_N_per_mm_um"], 18.632, 1e-3)]:
+            self.assertAlmostEqual(got, expected, delta=0.51 * unit)
+
+    def test_least_length_of_contact_lines(self):
+        # Without load; on the lines of 1/2000 of a pitch, whose ends move by 0.02 mm and the length by 0.1 mm at most.
+        c = self.run_columns(["load.mean_Nm=-1", "analysis.positions=2000"])
+        self.assertAlmostEqual(min(c["contact_length_mm"]), 483.685, delta=0.01)
+
+    def test_error_follows_the_torque(self):
+        one, half = (self.run_columns([f"load.mean_Nm={mean}"])["te_um"] for mean in (-170579, -85289.5))
+        # The path under load is shorter by the penetration, 0.04 mm of 61 mm.
+        for a, b in zip(one, half):
+            self.assertAlmostEqual((a - 150) / (b - 150), 2, delta=0.004)
+        self.assertIn(f"{max(one) - min(one):.1f} um from peak to peak", self.page())
+
+
+class Misaligned(Case):
+    NAME = "misaligned"
+
+    def te(self, skew, inclination):
+        c = self.run_columns([f"pose.skew_mrad={skew}", f"pose.inclination_mrad={inclination}"])
+        return sum(c["te_um"]) / len(c["te_um"]), max(c["te_um"]) - min(c["te_um"]), min(c["contact_length_mm"])
+
+    def test_what_its_page_says(self):
+        page, parallel = self.page(), self.te(0, 0)
+        for skew, inclination in ((0, 0), (0.1, 0), (0.2, 0), (0.3, 0), (0, 0.1), (0, 0.2), (0, 0.3)):
+            mean, peak, _ = self.te(skew, inclination)
+            self.assertIn(f" {mean - 150:.2f} |", page)
+            self.assertIn(f" {peak:.2f} |", page)
+
+        # Inclination turns the wheel by the helix, to the share that the deflection of the face's ends takes.
+        g = self.geometry()
+        turn = 0.1 * g["wheel_working_pitch_radius_mm"] * math.tan(math.radians(g["base_helix_angle_deg"]))
+        self.assertAlmostEqual(self.te(0, 0.1)[0] - parallel[0], turn, delta=0.01 * turn)
+        self.assertAlmostEqual(self.te(0.1, 0)[0] - parallel[0], 0, delta=0.01 * turn)
+
+        # One end stands clear where the gap is twice the deflection under the smallest stiffness.
+        gap = 360 * math.cos(math.radians(g["working_pressure_angle_deg"]))
+        clear = 2 * 37.16 / gap
+        self.assertIn(f"From {clear:.2f} mrad on", page)
+        self.assertAlmostEqual(self.te(0.8 * clear, 0)[2], parallel[2], delta=0.1)
+        self.assertLess(self.te(1.25 * clear, 0)[2], parallel[2] - 5)
+
+
+class Jumps(Case):
+    """
+    A single degree of freedom with backlash under a displacement that shakes it, amplitude e = half the static deflection,
+    damping ratio 0.05: known from the literature of gear dynamics, and from harmonic balance. Sweeping down, the
+    vibration with loss of contact ends near 0.71 of the eigenfrequency if a damper acts always, at 0.577 if it acts in
+    contact only; sweeping up it begins at 0.827 in both cases.
+    """
+    NAME = "clunk"
+    ORDER, DEFLECTION, ZETA, TIME = 45, 2e-6, 0.05, 1.5
+
+    def jump(self, begin, end, near, always):
+        """Frequency, over the eigenfrequency, at which the amplitude changes most."""
+        g = self.geometry(SIMPLE)
+        r_bp, r_bw = g["pinion_base_radius_mm"] * 1e-3, g["wheel_base_radius_mm"] * 1e-3
+        w0 = 2 * math.pi * g["eigenfrequency_Hz"]
+        stiffness = w0**2 * 2.1e-3 / r_bw  # from x to the load (N)
+        drag = 2 * self.ZETA * w0 * 2.1e-3 if always else 0.0  # 2 zeta w0 x', and a torque that grows with the speed
+
+        def rate(share):
+            return share * w0 / self.ORDER
+
+        # r_bp A n w of acceleration is e (n w)^2 where the jump is expected; the load carries what drag and ramp take.
+        amplitude = 0.5 * self.DEFLECTION * near * w0 / r_bp
+        ramp = 2.1e-3 * r_bp / r_bw * (rate(end) - rate(begin)) / self.TIME
+        with open(os.path.join(self.folder, "mean.csv"), "w") as file:
+            file.write("time_s,torque_Nm\n")
+            for time, share in ((0.0, begin), (self.TIME, end)):
+                torque = stiffness * self.DEFLECTION - drag * rate(share) * r_bp / r_bw - ramp
+                file.write(f"{time!r},{torque!r}\n")
+        c = self.run_columns([*SIMPLE, f"drive.start_rpm={rate(begin) / RPM!r}", f"drive.end_rpm={rate(end) / RPM!r}",
+                              f"drive.ripple={self.ORDER}:{amplitude / RPM!r}:0", "load.file=mean.csv",
+                              f"analysis.duration_s={self.TIME}", f"bodies.wheel_drag_Nms={drag!r}",
+                              f"mesh.damping_ratio={0 if always else self.ZETA}", "output.rate_Hz=20000",
+                              "output.columns=dte_um"])
+        x, width = c["dte_um"], 200
+        sizes = [max(x[i:i + width]) - min(x[i:i + width]) for i in range(0, len(x) - width, width)]
+        steps = [abs(b - a) for a, b in zip(sizes, sizes[1:])]
+        row = (steps.index(max(steps)) + 1) * width
+        return begin + (end - begin) * row / 20000 / self.TIME
+
+    def test_vibration_with_loss_of_contact_begins_and_ends_where_it_is_known_to(self):
+        # Windows of 0.01 s are 0.003 of the eigenfrequency; down-jumps come late by as much as the sweep goes on while
+        # a vibration dies.
+        self.assertAlmostEqual(self.jump(0.95, 0.62, 0.71, True), 0.71, delta=0.015)
+        self.assertAlmostEqual(self.jump(0.95, 0.5, 0.577, False), 0.577, delta=0.008)
+        for always in (True, False):
+            self.assertAlmostEqual(self.jump(0.75, 0.9, 0.827, always), 0.827, delta=0.004)
+
+
+class Script(unittest.TestCase):
+    """scripts/cases: numbers and pictures."""
+
+    def cases(self, *arguments, folder=None):
+        return subprocess.run([os.path.join(ROOT, "scripts", "cases"), "--gearsim", GEARSIM, *arguments],
+                              cwd=folder, capture_output=True, text=True, stdin=subprocess.DEVNULL, timeout=240)
+
+    def test_pictures_show_the_curves(self):
+        with tempfile.TemporaryDirectory() as folder:
+            result = self.cases("clunk", "nrel5mw", "--output", "made", folder=folder)
+            self.assertEqual((result.returncode, result.stderr), (0, ""))
+            self.assertIn("without damping 5471 N", result.stdout)
+            self.assertEqual(sorted(os.listdir(os.path.join(folder, "made"))),
+                             [f"{name}.{kind}" for name in ("clunk", "nrel5mw") for kind in ("pdf", "png", "svg")])
+            with open(os.path.join(folder, "made", "clunk.svg"), encoding="utf-8") as file:
+                svg = file.read()
+            # x from one side of the backlash to the other, and the force up to the blow.
+            for text in ("contact force / N", "x / µm", "time / ms", "5000", "-60"):
+                self.assertIn(f">{text}<", svg.replace("<tspan>", "").replace("</tspan>", ""))
+            with open(os.path.join(folder, "made", "nrel5mw.svg"), encoding="utf-8") as file:
+                curves = set(re.findall(r'id="cases_plot_(\d+)a"', file.read()))
+            self.assertEqual(curves, {"1", "2", "3"})
+
+    def test_wrong_use_is_refused(self):
+        result = self.cases("clank")
+        self.assertEqual(result.returncode, 2)
+        self.assertIn("clank: there is no such case, but rattle, clunk, nrel5mw, misaligned", result.stderr)
+        self.assertEqual(self.cases("--help").returncode, 0)
+
+
+if __name__ == "__main__":
+    if len(sys.argv) > 1 and not sys.argv[1].startswith("-"):
+        GEARSIM = os.path.abspath(sys.argv.pop(1))
+    unittest.main()
