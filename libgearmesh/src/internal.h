@@ -4,7 +4,7 @@
 /*
  * What the sources of the core share and users never see. Dependencies run one way:
  * gear -> meshing -> pair -> iso6336, position -> contact -> flank -> line -> ramp, tilt -> penetration -> law -> wrench
- * -> mesh -> equilibrium, cache.
+ * -> mesh -> equilibrium, cache, body.
  */
 #ifndef GEARMESH_INTERNAL_H
 #define GEARMESH_INTERNAL_H
@@ -153,8 +153,20 @@ typedef struct gmi_engagement {
     double face_center;         /* z of that middle (m) */
 } gmi_engagement;
 
+/* How fast the flanks of one side approach each other: the same all over it but for what a tilt does. */
+typedef struct gmi_rates {
+    double delta;         /* of parallel axes (m/s) */
+    double along, across; /* d gmi_engagement.along / dt, d across / dt (rad/s) */
+} gmi_rates;
+
+void gmi_rates_find(const gm_pair *pair, const gmi_engagement *at, double offset_rate,
+                    const gm_pose *pose_rate, gmi_rates rates[2]);
+
 /* NULL = no pose. Returns GM_OK, GM_STATE_NOT_FINITE or GM_POSE_OUT_OF_MESH. */
 int gmi_engagement_find(const gm_pair *pair, const gm_pose *pose, gmi_engagement *engagement);
+
+/* A gear with tables: they end where the drawing's profile does, also where that would now begin deeper. */
+void gmi_engagement_keep_tables(const gm_pair *pair, int role, gmi_engagement *at);
 
 /* What an evaluation accumulates beside sum, contact and pairs: a mask. */
 enum gmi_wanted {
@@ -195,6 +207,13 @@ static inline gmi_side_sum gmi_no_contact(void) {
 static inline double gmi_side_sign(int side) {
     return side == GM_DRIVE ? 1.0 : -1.0;
 }
+
+/*
+ * position.c: of angles whose whole turns are not known: that x + shift is taken which is within half a base pitch, and
+ * the wheel's tooth that is there.
+ */
+int gmi_position_nearest(const gm_pair *pair, const gm_state *state, double shift,
+                         gm_position *position);
 
 /* contact.c: which lines of contact exist on one side, and where. */
 
@@ -341,6 +360,9 @@ typedef struct gmi_grid {
 void gmi_grid_init(gmi_grid *grid, const gmi_tables *tables, double climb, double length,
                    double face_origin, double face_scale);
 
+/* The table of this gear now begins at another place along the common face. */
+void gmi_grid_move(gmi_grid *grid, double face_origin);
+
 /*
  * One line: t1 from `from` to `to`, with f = overlap + 2 half_slope s + curvature s^2 + tables of both flanks, s = t1 - from.
  */
@@ -404,6 +426,10 @@ typedef struct gmi_line_part {
 void gmi_tilt_clip(const gm_pair *pair, const gmi_engagement *at, int side, double rho_origin,
                    double delta, int tables, gmi_line_part *part);
 
+/* Speed of approach, on average over the touching part; sum with GMI_MOMENTS where the tilt changes. */
+double gmi_rates_mean_approach(const gmi_rates *rates, const gm_pair *pair,
+                               const gmi_engagement *at, int side, const gmi_side_sum *sum);
+
 /* f along a line is gain delta + shift, a polynomial in t1, and d f / d rho another. */
 typedef struct gmi_tilted_line {
     double gain;         /* (1) */
@@ -431,12 +457,15 @@ typedef struct gmi_side {
     int ramps;         /* of both flanks */
     int is_tilted;     /* the axes are */
     double tilt_bound; /* what tilted axes add to the overlap at most (m) */
-    double
-        peak; /* that and most material of both flanks: nothing touches at a delta <= -peak (m) */
+    double flank_peak; /* most material of both flanks (m) */
+    double peak;       /* both: nothing touches at a delta <= -peak (m) */
 } gmi_side;
 
 void gmi_side_init(gmi_side *prepared, const gm_pair *pair, const gmi_engagement *at,
                    const gm_flanks *pinion_flanks, const gm_flanks *wheel_flanks, int side);
+
+/* The same side in another pose. */
+void gmi_side_move(gmi_side *prepared, const gm_pair *pair, const gmi_engagement *at, int side);
 
 void gmi_side_sum_tables(const gm_pair *pair, const gmi_engagement *at, const gmi_side *prepared,
                          int side, const gm_position *position, int wanted, gmi_side_sum *total);
@@ -546,6 +575,7 @@ static inline void gmi_wrench_set(gm_wrench *wrench, double value) {
 /* mesh.c: the prepared mesh. */
 struct gm_mesh {
     const gm_pair *pair;       /* as drawn */
+    gm_pose pose;              /* that it was prepared in */
     gmi_engagement engagement; /* as posed */
     int is_posed;
     gmi_side side[2]; /* GM_DRIVE, GM_COAST */
@@ -559,6 +589,9 @@ struct gm_mesh {
 int gmi_mesh_evaluate_exact(const gm_mesh *mesh, const gm_position *position, int wanted,
                             gm_workspace *workspace, gm_mesh_result *result);
 void gmi_mesh_result_set_nan(gm_mesh_result *result);
+
+/* The same mesh with its wheel in another pose, in addition to that of the mesh; without a cache. */
+int gmi_mesh_move(const gm_mesh *mesh, const gm_pose *pose, gm_mesh *moved);
 
 /* The position in the coordinates of the posed pair. */
 static inline gm_position gmi_mesh_posed(const gm_mesh *mesh, const gm_position *position) {

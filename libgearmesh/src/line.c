@@ -94,6 +94,13 @@ void gmi_grid_init(gmi_grid *grid, const gmi_tables *tables, double climb, doubl
     set_rates(grid, 1.0);
 }
 
+void gmi_grid_move(gmi_grid *grid, double face_origin) {
+    if (grid->face_rate > 0.0) {
+        grid->face_base = (double)(grid->last_face + 1) * face_origin;
+        grid->face_origin = face_origin;
+    }
+}
+
 /* Index of the cell that holds v, clamped into the table against rounding at its rim. */
 static inline int cell_of(double v, int last) {
     const int cell = v > 0.0 ? (int)v : 0;

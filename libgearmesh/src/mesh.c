@@ -170,6 +170,7 @@ int gm_mesh_init(gm_mesh **mesh, const gm_mesh_params *params, const gm_pair *pa
     memset(made, 0, sizeof *made);
     *own_pair = *pair;
     made->pair = own_pair;
+    made->pose = params->pose;
     made->model = params->model;
 
     /* What its evaluations have in common. */
@@ -185,6 +186,12 @@ int gm_mesh_init(gm_mesh **mesh, const gm_mesh_params *params, const gm_pair *pa
     made->is_posed = engagement.offset_shift != 0.0 || engagement.phase_shift != 0.0;
     if (params->model == GM_MODEL_SIMPLE) {
         pinion_flanks = wheel_flanks = NULL;
+    }
+    if (pinion_flanks != NULL) {
+        gmi_engagement_keep_tables(pair, GM_PINION, &made->engagement);
+    }
+    if (wheel_flanks != NULL) {
+        gmi_engagement_keep_tables(pair, GM_WHEEL, &made->engagement);
     }
     for (int side = GM_DRIVE; side <= GM_COAST; ++side) {
         gmi_side_init(&made->side[side], own_pair, &made->engagement, pinion_flanks, wheel_flanks,
@@ -303,10 +310,10 @@ void gmi_mesh_result_set_nan(gm_mesh_result *result) {
 }
 
 /* What the sums have to accumulate. The size of the touching part matters to a gradient only where damping acts. */
-static inline int accumulated(const gm_mesh *mesh, double offset_rate, int wanted) {
+static inline int accumulated(const gm_mesh *mesh, int is_moving, int wanted) {
     int mask = wanted & GM_WANT_WRENCH ? GMI_MOMENTS : GMI_SUM;
     if (wanted & GM_WANT_DERIVATIVES) {
-        const int is_damped = mesh->law.damping > 0.0 && offset_rate != 0.0;
+        const int is_damped = mesh->law.damping > 0.0 && is_moving;
         mask |= GMI_DERIVATIVES | (is_damped ? GMI_CONTACT_DERIVATIVES : 0) |
                 (mesh->engagement.is_tilted ? GMI_MOMENTS : 0);
     }
@@ -343,20 +350,20 @@ static const gmi_side_force no_force = {.force = 0.0};
 
 /* All that a user sees, from the sums of both sides. */
 SPECIALIZED void set_result(const gm_mesh *mesh, const gmi_side_sum *drive,
-                            const gmi_side_sum *coast, double offset_rate, int wanted,
+                            const gmi_side_sum *coast, const double approach[2], int wanted,
                             gm_mesh_result *result) {
-    const int mask = accumulated(mesh, offset_rate, wanted);
-    gmi_penetration_set(mesh->pair, drive, coast, offset_rate, mask, &result->contact);
+    const int is_moving = approach[GM_DRIVE] != 0.0 || approach[GM_COAST] != 0.0;
+    const int mask = accumulated(mesh, is_moving, wanted);
+    gmi_penetration_set(mesh->pair, drive, coast, approach, mask, &result->contact);
 
-    /* The coast flanks approach each other while x falls. */
     gmi_side_force forces[2];
     const gmi_side_force *drive_force = &no_force, *coast_force = &no_force;
     if (drive != &no_contact) {
-        gmi_law_force(&mesh->law, drive, offset_rate, mask, &forces[GM_DRIVE]);
+        gmi_law_force(&mesh->law, drive, approach[GM_DRIVE], mask, &forces[GM_DRIVE]);
         drive_force = &forces[GM_DRIVE];
     }
     if (coast != &no_contact) {
-        gmi_law_force(&mesh->law, coast, -offset_rate, mask, &forces[GM_COAST]);
+        gmi_law_force(&mesh->law, coast, approach[GM_COAST], mask, &forces[GM_COAST]);
         coast_force = &forces[GM_COAST];
     }
 
@@ -384,9 +391,9 @@ SPECIALIZED void set_result(const gm_mesh *mesh, const gmi_side_sum *drive,
     }
 }
 
-/* The sum of a side: written to `memory`, or that of no contact. */
+/* The sum of a side, by a mask of enum gmi_wanted: written to `memory`, or that of no contact. */
 SPECIALIZED const gmi_side_sum *exact_sum(const gm_mesh *mesh, int side,
-                                          const gm_position *position, int wanted,
+                                          const gm_position *position, int mask,
                                           gmi_side_sum *memory) {
     if (gmi_side_is_clear(&mesh->engagement, &mesh->side[side], side, position->offset)) {
         return &no_contact;
@@ -394,8 +401,8 @@ SPECIALIZED const gmi_side_sum *exact_sum(const gm_mesh *mesh, int side,
     if (mesh->model == GM_MODEL_SIMPLE) {
         gmi_side_sum_simple(mesh->pair, &mesh->engagement, side, position->offset, memory);
     } else {
-        gmi_side_sum_3d(mesh->pair, &mesh->engagement, &mesh->side[side], side, position,
-                        accumulated(mesh, position->offset_rate, wanted), memory);
+        gmi_side_sum_3d(mesh->pair, &mesh->engagement, &mesh->side[side], side, position, mask,
+                        memory);
     }
     return memory;
 }
@@ -403,10 +410,14 @@ SPECIALIZED const gmi_side_sum *exact_sum(const gm_mesh *mesh, int side,
 /* Compiled once for the force alone and once for any mask. */
 SPECIALIZED void evaluate(const gm_mesh *mesh, const gm_position *position, int wanted,
                           gm_mesh_result *result) {
+    const int mask = accumulated(mesh, position->offset_rate != 0.0, wanted);
     gmi_side_sum sums[2];
-    const gmi_side_sum *drive = exact_sum(mesh, GM_DRIVE, position, wanted, &sums[GM_DRIVE]);
-    const gmi_side_sum *coast = exact_sum(mesh, GM_COAST, position, wanted, &sums[GM_COAST]);
-    set_result(mesh, drive, coast, position->offset_rate, wanted, result);
+    const gmi_side_sum *drive = exact_sum(mesh, GM_DRIVE, position, mask, &sums[GM_DRIVE]);
+    const gmi_side_sum *coast = exact_sum(mesh, GM_COAST, position, mask, &sums[GM_COAST]);
+
+    /* The coast flanks approach each other while x falls. */
+    const double approach[2] = {position->offset_rate, -position->offset_rate};
+    set_result(mesh, drive, coast, approach, wanted, result);
 }
 
 /*
@@ -428,7 +439,7 @@ static void add_roll(const gm_mesh *mesh, const gmi_side_sum *drive, const gmi_s
 static int evaluate_elastic(const gm_mesh *mesh, const gm_position *position, int wanted,
                             gm_workspace *workspace, gm_mesh_result *result) {
     gmi_side_sum sums[2];
-    const int mask = accumulated(mesh, position->offset_rate, wanted) | GMI_ROLL;
+    const int mask = accumulated(mesh, position->offset_rate != 0.0, wanted) | GMI_ROLL;
     for (int side = GM_DRIVE; side <= GM_COAST; ++side) {
         const int status = gmi_side_sum_by_law(mesh, side, position, mask, workspace, &sums[side]);
         if (status != GM_OK) {
@@ -436,7 +447,8 @@ static int evaluate_elastic(const gm_mesh *mesh, const gm_position *position, in
             return status;
         }
     }
-    set_result(mesh, &sums[GM_DRIVE], &sums[GM_COAST], position->offset_rate, wanted, result);
+    const double approach[2] = {position->offset_rate, -position->offset_rate};
+    set_result(mesh, &sums[GM_DRIVE], &sums[GM_COAST], approach, wanted, result);
     add_roll(mesh, &sums[GM_DRIVE], &sums[GM_COAST], wanted, result);
     return GM_OK;
 }
@@ -466,7 +478,7 @@ static int evaluate_cached(const gm_mesh *mesh, const gm_position *position, int
     }
 
     const int other = held == GM_DRIVE ? GM_COAST : GM_DRIVE;
-    const int mask = accumulated(mesh, position->offset_rate, wanted);
+    const int mask = accumulated(mesh, position->offset_rate != 0.0, wanted);
     int status = gmi_side_sum_by_law(mesh, other, position, mask, workspace, &sums[other]);
 
     /* Only the exact evaluation counts pairs. */
@@ -479,7 +491,8 @@ static int evaluate_cached(const gm_mesh *mesh, const gm_position *position, int
         gmi_mesh_result_set_nan(result);
         return status;
     }
-    set_result(mesh, &sums[GM_DRIVE], &sums[GM_COAST], position->offset_rate, wanted, result);
+    const double approach[2] = {position->offset_rate, -position->offset_rate};
+    set_result(mesh, &sums[GM_DRIVE], &sums[GM_COAST], approach, wanted, result);
     return GM_OK;
 }
 
@@ -540,4 +553,134 @@ int gm_mesh_evaluate(const gm_mesh *mesh, const gm_state *state, int wanted,
         return status;
     }
     return gm_mesh_evaluate_at(mesh, &position, wanted, workspace, result);
+}
+
+/* ---------------------------------------------------------------------------------------------
+ * In a pose of its own at every call
+ * ------------------------------------------------------------------------------------------- */
+
+static gm_pose both_poses(const gm_pose *a, const gm_pose *b) {
+    const gm_pose both = {a->center_distance_change + b->center_distance_change,
+                          a->offset + b->offset, a->axial_shift + b->axial_shift, a->skew + b->skew,
+                          a->inclination + b->inclination};
+    return both;
+}
+
+static int is_at_rest(const gm_pose *pose) {
+    return pose->center_distance_change == 0.0 && pose->offset == 0.0 && pose->axial_shift == 0.0 &&
+           pose->skew == 0.0 && pose->inclination == 0.0;
+}
+
+int gmi_mesh_move(const gm_mesh *mesh, const gm_pose *pose, gm_mesh *moved) {
+    const gm_pose both = both_poses(&mesh->pose, pose);
+    *moved = *mesh;
+    moved->cache = NULL;
+    const int status = gmi_engagement_find(mesh->pair, &both, &moved->engagement);
+    if (status != GM_OK) {
+        return status;
+    }
+    if (mesh->side[GM_DRIVE].pinion != NULL) {
+        gmi_engagement_keep_tables(mesh->pair, GM_PINION, &moved->engagement);
+    }
+    if (mesh->side[GM_DRIVE].wheel != NULL) {
+        gmi_engagement_keep_tables(mesh->pair, GM_WHEEL, &moved->engagement);
+    }
+    moved->is_posed = moved->engagement.offset_shift != 0.0 || moved->engagement.phase_shift != 0.0;
+    for (int side = GM_DRIVE; side <= GM_COAST; ++side) {
+        gmi_side_move(&moved->side[side], mesh->pair, &moved->engagement, side);
+    }
+    return GM_OK;
+}
+
+static int evaluate_moving(const gm_mesh *mesh, const gm_position *position,
+                           const gmi_rates rates[2], int wanted, gm_workspace *workspace,
+                           gm_mesh_result *result) {
+    const int is_tilting = rates[GM_DRIVE].along != 0.0 || rates[GM_DRIVE].across != 0.0;
+    const int mask = accumulated(mesh, 1, wanted) | (is_tilting ? GMI_MOMENTS : GMI_SUM) |
+                     (is_elastic(mesh) ? GMI_ROLL : GMI_SUM);
+    gmi_side_sum sums[2];
+    double approach[2];
+    for (int side = GM_DRIVE; side <= GM_COAST; ++side) {
+        if (mesh->model == GM_MODEL_SIMPLE) {
+            gmi_side_sum_simple(mesh->pair, &mesh->engagement, side, position->offset, &sums[side]);
+        } else {
+            const int status =
+                gmi_side_sum_by_law(mesh, side, position, mask, workspace, &sums[side]);
+            if (status != GM_OK) {
+                return status;
+            }
+        }
+        approach[side] =
+            gmi_rates_mean_approach(&rates[side], mesh->pair, &mesh->engagement, side, &sums[side]);
+    }
+    set_result(mesh, &sums[GM_DRIVE], &sums[GM_COAST], approach, wanted, result);
+    if (is_elastic(mesh)) {
+        add_roll(mesh, &sums[GM_DRIVE], &sums[GM_COAST], wanted, result);
+    }
+    return GM_OK;
+}
+
+static int is_finite_pose(const gm_pose *pose) {
+    return gmi_is_finite(pose->center_distance_change + pose->offset + pose->axial_shift) &&
+           gmi_is_finite(pose->skew + pose->inclination);
+}
+
+/* Speeds are bounded as those of angles are. */
+static int check_rate(const gm_pose *rate) {
+    if (!is_finite_pose(rate)) {
+        return GM_STATE_NOT_FINITE;
+    }
+    const double largest =
+        fmax(fmax(fabs(rate->center_distance_change), fabs(rate->offset)),
+             fmax(fabs(rate->axial_shift), fmax(fabs(rate->skew), fabs(rate->inclination))));
+    return largest <= GMI_LARGEST_SPEED ? GM_OK : GM_STATE_OUT_OF_RANGE;
+}
+
+/* Not inlined: what it has on the stack is not there when its caller calls others. */
+#if defined(__GNUC__)
+#define OWN_STACK __attribute__((noinline))
+#else
+#define OWN_STACK
+#endif
+
+/* The mesh as posed is no small thing. */
+static OWN_STACK int evaluate_posed(const gm_mesh *mesh, const gm_motion *motion, int wanted,
+                                    gm_workspace *workspace, gm_mesh_result *result) {
+    gm_mesh moved;
+    int status = check_rate(&motion->pose_rate);
+    if (status == GM_OK) {
+        status = gmi_mesh_move(mesh, &motion->pose, &moved);
+    }
+    if (status != GM_OK) {
+        return status;
+    }
+    const gm_position position = gmi_mesh_posed(&moved, &motion->position);
+    status = check_evaluation(&moved, &position, wanted, workspace);
+    if (status != GM_OK) {
+        return status;
+    }
+    if (is_at_rest(&motion->pose_rate)) {
+        return gmi_mesh_evaluate_exact(&moved, &position, wanted, workspace, result);
+    }
+
+    gmi_rates rates[2];
+    gmi_rates_find(mesh->pair, &moved.engagement, position.offset_rate, &motion->pose_rate, rates);
+    return evaluate_moving(&moved, &position, rates, wanted, workspace, result);
+}
+
+int gm_mesh_evaluate_posed(const gm_mesh *mesh, const gm_motion *motion, int wanted,
+                           gm_workspace *workspace, gm_mesh_result *result) {
+    if (result == NULL) {
+        return GM_ERR_NULL;
+    }
+    gmi_mesh_result_set_nan(result);
+    if (mesh == NULL || motion == NULL) {
+        return GM_ERR_NULL;
+    }
+
+    /* Where nothing but the angles moves it is the plain evaluation. */
+    if (is_at_rest(&motion->pose) && is_at_rest(&motion->pose_rate)) {
+        return gm_mesh_evaluate_at(mesh, &motion->position, wanted, workspace, result);
+    }
+    return evaluate_posed(mesh, motion, wanted, workspace, result);
 }

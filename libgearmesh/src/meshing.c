@@ -314,3 +314,34 @@ int gmi_engagement_find(const gm_pair *pair, const gm_pose *pose, gmi_engagement
     give_signs(pair, engagement);
     return status;
 }
+
+void gmi_engagement_keep_tables(const gm_pair *pair, int role, gmi_engagement *at) {
+    const double drawn =
+        role == GM_PINION ? pair->pinion.start_roll_length : at->wheel_profile_start;
+    if (at->start_roll_length[role] < drawn) {
+        at->start_roll_length[role] = drawn;
+        at->start_follows[role] = 0;
+    }
+}
+
+/*
+ * Points of the wheel's flank move by -n.v towards the pinion's, n = e - tau k: with its axis by v, and with its tilt by
+ * what tilt.c derives in first order.
+ */
+void gmi_rates_find(const gm_pair *pair, const gmi_engagement *at, double offset_rate,
+                    const gm_pose *pose_rate, gmi_rates rates[2]) {
+    for (int side = GM_DRIVE; side <= GM_COAST; ++side) {
+        const double sign = gmi_side_sign(side);
+        const double tau = sign * pair->face_advance / pair->face_width;
+
+        /* e and t = e turned by a right angle, clockwise on the drive side. */
+        const double direction =
+            at->axis_direction + sign * (0.25 * GMI_TWO_PI - at->working_pressure_angle);
+        const double e[2] = {cos(direction), sin(direction)};
+        const double t[2] = {sign * e[1], -sign * e[0]};
+        rates[side].delta = sign * offset_rate - e[0] * pose_rate->center_distance_change -
+                            e[1] * pose_rate->offset + tau * pose_rate->axial_shift;
+        rates[side].along = -sign * (e[0] * pose_rate->skew + e[1] * pose_rate->inclination);
+        rates[side].across = -sign * (t[0] * pose_rate->skew + t[1] * pose_rate->inclination);
+    }
+}

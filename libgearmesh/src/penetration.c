@@ -30,26 +30,38 @@ void gmi_side_init(gmi_side *prepared, const gm_pair *pair, const gmi_engagement
                    const gm_flanks *pinion_flanks, const gm_flanks *wheel_flanks, int side) {
     prepared->pinion = gmi_flanks_side(pinion_flanks, side);
     prepared->wheel = gmi_flanks_side(wheel_flanks, side);
-    prepared->ramps = 0;
+    prepared->ramps = ramp_count(prepared->pinion) + ramp_count(prepared->wheel);
+    prepared->flank_peak = 0.0;
+
+    /* On the wheel the same line runs the other way: rho_w falls as rho_p grows. */
+    if (prepared->pinion != NULL || prepared->wheel != NULL || at->is_tilted) {
+        const double advance = gmi_side_sign(side) * pair->face_advance;
+        gmi_grid_init(&prepared->pinion_grid, prepared->pinion, advance,
+                      flank_length(&pair->pinion), at->face_origin[GM_PINION],
+                      at->face_scale[GM_PINION]);
+        gmi_grid_init(&prepared->wheel_grid, prepared->wheel, -advance, flank_length(&pair->wheel),
+                      at->face_origin[GM_WHEEL], at->face_scale[GM_WHEEL]);
+        prepared->flank_peak =
+            gm_flanks_peak(pinion_flanks, side) + gm_flanks_peak(wheel_flanks, side);
+    }
+    gmi_side_move(prepared, pair, at, side);
+}
+
+void gmi_side_move(gmi_side *prepared, const gm_pair *pair, const gmi_engagement *at, int side) {
     prepared->is_tilted = at->is_tilted;
     prepared->tilt_bound = at->is_tilted ? gmi_tilt_bound(pair, at, side) : 0.0;
-    prepared->peak = prepared->tilt_bound;
-    if (prepared->pinion == NULL && prepared->wheel == NULL && !at->is_tilted) {
+    prepared->peak = prepared->tilt_bound + prepared->flank_peak;
+    if (prepared->pinion == NULL && prepared->wheel == NULL) {
         return;
     }
 
-    /* On the wheel the same line runs the other way: rho_w falls as rho_p grows. */
-    const double advance = gmi_side_sign(side) * pair->face_advance;
-    gmi_grid_init(&prepared->pinion_grid, prepared->pinion, advance, flank_length(&pair->pinion),
-                  at->face_origin[GM_PINION], at->face_scale[GM_PINION]);
-    gmi_grid_init(&prepared->wheel_grid, prepared->wheel, -advance, flank_length(&pair->wheel),
-                  at->face_origin[GM_WHEEL], at->face_scale[GM_WHEEL]);
-    prepared->wheel_grid.shares_faces =
-        prepared->wheel_grid.last_face == prepared->pinion_grid.last_face &&
-        prepared->wheel_grid.face_base == prepared->pinion_grid.face_base &&
-        prepared->wheel_grid.face_rate == prepared->pinion_grid.face_rate;
-    prepared->ramps = ramp_count(prepared->pinion) + ramp_count(prepared->wheel);
-    prepared->peak += gm_flanks_peak(pinion_flanks, side) + gm_flanks_peak(wheel_flanks, side);
+    /* The wheel's face lines may no longer be those of the pinion. */
+    const gmi_grid *pinion = &prepared->pinion_grid;
+    gmi_grid *wheel = &prepared->wheel_grid;
+    gmi_grid_move(wheel, at->face_origin[GM_WHEEL]);
+    wheel->shares_faces = wheel->last_face == pinion->last_face &&
+                          wheel->face_base == pinion->face_base &&
+                          wheel->face_rate == pinion->face_rate;
 }
 
 /* ---------------------------------------------------------------------------------------------
@@ -330,7 +342,8 @@ static int simple(const gm_pair *pair, const gm_state *state, gm_penetration *re
         (void)gmi_engagement_find(pair, NULL, &at);
         gmi_side_sum_simple(pair, &at, GM_DRIVE, position.offset, &drive);
         gmi_side_sum_simple(pair, &at, GM_COAST, position.offset, &coast);
-        gmi_penetration_set(pair, &drive, &coast, position.offset_rate, GMI_DERIVATIVES, result);
+        const double approach[2] = {position.offset_rate, -position.offset_rate};
+        gmi_penetration_set(pair, &drive, &coast, approach, GMI_DERIVATIVES, result);
     }
     return status;
 }
@@ -386,6 +399,7 @@ int gm_penetration_3d(const gm_pair *pair, const gm_flanks *pinion_flanks,
         side_sum(pair, &at, pinion_flanks, wheel_flanks, GM_DRIVE, &position);
     const gmi_side_sum coast =
         side_sum(pair, &at, pinion_flanks, wheel_flanks, GM_COAST, &position);
-    gmi_penetration_set(pair, &drive, &coast, position.offset_rate, GMI_DERIVATIVES, result);
+    const double approach[2] = {position.offset_rate, -position.offset_rate};
+    gmi_penetration_set(pair, &drive, &coast, approach, GMI_DERIVATIVES, result);
     return GM_OK;
 }

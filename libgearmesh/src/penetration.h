@@ -29,13 +29,14 @@ static inline void gmi_side_sum_3d(const gm_pair *pair, const gmi_engagement *at
 }
 
 /*
- * What both sides together are for the user; derivatives NaN where they were not wanted. These go from line origin and
+ * What both sides together are for the user; approach: speed at which the flanks of each side approach each other;
+ * derivatives NaN where they were not wanted. These go from line origin and
  * delta to angles. Drive: origin grows with r_bp phi_p, delta with x; coast: both with the opposite sign, and it counts
  * negatively in the net sum, so that the signs are the same again.
  */
 static inline void gmi_penetration_set(const gm_pair *pair, const gmi_side_sum *drive,
-                                       const gmi_side_sum *coast, double offset_rate, int wanted,
-                                       gm_penetration *result) {
+                                       const gmi_side_sum *coast, const double approach[2],
+                                       int wanted, gm_penetration *result) {
     result->drive = drive->sum;
     result->coast = coast->sum;
     result->penetration = drive->sum - coast->sum;
@@ -45,8 +46,8 @@ static inline void gmi_penetration_set(const gm_pair *pair, const gmi_side_sum *
     result->drive_pairs = drive->pairs;
     result->coast_pairs = coast->pairs;
 
-    result->drive_rate = offset_rate * drive->contact;
-    result->coast_rate = -offset_rate * coast->contact;
+    result->drive_rate = approach[GM_DRIVE] * drive->contact;
+    result->coast_rate = approach[GM_COAST] * coast->contact;
     result->rate = result->drive_rate - result->coast_rate;
 
     result->d_pinion_angle = result->d_wheel_angle = gmi_nan();

@@ -146,3 +146,24 @@ int gm_position_from_pinion_angle(const gm_pair *pair, double pinion_angle, doub
     position->offset_rate = offset_rate;
     return finish(position);
 }
+
+int gmi_position_nearest(const gm_pair *pair, const gm_state *state, double shift,
+                         gm_position *position) {
+    *position = position_nan();
+    const int status = check_state(state);
+    if (status != GM_OK) {
+        return status;
+    }
+
+    /* As if the wheel had turned by some teeth more: those of it that meet are others by as many. */
+    const reduced_angle pinion = reduce_angle(&pair->pinion, state->pinion_angle);
+    reduced_angle wheel = reduce_angle(&pair->wheel, state->wheel_angle);
+    const double p_bt = pair->transverse_base_pitch;
+    const double teeth = floor((offset_from(pair, pinion, wheel) + shift) / p_bt + 0.5);
+    wheel.turned += teeth;
+    set_pinion(pair, pinion, position);
+    position->wheel_tooth = tooth_after(pinion.turned - teeth, pair->wheel.teeth);
+    position->offset = offset_from(pair, pinion, wheel);
+    position->offset_rate = offset_rate_from(pair, state);
+    return finish(position);
+}

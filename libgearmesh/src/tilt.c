@@ -257,3 +257,17 @@ double gmi_tilt_bound(const gm_pair *pair, const gmi_engagement *at, int side) {
     /* The gain acts on any delta. */
     return first_order + second_order + fabs(gain - 1.0) * pair->transverse_base_pitch;
 }
+
+double gmi_rates_mean_approach(const gmi_rates *rates, const gm_pair *pair,
+                               const gmi_engagement *at, int side, const gmi_side_sum *sum) {
+    if (!(sum->contact > 0.0)) {
+        return rates->delta;
+    }
+
+    /* u = zeta - tau (T - rho_p), on average. */
+    const tilted line = tilted_of(pair, at, side, 0.0);
+    const double t1 = sum->contact_t1 / sum->contact;
+    const double rho = sum->contact_rho / sum->contact;
+    const double u = value_at(line.zeta, t1) - line.tau * (line.length - rho);
+    return rates->delta - rates->across * u - line.tau * line.r_bw * rates->along;
+}

@@ -981,6 +981,91 @@ GM_API int gm_mesh_evaluate(const gm_mesh *mesh, const gm_state *state, int want
 GM_API int gm_mesh_evaluate_at(const gm_mesh *mesh, const gm_position *position, int wanted,
                                gm_workspace *workspace, gm_mesh_result *result);
 
+/* ---------------------------------------------------------------------------------------------
+ * Gears that move: a pose of its own at every call, and bodies of a multibody code
+ * ------------------------------------------------------------------------------------------- */
+
+/** Where both gears are and how they move, in the frame of the file comment. */
+typedef struct gm_motion {
+    gm_position position; /**< angles and dx/dt, see gm_position_from_state() */
+    gm_pose pose;         /**< of the wheel, in addition to the one that the mesh was prepared in */
+    gm_pose
+        pose_rate; /**< its rate (m/s, rad/s), each at most 1e9 either way; the approach speed of the flanks
+                            contains it */
+} gm_motion;
+
+/**
+ * As gm_mesh_evaluate_at(), with the wheel in a pose of its own at every call: for shafts that bend, bodies that float.
+ * Without pose and rate it is gm_mesh_evaluate_at(), to the last bit; with one a cache does not answer.
+ *
+ * The damping force of a side is D times its touching part times the speed of approach on average over it: dx/dt, less the
+ * velocity of the wheel's axis along the surface normal, less what a changing tilt does at each point, in first order.
+ *
+ * @return as gm_mesh_evaluate_at(), and GM_POSE_OUT_OF_MESH; GM_STATE_OUT_OF_RANGE for rates too
+ *
+ * Cost: some 1000 instructions more for a pose; docs/performance.md.
+ */
+GM_API int gm_mesh_evaluate_posed(const gm_mesh *mesh, const gm_motion *motion, int wanted,
+                                  gm_workspace *workspace, gm_mesh_result *result);
+
+/**
+ * A gear as a rigid body, in any right-handed frame common to both gears. The reference point is the middle of the gear's
+ * own face on its own axis. The body's z axis is that axis. At angle 0 and as drawn, the axes of both bodies are those of
+ * the file comment: x from the pinion to the wheel (to a ring's pitch point); pinion tooth 0 and a wheel tooth space then stand on the centre line
+ * in the section of the pinion's face I (z = 0), half a face width before the pinion's reference point.
+ */
+typedef struct gm_body {
+    double position[3]; /**< of the reference point (m) */
+    double rotation
+        [9]; /**< from the body's axes to the common frame, row by row: v_common = R v_body */
+    double velocity[3];         /**< of the reference point (m/s) */
+    double angular_velocity[3]; /**< in the common frame (rad/s) */
+} gm_body;
+
+/** What acts on a body at its reference point, in the common frame. */
+typedef struct gm_load {
+    double force[3];  /**< (N) */
+    double moment[3]; /**< (N m) */
+} gm_load;
+
+/**
+ * The mesh between two bodies: force and moment on each. Whole turns need not be known, and teeth may be assembled in any
+ * pairing: x is the one within half a base pitch, and the tables of the teeth that meet there are used. No state is kept.
+ *
+ * Both loads are in balance with each other, whatever the motion. Their power is that of the flanks, -(dU/dt + damping
+ * loss), less three things: flanks that leave at a tip with some overlap take its energy along; deviations that change
+ * along the way of contact do work on the rotation; and between tilted axes the force keeps the pinion's normal, so that
+ * the power is open by the order of tilt times force times speed.
+ *
+ * @param[in]     mesh       the mesh
+ * @param[in]     pinion     the pinion
+ * @param[in]     wheel      the wheel
+ * @param[in]     wanted     a sum of enum gm_wanted; the wrench comes in any case
+ * @param[in,out] workspace  as gm_mesh_evaluate()
+ * @param[out]    result     in the mesh frame, see gm_motion_of_bodies(); NaN on an error
+ * @param[out]    on_pinion  load on the pinion; NaN on an error
+ * @param[out]    on_wheel   load on the wheel; NaN on an error
+ * @return as gm_mesh_evaluate_posed(); GM_STATE_OUT_OF_RANGE too if a matrix is no rotation (columns off by more than
+ *         1e-3), GM_POSE_OUT_OF_MESH if the wheel's point is on the pinion's axis or an axis points the other way
+ */
+GM_API int gm_mesh_evaluate_bodies(const gm_mesh *mesh, const gm_body *pinion, const gm_body *wheel,
+                                   int wanted, gm_workspace *workspace, gm_mesh_result *result,
+                                   gm_load *on_pinion, gm_load *on_wheel);
+
+/**
+ * The motion of two bodies as the mesh sees it. The mesh frame has z along the pinion's axis and x towards the
+ * wheel, or away from a ring's axis, so that gm_pose.offset and its rate are 0.
+ *
+ * @param[in]  mesh    the mesh
+ * @param[in]  pinion  the pinion
+ * @param[in]  wheel   the wheel
+ * @param[out] motion  in the mesh frame; NaN on an error
+ * @param[out] frame   from the mesh frame to the common one, row by row; NaN on an error. May be NULL
+ * @return as gm_mesh_evaluate_bodies()
+ */
+GM_API int gm_motion_of_bodies(const gm_mesh *mesh, const gm_body *pinion, const gm_body *wheel,
+                               gm_motion *motion, double frame[9]);
+
 /** Stiffness of what touches in a result: K times the touching part of the face width, all pairs and both sides (N/m).
  *  NaN for NULL. */
 GM_API double gm_mesh_touching_stiffness(const gm_mesh *mesh, const gm_mesh_result *result);
