@@ -188,8 +188,11 @@ def named_turns(order, gears, width):
 # ----------------------------------------------------------------------------------------------------
 
 
-def rim_values(known, asked, edge, letters=87, levels=3):
-    """Variables of rim.gp: names above a picture that reaches up to an order and is so many letters wide."""
+def rim_values(known, asked, edge, scale=1.0, letters=87, levels=3):
+    """Variables of rim.gp: names above a picture that reaches up to an order and is so many letters wide.
+
+    `scale` is what the axis of the picture says at order 1, where it does not tell orders.
+    """
     named = [(float(line.order), line.name) for line in known
              if not line.is_sideband and line.kind in ("mesh", "ghost", "planet") and line.order <= edge]
     named += [(float(order), name_of(float(order), known, 1e-6)) for order in asked
@@ -203,8 +206,8 @@ def rim_values(known, asked, edge, letters=87, levels=3):
         level = next((i for i, end in enumerate(ends) if order - half > end), None)
         if level is not None:
             ends[level] = order + half
-            values.update({f"rim_at_{count}": order, f"rim_text_{count}": text, f"rim_level_{count}": level})
+            values.update({f"rim_at_{count}": scale * order, f"rim_text_{count}": text, f"rim_level_{count}": level})
             count += 1
     for kind in ("pinion", "wheel", "hunting"):
-        values[f"{kind}_orders"] = [float(line.order) for line in known if line.kind == kind and line.order <= edge]
+        values[f"{kind}_orders"] = [scale * float(line.order) for line in known if line.kind == kind and line.order <= edge]
     return {**values, "rim_lines": count}

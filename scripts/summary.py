@@ -147,10 +147,10 @@ class Tracks:
     """Tracked tooth orders of a column of a run."""
 
     def __init__(self, run, orders):
+        self.run, self.orders = run, orders
         self.frames = tracking.frames_of(run, tracking.fitting_turns(run))
-        over_angle = tracking.OverAngle(run)
-        self.orders = orders
-        self.amplitude = tracking.tracked(self.frames, over_angle, np.array(orders, dtype=float))
+        self.over_angle = tracking.OverAngle(run)
+        self.amplitude = tracking.tracked(self.frames, self.over_angle, np.array(orders, dtype=float))
         turn = run.angle_rad / (2.0 * np.pi)
         ends = np.searchsorted(turn, (self.frames.start, self.frames.start + self.frames.turns)).T
         self.peak_to_peak = np.array([np.ptp(run.force_N[first:last]) for first, last in ends])

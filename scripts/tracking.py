@@ -227,17 +227,22 @@ class Map:
         self.order, self.row, self.row_range, self.power, self.over_time = order, row, row_range, power, over_time
 
 
-def order_map(frames, order, power, over_time, rows=330):
-    """Mean power of the frames of each row; a row between two that have frames is interpolated."""
+def order_map(frames, order, power, over_time, rows=330, limits=None):
+    """Mean power of the frames of each row, from the lowest speed (or time) to the highest, or between limits.
+
+    A row without a frame is that of the nearest one that has some.
+    """
     run = frames.run
     along = frames.time_s if over_time else frames.speed_rpm
     whole = run.time_s if over_time else run.speed_rpm
     low, high = (float(whole.min()), float(whole.max())) if over_time else (float(along.min()), float(along.max()))
+    low, high = limits or (low, high)
     if high <= low:
         low, high = low - 0.5, high + 0.5
     rows = max(1, min(rows, len(along) // 2))
-    row_of = np.clip(((along - low) / (high - low) * rows).astype(int), 0, rows - 1)
-    filled = np.unique(row_of)
+    row_of = np.floor((along - low) / (high - low) * rows)
+    row_of = np.where(along == high, rows - 1, row_of).astype(int)
+    filled = np.unique(row_of[(row_of >= 0) & (row_of < rows)])
     mean = np.array([mean_power(power[row_of == row]) for row in filled])
     middles = low + (np.arange(rows) + 0.5) * (high - low) / rows
     nearest = np.abs(np.arange(rows)[:, None] - filled).argmin(axis=1)

@@ -79,7 +79,7 @@ def run_text(rows=None):
     return HEAD + ",".join(COLUMNS) + "\n" + file.getvalue()
 
 
-NAMES = ("campbell", "flanks", "harris", "orders", "relief")  # those that draw
+NAMES = ("campbell", "flanks", "harris", "orders", "plot", "relief")  # those that draw
 
 
 class Case(unittest.TestCase):

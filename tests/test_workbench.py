@@ -1,0 +1,219 @@
+#!/usr/bin/env python3
+# SPDX-FileCopyrightText: The gearmesh authors
+# SPDX-License-Identifier: BSD-3-Clause
+"""scripts/summary and scripts/plot: of runs whose numbers are known."""
+import json
+import os
+import sys
+import tempfile
+import unittest
+from unittest import mock
+
+sys.dont_write_bytecode = True
+sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), os.pardir, "scripts"))
+import program  # noqa: E402
+
+program.require("numpy", "scipy")
+
+import numpy as np  # noqa: E402
+
+import pictures  # noqa: E402
+import script_case  # noqa: E402
+import tracking  # noqa: E402
+
+HEAD = "# gearsim 0.0.0\n# gears.pinion_teeth = 23\n# gears.wheel_teeth = -71\n"
+RATE_HZ = 4096.0
+
+
+class Case(unittest.TestCase):
+    """Runs in a folder of their own."""
+
+    def setUp(self):
+        folder = tempfile.TemporaryDirectory()
+        self.addCleanup(folder.cleanup)
+        self.folder = folder.name
+        few = mock.patch.object(tracking, "POINTS", 100)
+        few.start()
+        self.addCleanup(few.stop)
+
+    def write(self, name, head, columns):
+        with open(os.path.join(self.folder, name), "w", encoding="ascii") as file:
+            file.write(head + ",".join(columns) + "\n")
+            np.savetxt(file, np.column_stack(list(columns.values())), "%.10g", ",")
+
+    def call(self, *arguments):
+        result = script_case.call(*arguments, folder=self.folder)
+        self.assertEqual((result.returncode, result.stderr), (0, ""))
+        return result.stdout
+
+    def run_up(self, **changed):
+        """600 to 2400 rpm in 2 s: order 23 passes 700 Hz at 1826 rpm; 3 % of the rows without contact."""
+        time_s = np.arange(int(2 * RATE_HZ)) / RATE_HZ
+        angle_rad = (600.0 * time_s + 450.0 * time_s**2) * np.pi / 30.0
+        pairs = np.where(np.arange(len(time_s)) % 100 < 3, 0, 2)
+        columns = {
+            "time_s": time_s, "pinion_speed_rpm": 600.0 + 900.0 * time_s, "pinion_angle_rad": angle_rad,
+            "dte_um": -60.0 + 1.5 * np.cos(23 * angle_rad), "pairs_in_contact": pairs,
+            "contact_force_N": 300.0 + 50.0 * np.cos(23 * angle_rad + 1.0) + 8.0 * np.cos(46 * angle_rad),
+        }
+        return {name: values for name, values in {**columns, **changed}.items() if values is not None}
+
+    def static(self, positions=100, cycles=1, loads=(100.0, 200.0)):
+        """TE of two harmonics, twice as large under the second load."""
+        mesh = np.arange(positions) * cycles / positions
+        curve_um = 0.4 * np.cos(2 * np.pi * mesh) + 0.1 * np.sin(4 * np.pi * mesh + 1.0)
+        return {
+            "pinion_angle_rad": np.tile(2 * np.pi * mesh / 23, len(loads)),
+            "te_um": np.concatenate([(i + 1) * curve_um for i in range(len(loads))]),
+            "mesh_stiffness_N_per_um": np.full(positions * len(loads), 400.0),
+            "load_torque_Nm": np.repeat(loads, positions),
+        }
+
+
+class Summaries(Case):
+    def summary(self, *arguments):
+        return self.call("summary", *arguments)
+
+    def test_a_run_up(self):
+        self.write("a.csv", HEAD + "# eigenfrequency_Hz = 700\n# output.oversampling = 1\n", self.run_up())
+        one = json.loads(self.summary("a.csv", "--json"))[0]
+        self.assertEqual((one["kind"], one["gears"]["wheel_teeth"], len(one["warnings"])), ("dynamic", 71, 1))
+        first, second, third, _ = one["resonances"]
+        self.assertAlmostEqual(first["crosses_at"]["value"], 60 * 700 / 23, delta=0.01)
+        self.assertAlmostEqual(first["value"], 50.0, delta=0.5)
+        self.assertAlmostEqual(second["value"], 8.0, delta=0.1)
+        self.assertIsNone(third["value"])  # at 609 rpm, too near to the start
+        self.assertIn("frames of the run go from", third["why"])
+        self.assertAlmostEqual(one["force"]["contact_lost"]["value"], 3.0, delta=0.05)
+        self.assertAlmostEqual(one["force"]["mean"]["value"], 300.0, delta=0.5)
+        self.assertAlmostEqual(one["te_peak_to_peak"]["value"], 3.0, delta=0.03)
+        self.assertAlmostEqual(one["te_orders"][0]["value"], 1.5, delta=0.02)
+        text = self.summary("a.csv")
+        self.assertRegex(text, r"order 23 \(mesh 1\) crosses the resonance at 1826 rpm: (50|50\.\d+|49\.\d+) N")
+        self.assertIn("contact lost 3", text)
+        self.assertIn("warning: oversampling = 1", text)
+
+    def test_what_is_no_number_says_why(self):
+        self.write("a.csv", HEAD, self.run_up(dte_um=None, pairs_in_contact=None))
+        one = json.loads(self.summary("a.csv", "--json"))[0]
+        for place, why in ((one["gears"]["eigenfrequency"], "head of the run"), (one["resonances"][0], "no eigenfrequency"),
+                           (one["force"]["contact_lost"], "pairs_in_contact"), (one["te_peak_to_peak"], "dte_um"),
+                           (one["te_orders"][1], "dte_um")):
+            self.assertIsNone(place["value"])
+            self.assertIn(why, place["why"])
+        self.assertIn("transmission error: no number (the run has no column dte_um)", self.summary("a.csv"))
+        # A pinion that does not turn: forces, but no orders.
+        still = self.run_up()
+        still["pinion_speed_rpm"], still["pinion_angle_rad"] = 0 * still["time_s"], 0 * still["time_s"]
+        self.write("still.csv", HEAD, still)
+        self.assertIn("tooth orders of the force: no number (the pinion stands still)", self.summary("still.csv"))
+
+    def test_static_runs(self):
+        for cycles in (1, 23):
+            self.write("s.csv", HEAD, self.static(100 * cycles, cycles))
+            one = json.loads(self.summary("s.csv", "--json"))[0]
+            self.assertEqual([load["load"]["value"] for load in one["loads"]], [100, 200])
+            for factor, load in enumerate(one["loads"], start=1):
+                found = [value["value"] for value in load["te_harmonics"]]
+                np.testing.assert_allclose(found, [0.4 * factor, 0.1 * factor, 0, 0], atol=1e-6)
+                self.assertEqual(load["mesh_stiffness_N_per_um"]["value"], 400.0)
+
+    def test_a_part_of_a_mesh_cycle_has_no_harmonics(self):
+        self.write("s.csv", HEAD, self.static(100, 0.7))
+        self.assertIn("its harmonics: no number (the rows do not hold whole mesh cycles", self.summary("s.csv"))
+
+    def test_broken_runs_are_refused(self):
+        self.write("a.csv", "# gearsim\n", self.run_up())
+        for name, message in (("a.csv", "no gears.pinion_teeth"), ("nowhere.csv", "nowhere.csv")):
+            result = script_case.call("summary", name, folder=self.folder)
+            self.assertEqual(result.returncode, 2)
+            self.assertIn(message, result.stderr)
+
+
+class Pictures(Case):
+    """What gnuplot is given."""
+
+    def result(self, columns, head=HEAD + "# eigenfrequency_Hz = 700\n", name="a.csv"):
+        self.write(name, head, columns)
+        return pictures.Result(os.path.join(self.folder, name))
+
+    def data(self, name):
+        return np.loadtxt(os.path.join(self.folder, name))
+
+    def test_static_curves_and_their_harmonics(self):
+        result = self.result(self.static())
+        _, values = pictures.static_curves(result, self.folder)
+        self.assertEqual((values["curves"], values["panels"], values["label_1"]), (2, 2, "200 N m"))
+        np.testing.assert_allclose(self.data("static.dat")[:, 1], result.columns["te_um"], atol=1e-7)
+        np.testing.assert_allclose(self.data("static.dat")[:100, 0], np.arange(100) / 100, atol=1e-7)
+        pictures.static_harmonics(result, self.folder)
+        np.testing.assert_allclose(self.data("harmonics.dat")[:, 2:4], [[0.4, 0.1], [0.8, 0.2]], atol=1e-6)
+        self.assertIsNone(pictures.static_harmonics(self.result(self.static(100, 0.7)), self.folder))
+
+    def test_flanks_that_touch_are_told_apart(self):
+        """Force on one flank, on none, on the other one, by turns; the rate is that of the transmission error."""
+        columns = self.run_up()
+        third = np.arange(len(columns["time_s"])) % 3
+        columns["contact_force_N"] = np.choose(third, [300.0, 0.0, -50.0])
+        columns["pairs_in_contact"] = np.choose(third, [2, 0, 1])
+        columns["dte_um"] = 1e6 * 0.02 * columns["time_s"]
+        _, values = pictures.time_signal(self.result(columns), self.folder, 1500.0)
+        table = self.data("signal.dat")
+        np.testing.assert_array_equal(table[:, 4], np.where(table[:, 1] > 0, 1, np.where(table[:, 1] < 0, 2, 0)))
+        np.testing.assert_allclose(table[:, 3], 20.0, rtol=1e-3)  # mm/s
+        self.assertAlmostEqual(table[-1, 0], 1e3 * 16 / 23 / 25, delta=1.0)  # 16 of 23 teeth at 25 turns a second
+        self.assertRegex(values["share_text"], r"3\d\.?\d* % without contact, 3\d\.?\d* % on the other flank")
+
+    def test_one_turn_and_its_spectrum(self):
+        result = self.result(self.run_up())
+        pictures.one_turn(result, self.folder, 1500.0)
+        turn = self.data("turn.dat")
+        self.assertAlmostEqual(turn[-1, 0], 23.0, delta=0.3)
+        self.assertAlmostEqual(np.ptp(turn[:, 2]), 3.0, delta=0.15)
+        _, values = pictures.spectrum(result, self.folder, 1500.0)
+        frequency_Hz, amplitude_N = self.data("spectrum.dat").T
+        loudest = amplitude_N.argmax()
+        self.assertAlmostEqual(frequency_Hz[loudest], 23 * 25, delta=6)
+        self.assertAlmostEqual(amplitude_N[loudest], 50.0, delta=0.5)
+        self.assertEqual(values["rim_text_0"], "23 mesh 1")
+        self.assertAlmostEqual(values["rim_at_0"], 23 * 25, delta=6)
+
+    def test_a_run_of_twice_the_force_is_6_dB_over_the_other(self):
+        columns = self.run_up()
+        one = self.result(columns)
+        twice = self.result({**columns, "contact_force_N": 2 * columns["contact_force_N"]}, name="b.csv")
+        _, values = pictures.difference([one, twice], self.folder)
+        level_dB = np.fromfile(os.path.join(self.folder, "difference.bin"), "<f4").reshape(values["rows"], values["columns"])
+        at = int(23 / values["order_step"])
+        np.testing.assert_allclose(level_dB[:, at], 20 * np.log10(2.0), atol=0.05)
+        self.assertLess(np.abs(level_dB[:, int(35 / values["order_step"])]).max(), 0.1)
+        _, values = pictures.comparison([one, twice], self.folder)
+        np.testing.assert_allclose(self.data("run_1.dat")[:, 1], 2 * self.data("run_0.dat")[:, 1], rtol=1e-6)
+        self.assertEqual(values["panel_1"], "order 46, mesh 2")
+
+    def test_all_pictures_are_drawn(self):
+        self.write("it's.csv", HEAD, self.run_up())
+        self.write("b.csv", HEAD, self.run_up())
+        self.write("s.csv", HEAD, self.static())
+        for arguments, names in ((["it's.csv", "--at", "1500"], ("it's_signal", "it's_turn", "it's_spectrum")),
+                                 (["s.csv"], ("s_static", "s_harmonics")),
+                                 (["it's.csv", "b.csv", "--output", "c"], ("c_compare", "c_difference"))):
+            self.call("plot", *arguments)
+            for name in names:
+                for suffix, begin in (("png", b"\x89PNG"), ("svg", b"<?xml"), ("pdf", b"%PDF")):
+                    with open(os.path.join(self.folder, f"{name}.{suffix}"), "rb") as file:
+                        self.assertEqual(file.read(len(begin)), begin)
+
+    def test_what_cannot_be_drawn_is_said(self):
+        self.write("a.csv", HEAD, self.run_up())
+        self.write("s.csv", HEAD, self.static())
+        self.write("t.csv", HEAD.replace("23", "24"), self.run_up())
+        for arguments, message in ((["a.csv", "--at", "9000"], "--at: must be"), (["a.csv", "s.csv"], "must be dynamic"),
+                                   (["a.csv", "t.csv"], "same number of teeth"), (["nowhere.csv"], "nowhere.csv")):
+            result = script_case.call("plot", *arguments, folder=self.folder)
+            self.assertEqual(result.returncode, 2)
+            self.assertIn(message, result.stderr)
+
+
+if __name__ == "__main__":
+    unittest.main()
