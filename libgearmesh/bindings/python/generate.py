@@ -33,6 +33,8 @@ def declared(struct, types):
 
 def parameter_type(header):
     def type_of(field):
+        if field.pointers:
+            return "ArrayLike"
         if field.enum in header.enums:
             return f"Union[int, Literal[{', '.join(repr(name) for name in short_names(header.enums[field.enum]))}]]"
         return PARAMETERS.get(field.type, {"int": "int"}.get(field.type, "float"))
@@ -61,7 +63,7 @@ def short_names(enum):
 def records(header):
     parts = ['"""Parameters and results with their documentation. Generated from gearmesh.h."""',
              "from __future__ import annotations", "import dataclasses",
-             "from typing import Literal, TypedDict, Union", "import numpy as np", "from numpy.typing import NDArray"]
+             "from typing import Literal, TypedDict, Union", "import numpy as np", "from numpy.typing import ArrayLike, NDArray"]
     for name, title in PARAMETERS.items():
         parts.append(f"\nclass {title}(TypedDict, total=False):\n{declared(header.structs[name], parameter_type(header))}")
     for name, title in RECORDS.items():

@@ -35,8 +35,8 @@ static int evaluate_offsets(const gm_mesh *mesh, size_t count, const double *coo
 }
 
 /* loads: [count][2] pinion angle (rad), torque on the wheel (N m). */
-static int solve_static(const gm_mesh *mesh, size_t count, const double *loads, gm_workspace *workspace,
-                        double *offsets, gm_mesh_result *results) {
+static int solve_static(const gm_mesh *mesh, size_t count, const double *loads,
+                        gm_workspace *workspace, double *offsets, gm_mesh_result *results) {
     const gm_pair *pair = gm_mesh_pair(mesh);
     const double r_bp = pair->pinion.base_radius;
     const double r_bw = pair->wheel.base_radius;

@@ -166,6 +166,25 @@ def test_pose_of_the_mesh_shifts_the_error_as_an_involute_does(pair):
     assert difference == pytest.approx(change * np.sin(pair.working_pressure_angle), rel=1e-2)
 
 
+def test_elastic_teeth_have_a_workspace_in_every_thread(pair):
+    mesh = gearmesh.Mesh(pair, law="elastic", stations=5)
+    angle = np.linspace(0, 0.14, 8)
+    static = mesh.static(angle, 20.0)
+    # The torque of elastic teeth is that of the force on the base circle, as there is no friction.
+    assert static.result.wheel_torque == pytest.approx(20.0, rel=1e-6)
+    found = []
+    thread = threading.Thread(target=lambda: found.append(mesh.static(angle, 20.0).offset))
+    thread.start()
+    thread.join()
+    assert found[0] == pytest.approx(static.offset, abs=1e-12)
+
+    # Teeth of half the stiffness give way more, and they are one array for each gear.
+    soft = gearmesh.Mesh(pair, law="elastic", stations=5, pinion_tooth_stiffness=np.full(45, 0.5))
+    assert (soft.static(angle, 20.0).offset > static.offset).all()
+    with pytest.raises(gearmesh.Error, match=r"wheel_tooth_stiffness: must have the shape \[41\] \(got \[45\]\)"):
+        gearmesh.Mesh(pair, law="elastic", wheel_tooth_stiffness=np.ones(45))
+
+
 def test_result_outlives_mesh_and_can_be_pickled(pair):
     result = gearmesh.Mesh(pair, **LAW).evaluate([1.25e-3, 1.3e-3], 0.0)
     assert pickle.loads(pickle.dumps(result)).force == pytest.approx(result.force, rel=0)

@@ -7,6 +7,7 @@ from collections.abc import Mapping
 from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from ._gearmesh import ffi, lib
 from ._records import ENUM_FIELDS, ENUMS
@@ -38,24 +39,30 @@ def enum_value(enum: str, value: Any) -> int:
     return ENUMS[enum][value]
 
 
-def fill(struct: Any, values: Mapping[str, Any]) -> None:
-    """Sets fields of a struct; a struct within it takes a dict."""
+def fill(struct: Any, values: Mapping[str, Any]) -> dict[str, NDArray[np.float64]]:
+    """Sets fields of a struct; a struct within it takes a dict. Returns the arrays that it points to, by their names: they
+    have to live as long as it is used."""
     kind = ffi.typeof(struct)
     kind = kind.item if kind.kind == "pointer" else kind
     fields = dict(kind.fields)
     enums = ENUM_FIELDS.get(kind.cname.split()[-1], {})
+    arrays = {}
     for name, value in values.items():
         if name not in fields:
             raise Error(f"{name}: no such parameter; there are {', '.join(fields)}")
         if isinstance(value, Mapping):
-            fill(getattr(struct, name), value)
+            arrays.update(fill(getattr(struct, name), value))
             continue
         try:
+            if fields[name].type.kind == "pointer":
+                arrays[name] = np.array(value, dtype=float, ndmin=1)
+                value = ffi.cast("double *", arrays[name].ctypes.data)
             setattr(struct, name, enum_value(enums[name], value) if name in enums else value)
         except Error as error:
             raise Error(f"{name}: {error}") from None
-        except (TypeError, OverflowError) as error:
+        except (TypeError, ValueError, OverflowError) as error:
             raise Error(f"{name}: must be a number in the range of its type (got {value!r})") from error
+    return arrays
 
 
 def refusal(check: Any, struct: Any, status: int) -> Error:

@@ -3,6 +3,7 @@
 """The mesh: force, derivatives and wrench for one state or for many."""
 from __future__ import annotations
 
+import threading
 from collections.abc import Iterable
 from typing import TYPE_CHECKING, Any, Literal, NamedTuple, Union
 
@@ -45,13 +46,18 @@ class Mesh:
                  **parameters: Unpack[_records.MeshParameters]):
         struct = ffi.new("gm_mesh_params *")
         lib.gm_mesh_params_default(struct)
-        fill(struct, parameters)
+        arrays = fill(struct, parameters)
+        for name, array in arrays.items():
+            teeth = (pair.pinion if name.startswith("pinion") else pair.wheel).teeth
+            if array.shape != (teeth,):
+                raise Error(f"{name}: must have the shape [{teeth}] (got {list(array.shape)})")
         if lib.gm_mesh_params_check(struct, ffi.NULL, ffi.NULL) != lib.GM_OK:
             raise refusal(lib.gm_mesh_params_check, struct, lib.GM_ERR_PARAMETER)
 
-        # The mesh refers to the flanks and lies in memory of ours: both live as long as it does.
+        # The mesh refers to flanks and arrays and lies in memory of ours: all of it lives as long as it does.
         self.pair = pair
         self._flanks = (pinion_flanks, wheel_flanks)
+        self._arrays = arrays
         size = lib.gm_mesh_size(struct, pair._struct)
         self._memory = doubles(size)
         mesh = ffi.new("gm_mesh **")
@@ -60,6 +66,7 @@ class Mesh:
         if status != lib.GM_OK:
             raise Error(status_text(status))
         self._struct = mesh[0]
+        self._of_thread = threading.local()
 
     def evaluate(self, pinion_angle: ArrayLike, wheel_angle: ArrayLike, pinion_speed: ArrayLike = 0.0,
                  wheel_speed: ArrayLike = 0.0, *, want: str | Iterable[str] = (), **state: ArrayLike) -> MeshResult:
@@ -106,7 +113,7 @@ class Mesh:
         shape = loads.shape[:-1]
         offsets = np.empty(shape)
         results = np.empty(shape, RESULT)
-        status = lib.solve_static(self._struct, offsets.size, _pointer("double *", loads), ffi.NULL,
+        status = lib.solve_static(self._struct, offsets.size, _pointer("double *", loads), self._workspace(),
                                   _pointer("double *", offsets), _pointer("gm_mesh_result *", results))
         _check(status)
         return StaticResult(offsets[()], _shown(results))
@@ -129,11 +136,22 @@ class Mesh:
         """Likewise (N s/m)."""
         return float(lib.gm_mesh_mean_damping(self._struct))
 
+    def _workspace(self) -> Any:
+        """What an iterative law needs, one for each thread; NULL where the law needs none."""
+        size = lib.gm_workspace_size(self._struct)
+        if size == 0:
+            return ffi.NULL
+        if not hasattr(self._of_thread, "workspace"):
+            memory, workspace = doubles(size), ffi.new("gm_workspace **")
+            _check(lib.gm_workspace_init(workspace, self._struct, memory, size))
+            self._of_thread.memory, self._of_thread.workspace = memory, workspace[0]
+        return self._of_thread.workspace
+
     def _evaluate(self, loop: Any, kind: str, given: NDArray[Any], shape: tuple[int, ...],
                   want: Union[str, Iterable[str]]) -> MeshResult:
         wanted = sum({enum_value("gm_wanted", name) for name in ([want] if isinstance(want, str) else want)})
         results = np.empty(shape, RESULT)
-        status = loop(self._struct, results.size, _pointer(kind, given), wanted, ffi.NULL,
+        status = loop(self._struct, results.size, _pointer(kind, given), wanted, self._workspace(),
                       _pointer("gm_mesh_result *", results))
         _check(status)
         return _shown(results)

@@ -1,0 +1,442 @@
+/* SPDX-FileCopyrightText: The gearmesh authors */
+/* SPDX-License-Identifier: BSD-3-Clause */
+#include "model.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+static int failed(fmu_instance *instance, const char *reason) {
+    if (reason != instance->message) {
+        snprintf(instance->message, sizeof instance->message, "%s", reason);
+    }
+    instance->log(instance, instance->message);
+    return -1;
+}
+
+void fmu_defaults(fmu_values *values) {
+    memset(values, 0, sizeof *values);
+    gm_pair_params_default(&values->pair);
+    gm_mesh_params_default(&values->mesh);
+
+    /* What a drawing has to give is that of the paper's gears, so that the FMU runs as it is. */
+    values->pair.pinion_teeth = 45;
+    values->pair.wheel_teeth = 41;
+    values->pair.normal_module = 1.65e-3;
+    values->pair.normal_pressure_angle = 0.27925268031909273;
+    values->pair.helix_angle = 0.57595865315812877;
+    values->pair.center_distance = 0.085;
+    values->pair.face_width = 0.0175;
+    values->pair.backlash = 100e-6;
+    values->mesh.stiffness = 1.05e8;
+    values->mesh.damping = 844.361;
+    values->pinion_inertia = 2.1e-3;
+    values->wheel_inertia = 2.1e-3;
+    values->tolerance = 1e-6;
+}
+
+static char *copy_of(const char *text) {
+    char *copy = malloc(strlen(text) + 1);
+    return copy != NULL ? strcpy(copy, text) : NULL;
+}
+
+fmu_instance *fmu_new(const char *name, const char *resources) {
+    fmu_instance *instance = calloc(1, sizeof *instance);
+    if (instance == NULL) {
+        return NULL;
+    }
+    fmu_defaults(&instance->values);
+    instance->name = copy_of(name);
+    instance->resources = copy_of(resources);
+    if (instance->name == NULL || instance->resources == NULL) {
+        fmu_free(instance);
+        return NULL;
+    }
+    return instance;
+}
+
+/* What follows from the parameters is forgotten. */
+static void discard(fmu_instance *instance) {
+    fmu_integrator_free(instance->integrator);
+    instance->integrator = NULL;
+    for (int gear = 0; gear < 2; ++gear) {
+        gm_flanks_free(instance->flanks[gear]);
+        instance->flanks[gear] = NULL;
+    }
+    free(instance->memory);
+    instance->memory = NULL;
+    free(instance->workspace_memory);
+    instance->workspace_memory = NULL;
+    instance->workspace = NULL;
+    instance->is_prepared = 0;
+    instance->is_evaluated = 0;
+}
+
+void fmu_free(fmu_instance *instance) {
+    if (instance == NULL) {
+        return;
+    }
+    discard(instance);
+    free(instance->name);
+    free(instance->resources);
+    free(instance);
+}
+
+void fmu_reset(fmu_instance *instance) {
+    discard(instance);
+    fmu_defaults(&instance->values);
+}
+
+/* ---------------------------------------------------------------------------------------------
+ * Preparation
+ * ------------------------------------------------------------------------------------------- */
+
+/* A parameter that the library refuses. */
+static int refused(fmu_instance *instance, int status, const char *field, const char *requirement) {
+    if (field == NULL) {
+        return failed(instance, gm_status_text(status));
+    }
+    snprintf(instance->message, sizeof instance->message, "%s: must be %s", field, requirement);
+    return failed(instance, instance->message);
+}
+
+/* Flanks of a gear from its two files, which lie in the resources unless the path is absolute; ideal without. */
+static int load_flanks(fmu_instance *instance, const gm_pair *pair, int gear) {
+    char path[2][2 * TEXT_SIZE];
+    for (int file = 0; file < 2; ++file) {
+        const char *given = instance->values.text[2 * gear + file];
+        const int is_absolute =
+            given[0] == '/' || given[0] == '\\' || (given[0] != '\0' && given[1] == ':');
+        const int length =
+            snprintf(path[file], sizeof path[file], "%s%s",
+                     is_absolute || given[0] == '\0' ? "" : instance->resources, given);
+        if (length < 0 || length >= (int)sizeof path[file]) {
+            return failed(instance, "the path of a file of flanks is too long");
+        }
+    }
+    if (path[0][0] == '\0' && path[1][0] == '\0') {
+        return 0;
+    }
+
+    const gm_gear *drawn = gear == GM_PINION ? &pair->pinion : &pair->wheel;
+    gm_deviations deviations = {0};
+    gm_pitch pitch = {0};
+    gm_flanks_options options;
+    gm_io_error error;
+    gm_flanks_options_default(&options);
+    options.normal_factor = pair->normal_to_transverse;
+    int status = GM_IO_OK;
+    if (path[0][0] != '\0') {
+        status = gm_deviations_read(&deviations, path[0], drawn->teeth, &error);
+    }
+    if (status == GM_IO_OK && path[1][0] != '\0') {
+        status = gm_pitch_read(&pitch, path[1], drawn->teeth, &error);
+    }
+    if (status == GM_IO_OK) {
+        status = gm_flanks_build(&instance->flanks[gear], drawn->teeth,
+                                 path[0][0] != '\0' ? &deviations : NULL,
+                                 path[1][0] != '\0' ? &pitch : NULL, &options, NULL, &error);
+    }
+    gm_deviations_free(&deviations);
+    gm_pitch_free(&pitch);
+    if (status != GM_IO_OK) {
+        snprintf(instance->message, sizeof instance->message, "%s:%ld: %s", error.file, error.line,
+                 error.text);
+        return failed(instance, instance->message);
+    }
+    return 0;
+}
+
+static int prepare_workspace(fmu_instance *instance) {
+    const size_t size = gm_workspace_size(instance->mesh);
+    if (size > 0) {
+        instance->workspace_memory = malloc(size);
+        if (instance->workspace_memory == NULL) {
+            return failed(instance, "out of memory");
+        }
+        const int status = gm_workspace_init(&instance->workspace, instance->mesh,
+                                             instance->workspace_memory, size);
+        if (status != GM_OK) {
+            return failed(instance, gm_status_text(status));
+        }
+    }
+    instance->is_prepared = 1;
+    return 0;
+}
+
+static int prepare(fmu_instance *instance) {
+    const fmu_values *values = &instance->values;
+    discard(instance);
+
+    /* The parameters, each by its name. */
+    const char *field = NULL;
+    const char *requirement = NULL;
+    gm_pair pair;
+    int status = gm_pair_init(&pair, &values->pair);
+    if (status != GM_OK) {
+        gm_pair_params_check(&values->pair, &field, &requirement);
+        return refused(instance, status, field, requirement);
+    }
+    status = gm_mesh_params_check(&values->mesh, &field, &requirement);
+    if (status != GM_OK) {
+        return refused(instance, status, field, requirement);
+    }
+    if (!(values->pinion_inertia > 0.0) || !(values->wheel_inertia > 0.0)) {
+        return failed(instance, "pinion_inertia, wheel_inertia: must be above 0");
+    }
+    if (!(values->tolerance >= 1e-14 && values->tolerance <= 0.1)) {
+        return failed(instance, "relative_tolerance: must be 1e-14 .. 0.1");
+    }
+
+    if (load_flanks(instance, &pair, GM_PINION) != 0 ||
+        load_flanks(instance, &pair, GM_WHEEL) != 0) {
+        return -1;
+    }
+    const size_t size = gm_mesh_size(&values->mesh, &pair);
+    instance->memory = malloc(size > 0 ? size : 1);
+    if (instance->memory == NULL) {
+        return failed(instance, "out of memory");
+    }
+    status = gm_mesh_init(&instance->mesh, &values->mesh, &pair, instance->flanks[GM_PINION],
+                          instance->flanks[GM_WHEEL], instance->memory, size);
+    if (status != GM_OK) {
+        return failed(instance, gm_status_text(status));
+    }
+    return prepare_workspace(instance);
+}
+
+/* ---------------------------------------------------------------------------------------------
+ * Evaluation
+ * ------------------------------------------------------------------------------------------- */
+
+/* The mesh at the values as they are; what the model says of them with its Jacobian unless that is NULL. */
+static int evaluate(fmu_instance *instance, fmu_jacobian *jacobian) {
+    if (!instance->is_prepared && prepare(instance) != 0) {
+        return -1;
+    }
+    const int status =
+        model.evaluate(&instance->values, instance->mesh, instance->workspace, jacobian);
+    if (status != GM_OK) {
+        failed(instance, gm_status_text(status));
+        return status;
+    }
+    instance->is_evaluated = 1;
+    return 0;
+}
+
+int fmu_evaluate(fmu_instance *instance) {
+    return instance->is_evaluated ? 0 : evaluate(instance, NULL);
+}
+
+int fmu_events(fmu_instance *instance) {
+    const int status = fmu_evaluate(instance);
+    fmu_values *values = &instance->values;
+    const int drive = values->indicator[GM_DRIVE] > 0.0;
+    const int coast = values->indicator[GM_COAST] > 0.0;
+    values->contact = drive && coast ? 2 : drive - coast;
+    return status;
+}
+
+static size_t size_of(int kind) {
+    return kind == KIND_REAL ? sizeof(double) : sizeof(int);
+}
+
+/* Address of a variable of that kind; NULL if there is none. */
+static void *address_of(fmu_instance *instance, unsigned reference, int kind) {
+    if (reference >= (unsigned)model.variable_count ||
+        (int)model.variables[reference].kind != kind) {
+        return NULL;
+    }
+    return (char *)&instance->values + model.variables[reference].offset;
+}
+
+static int get(fmu_instance *instance, unsigned reference, int kind, void *value) {
+    const void *address = address_of(instance, reference, kind);
+    if (address == NULL) {
+        return failed(instance, "there is no variable of this kind with this value reference");
+    }
+    const int role = (int)model.variables[reference].role;
+    const int is_computed =
+        role == ROLE_DERIVATIVE || role == ROLE_OUTPUT || role == ROLE_INDICATOR;
+    const int status = is_computed ? fmu_evaluate(instance) : 0;
+    memcpy(value, address, size_of(kind));
+    return status;
+}
+
+int fmu_get(fmu_instance *instance, const unsigned *references, size_t count, int kind,
+            void *values) {
+    int status = 0;
+    for (size_t k = 0; k < count && status == 0; ++k) {
+        status = get(instance, references[k], kind, (char *)values + k * size_of(kind));
+    }
+    return status;
+}
+
+static int set(fmu_instance *instance, unsigned reference, int kind, const void *value) {
+    void *address = address_of(instance, reference, kind);
+    if (address == NULL) {
+        return failed(instance, "there is no variable of this kind with this value reference");
+    }
+    const size_t size = size_of(kind);
+    const int role = (int)model.variables[reference].role;
+    if (role != ROLE_PARAMETER && role != ROLE_INPUT && role != ROLE_STATE &&
+        role != ROLE_STATE_OUTPUT) {
+        return failed(instance, "this variable cannot be set");
+    }
+
+    /* An input that stays what it was lets the integration go on. */
+    if (memcmp(address, value, size) != 0) {
+        memcpy(address, value, size);
+        instance->is_evaluated = 0;
+        fmu_integrator_free(instance->integrator);
+        instance->integrator = NULL;
+        if (role == ROLE_PARAMETER) {
+            instance->is_prepared = 0;
+        }
+    }
+    return 0;
+}
+
+int fmu_set(fmu_instance *instance, const unsigned *references, size_t count, int kind,
+            const void *values) {
+    int status = 0;
+    for (size_t k = 0; k < count && status == 0; ++k) {
+        status = set(instance, references[k], kind, (const char *)values + k * size_of(kind));
+    }
+    return status;
+}
+
+int fmu_get_texts(fmu_instance *instance, const unsigned *references, size_t count,
+                  const char **texts) {
+    for (size_t k = 0; k < count; ++k) {
+        texts[k] = address_of(instance, references[k], KIND_STRING);
+        if (texts[k] == NULL) {
+            return failed(instance, "there is no text with this value reference");
+        }
+    }
+    return 0;
+}
+
+static int set_text(fmu_instance *instance, unsigned reference, const char *text) {
+    char *address = address_of(instance, reference, KIND_STRING);
+    if (address == NULL || text == NULL) {
+        return failed(instance, "there is no text with this value reference");
+    }
+    if (strlen(text) >= TEXT_SIZE) {
+        return failed(instance, "the name of a file is too long");
+    }
+    memset(address, 0, TEXT_SIZE);
+    strcpy(address, text);
+    instance->is_prepared = 0;
+    instance->is_evaluated = 0;
+    return 0;
+}
+
+int fmu_set_texts(fmu_instance *instance, const unsigned *references, size_t count,
+                  const char *const *texts) {
+    int status = 0;
+    for (size_t k = 0; k < count && status == 0; ++k) {
+        status = set_text(instance, references[k], texts[k]);
+    }
+    return status;
+}
+
+void fmu_set_states(fmu_instance *instance, const double *states) {
+    memcpy(instance->values.state, states, (size_t)model.states * sizeof(double));
+    instance->is_evaluated = 0;
+}
+
+int fmu_save(const fmu_values *values, void **copy) {
+    if (*copy == NULL) {
+        *copy = malloc(sizeof *values);
+    }
+    if (*copy == NULL) {
+        return -1;
+    }
+    memcpy(*copy, values, sizeof *values);
+    return 0;
+}
+
+void fmu_nominals(double *nominals) {
+    for (int k = 0; k < model.variable_count; ++k) {
+        const fmu_variable *variable = &model.variables[k];
+        if (variable->role == ROLE_STATE || variable->role == ROLE_STATE_OUTPUT) {
+            nominals[(variable->offset - offsetof(fmu_values, state)) / sizeof(double)] =
+                variable->nominal;
+        }
+    }
+}
+
+void fmu_restore(fmu_instance *instance, const fmu_values *values) {
+    /* The mesh stays if the parameters, which stand first, are the same. */
+    if (memcmp(values, &instance->values, offsetof(fmu_values, time)) != 0) {
+        discard(instance);
+    }
+    fmu_integrator_free(instance->integrator);
+    instance->integrator = NULL;
+    instance->values = *values;
+    instance->is_evaluated = 0;
+}
+
+int fmu_step(fmu_instance *instance, double end) {
+    if (model.states > 0) {
+        if (!instance->is_prepared && prepare(instance) != 0) {
+            return -1;
+        }
+        const int status = fmu_integrate(instance, end);
+        if (status != 0) {
+            failed(instance, status > 0 ? gm_status_text(status) : "the integration failed");
+            return -1;
+        }
+    }
+    instance->values.time = end;
+    instance->is_evaluated = 0;
+    return fmu_events(instance) == 0 ? 0 : -1;
+}
+
+/* Row or column of the Jacobian that belongs to a variable; -1 = none. */
+static int place_of(unsigned reference, int is_row) {
+    if (reference >= (unsigned)model.variable_count) {
+        return -1;
+    }
+    const fmu_variable *variable = &model.variables[reference];
+    const size_t offset = variable->offset;
+    switch (variable->role) {
+    case ROLE_DERIVATIVE:
+        return is_row ? variable->state : -1;
+    case ROLE_OUTPUT:
+        return is_row
+                   ? model.states + (int)((offset - offsetof(fmu_values, output)) / sizeof(double))
+                   : -1;
+    case ROLE_STATE:
+    case ROLE_STATE_OUTPUT:
+        return is_row ? -1 : (int)((offset - offsetof(fmu_values, state)) / sizeof(double));
+    case ROLE_INPUT:
+        return is_row
+                   ? -1
+                   : model.states + (int)((offset - offsetof(fmu_values, input)) / sizeof(double));
+    default:
+        return -1;
+    }
+}
+
+int fmu_directional(fmu_instance *instance, const unsigned *unknown, size_t unknown_count,
+                    const unsigned *known, size_t known_count, const double *seed,
+                    double *sensitivity) {
+    fmu_jacobian jacobian;
+    memset(&jacobian, 0, sizeof jacobian);
+    const int status = evaluate(instance, &jacobian);
+    for (size_t k = 0; k < unknown_count; ++k) {
+        sensitivity[k] = 0.0;
+        const int row = place_of(unknown[k], 1);
+        for (size_t i = 0; i < known_count; ++i) {
+            const int column = place_of(known[i], 0);
+            if (column >= 0 && row >= 0) {
+                sensitivity[k] += jacobian.by[row][column] * seed[i];
+            } else if (unknown[k] == known[i]) {
+                sensitivity[k] += seed[i]; /* a state that is an output */
+            }
+        }
+    }
+    return status;
+}
