@@ -172,6 +172,46 @@ class Rows(Case):
         for name, values in everything.items():
             self.assertEqual(self.run_columns([*settings, f"output.columns={name}"]), {name: values}, name)
 
+    def test_wrench_is_there_on_request_and_in_balance(self):
+        names = [f"{gear}_{kind}_{axis}_{unit}" for gear in ("pinion", "wheel")
+                 for kind, unit in (("force", "N"), ("moment", "Nm")) for axis in "xyz"]
+        with open(README, encoding="utf-8") as file:
+            self.assertIn("`" + ", ".join(names) + "`", " ".join(file.read().split()))
+        alpha_t = math.atan(math.tan(math.radians(16)) / math.cos(math.radians(33)))
+        m_t = 1.65e-3 / math.cos(math.radians(33))
+        r_bp, r_bw = 0.5 * 45 * m_t * math.cos(alpha_t), 0.5 * 41 * m_t * math.cos(alpha_t)
+        tan_beta_b = math.tan(math.radians(33)) * math.cos(alpha_t)
+        for kind in (PLAIN, [*STATIC, "analysis.positions=7"],
+                     [*STATIC, "analysis.positions=7", "analysis.loads=2", "load.end_Nm=30"]):
+            plain = self.run_columns(kind)
+            self.assertFalse(set(names) & set(plain))
+            c = self.run_columns([*kind, "output.wrench=on"])
+            self.assertEqual(list(c), list(plain) + names)
+            self.assertEqual(c["te_um" if "te_um" in c else "dte_um"], plain["te_um" if "te_um" in c else "dte_um"])
+            alone = self.run_columns([*kind, f"output.columns={names[9]},{names[0]}"])
+            self.assertEqual(alone, {names[9]: c[names[9]], names[0]: c[names[0]]})
+            for k in range(len(c[names[0]])):
+                v = {name: c[name][k] for name in names}
+                size = abs(v["wheel_force_y_N"])
+                if size == 0:
+                    continue
+                for axis in "xyz":
+                    self.assertLess(abs(v[f"pinion_force_{axis}_N"] + v[f"wheel_force_{axis}_N"]), 1e-8 * size)
+
+                # Both middles are in one section: the moments differ by the centre distance alone.
+                self.assertLess(abs(v["pinion_moment_x_Nm"] + v["wheel_moment_x_Nm"]), 1e-8 * size)
+                self.assertLess(abs(v["pinion_moment_y_Nm"] + v["wheel_moment_y_Nm"] - 0.085 * v["wheel_force_z_N"]),
+                                1e-8 * size)
+
+                # Torques by the base radii, and the axial force by the base helix.
+                force = math.hypot(v["wheel_force_x_N"], v["wheel_force_y_N"])
+                self.assertLess(abs(abs(v["pinion_moment_z_Nm"]) - force * r_bp), 1e-8 * size)
+                self.assertLess(abs(abs(v["wheel_moment_z_Nm"]) - force * r_bw), 1e-8 * size)
+                self.assertLess(abs(abs(v["wheel_force_z_N"]) - force * tan_beta_b), 1e-8 * size)
+                if "te_um" in c:
+                    load = c["load_torque_Nm"][k] if "load_torque_Nm" in c else 20
+                    self.assertLess(abs(v["wheel_moment_z_Nm"] + load), 1e-8 * load)
+
     def test_header_says_how_the_result_was_made(self):
         self.run_columns(["load.seed=18446744073709551615"])
         comments = [line for line in self.text("run.csv").splitlines() if line.startswith("#")]

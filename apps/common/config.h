@@ -25,6 +25,7 @@ enum solver_method { METHOD_BDF, METHOD_ADAMS, METHOD_ERK };
 enum table_interpolation { INTERPOLATION_LINEAR, INTERPOLATION_CUBIC };
 enum table_repeat { REPEAT_OFF, REPEAT_ON };
 enum lookup_use { LOOKUP_OFF, LOOKUP_ON };
+enum wrench_use { WRENCH_OFF, WRENCH_ON };
 enum deviation_direction { DEVIATION_NORMAL, DEVIATION_TRANSVERSE };
 
 /* What a configuration is loaded for. All but a run need [gears] alone and open no flank file. */
@@ -125,7 +126,8 @@ typedef struct config {
     double output_rate; /* Hz */
     int oversampling;
     int digits;
-    char *columns; /* names separated by commas, NULL = all */
+    char *columns;          /* names separated by commas, NULL = all */
+    enum wrench_use wrench; /* all contains force and moment on each gear */
 
     message_sink *messages; /* where to speak, NULL = nobody listens */
     enum config_purpose purpose;

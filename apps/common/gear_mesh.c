@@ -154,6 +154,7 @@ static int prepare(gear_mesh *mesh, const config *conf) {
 
 int gear_mesh_open(gear_mesh *mesh, const config *conf) {
     memset(mesh, 0, sizeof *mesh);
+    mesh->wheel_shift = conf->pose.axial_shift;
 
     int status = drawing_derive(&mesh->pair, conf);
     if (status != 0) {

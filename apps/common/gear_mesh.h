@@ -10,6 +10,7 @@
 
 typedef struct gear_mesh {
     gm_pair pair;
+    double wheel_shift;    /* of the wheel along its axis, by its pose (m) */
     gear_flanks flanks[2]; /* GM_PINION, GM_WHEEL */
     gm_mesh *prepared;     /* pair, flanks and law as one; NULL where [mesh] gives no stiffness */
 } gear_mesh;

@@ -226,6 +226,8 @@ static const key_spec keys[] = {
      .standard = "10", .help = "significant digits in CSV"},
     {NAME("output", "columns"), .kind = KEY_TEXT, INTO(columns),
      .standard = "all", .help = "names separated by commas"},
+    {NAME("output", "wrench"), CHOICE("off on"), INTO(wrench),
+     .standard = "off", .help = "on: force and moment on each gear as columns; off: those named in columns"},
 };
 /* clang-format on */
 

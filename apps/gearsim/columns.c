@@ -1,6 +1,7 @@
 /* SPDX-FileCopyrightText: The gearmesh authors */
 /* SPDX-License-Identifier: BSD-3-Clause */
 #include "columns.h"
+#include "wrench_columns.h"
 
 #include <stdio.h>
 #include <string.h>
@@ -44,7 +45,7 @@ static void join(char *text, size_t size, const char *const names[], int name_co
 static int add(column_list *columns, const config *conf, const char *text, size_t length,
                const char *const names[], int name_count) {
     const int name = find(text, length, names, name_count);
-    char known[512];
+    char known[1024];
 
     if (name < 0) {
         join(known, sizeof known, names, name_count);
@@ -65,7 +66,9 @@ int columns_select(column_list *columns, const config *conf, const char *const n
     columns->count = 0;
     if (conf->columns == NULL || strcmp(conf->columns, "all") == 0) {
         for (int i = 0; i < name_count; ++i) {
-            columns->name[columns->count++] = i;
+            if (conf->wrench == WRENCH_ON || !is_wrench_column(names[i])) {
+                columns->name[columns->count++] = i;
+            }
         }
         return 0;
     }

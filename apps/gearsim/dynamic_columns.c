@@ -2,6 +2,7 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 
 #include "dynamic_columns.h"
+#include "wrench_columns.h"
 
 #include <stddef.h>
 
@@ -65,6 +66,13 @@ static double pairs_in_contact(const dynamic_sample *sample) {
     return sample->mesh.contact.drive_pairs + sample->mesh.contact.coast_pairs;
 }
 
+#define COMPONENT(name, component)                                                                 \
+    static double name(const dynamic_sample *sample) {                                             \
+        return wrench_component(sample->model->gears, &sample->mesh.wrench, component);            \
+    }
+WRENCH_COLUMNS(COMPONENT)
+#undef COMPONENT
+
 /* Angles, time and the pinion's speed grow steadily, pairs are counts: a filter has nothing to do there. */
 const dynamic_column dynamic_columns[] = {
     {"time_s", 0, NEEDS_TIME, time_of, NULL},
@@ -78,6 +86,9 @@ const dynamic_column dynamic_columns[] = {
     {"contact_force_N", 1, NEEDS_MESH, contact_force, mean_contact_force},
     {"load_torque_Nm", 1, NEEDS_MOTION, load, mean_load},
     {"pairs_in_contact", 0, NEEDS_PAIRS, pairs_in_contact, NULL},
+#define ROW(name, component) {#name, 1, NEEDS_WRENCH, name, NULL},
+    WRENCH_COLUMNS(ROW)
+#undef ROW
 };
 
 const int dynamic_column_count = sizeof dynamic_columns / sizeof dynamic_columns[0];

@@ -25,7 +25,8 @@ enum column_need {
     NEEDS_TIME,   /* alone */
     NEEDS_MOTION, /* angles, speeds and x at the time */
     NEEDS_MESH,   /* the penetration */
-    NEEDS_PAIRS   /* and the pairs that touch, which a cache has to count */
+    NEEDS_PAIRS,  /* and the pairs that touch, which a cache has to count */
+    NEEDS_WRENCH  /* and where they touch */
 };
 
 typedef struct dynamic_column {

@@ -54,7 +54,9 @@ typedef struct dynamic_run {
 static int see_mesh(dynamic_run *run, enum column_need need) {
     dynamic_sample *sample = &run->sample;
 
-    const int wanted = need == NEEDS_PAIRS ? GM_WANT_PAIRS : GM_WANT_FORCE;
+    const int wanted = need == NEEDS_WRENCH  ? GM_WANT_PAIRS | GM_WANT_WRENCH
+                       : need == NEEDS_PAIRS ? GM_WANT_PAIRS
+                                             : GM_WANT_FORCE;
     const int status = model_evaluate(&run->model, &sample->motion, wanted, &sample->mesh);
     if (status != GM_OK) {
         snprintf(run->why, sizeof run->why, "no contact force at t = %.9g s; the gears: %s",

@@ -23,13 +23,17 @@ typedef struct static_position {
 typedef struct static_column {
     const char *name;     /* with its unit */
     int of_several_loads; /* there only if the analysis has several loads */
+    int is_of_wrench;     /* takes the wrench */
     double (*value)(const static_position *position);
 } static_column;
 
 extern const static_column static_columns[];
 extern const int static_column_count; /* at most COLUMNS_MAX */
 
-/* Those of the analysis: the first of static_columns. */
+/* Those of the analysis. */
 column_names static_column_names(const config *conf);
+
+/* Whether this one of static_columns is there. */
+int static_column_is_there(const config *conf, int column);
 
 #endif

@@ -47,6 +47,18 @@ typedef struct sweep {
     double slope;  /* its derivative by the pinion angle (m/rad) */
 } sweep;
 
+static int find_wrench(const gear_mesh *gears, static_position *position) {
+    gm_position at;
+    gm_mesh_result result;
+    int status = gm_position_from_pinion_angle(&gears->pair, position->pinion_angle,
+                                               position->offset, 0.0, &at);
+    if (status == GM_OK) {
+        status = gm_mesh_evaluate_at(gears->prepared, &at, GM_WANT_WRENCH, NULL, &result);
+    }
+    position->mesh.wrench = result.wrench;
+    return status;
+}
+
 static int write_position(const config *conf, const gear_mesh *gears, double angle, sweep *before,
                           output_file *output, int *status) {
     const gm_pair *pair = &gears->pair;
@@ -67,9 +79,21 @@ static int write_position(const config *conf, const gear_mesh *gears, double ang
                                                    position.mesh.force_by.pinion_angle /
                                                    position.mesh.force_by.wheel_angle;
 
+    /* The columns that are there; the equilibrium has no wrench. */
     double values[COLUMNS_MAX];
+    int count = 0, has_wrench = 0;
     for (int i = 0; i < static_column_count; ++i) {
-        values[i] = static_columns[i].value(&position);
+        if (!static_column_is_there(conf, i)) {
+            continue;
+        }
+        if (static_columns[i].is_of_wrench && output_wants(output, count) && !has_wrench) {
+            *status = find_wrench(gears, &position);
+            if (*status != GM_OK) {
+                return EXIT_RUN_FAILED;
+            }
+            has_wrench = 1;
+        }
+        values[count++] = static_columns[i].value(&position);
     }
     return output_row(output, values);
 }
