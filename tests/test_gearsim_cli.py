@@ -1308,6 +1308,16 @@ class Tables(Case):
             with self.subTest(text[:60]):
                 self.refused_table("load", text, *fragments)
 
+    def test_cubic_that_swings_is_told(self):
+        self.write("run.ini", self.params("load", interpolation="cubic"))
+        self.write("table.csv", "time_s,torque_Nm\n0,1\n1,1\n1.01,30\n100,30\n")
+        told = self.accepted("run.ini", "--check").stderr
+        self.assertRegex(told, r"load\.file: warning: cubic, the table goes to [\d.]+ where its rows are from 1 to 30: rows at")
+        for text, interpolation in (("0,1\n1,1\n2,30\n3,30\n100,30\n", "cubic"), ("0,1\n1,1\n1.01,30\n100,30\n", "linear")):
+            self.write("table.csv", "time_s,torque_Nm\n" + text)
+            self.write("run.ini", self.params("load", interpolation=interpolation))
+            self.assertEqual(self.accepted("run.ini", "--check").stderr, "")
+
     def test_speeds_do_not_step(self):
         head = "time_s,speed_rpm\n"
         self.refused_table("drive", head + "0,1\n1,2\n1,3\n100,1\n", ":4: speed_rpm must not step")

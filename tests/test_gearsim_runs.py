@@ -1101,7 +1101,8 @@ class Ends(Case):
 class Progress(Case):
     def test_file_gets_a_summary_and_no_progress(self):
         result = self.gearsim([], "--output", "run.csv")
-        self.assertRegex(result.stderr, r"^gearsim: 0\.02\S* s simulated in .* steps .* right-hand sides, .*\n$")
+        self.assertRegex(result.stderr, r"^gearsim: 0\.02\S* s simulated in .* steps .* right-hand sides, .*\n"
+                         r"gearsim: run\.csv: 513 rows in .* s\n$")
         self.assertNotIn("\r", result.stderr)
 
     def test_quiet_says_nothing(self):

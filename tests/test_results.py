@@ -429,6 +429,7 @@ class Places(Case):
         os.mkdir(self.path("x.csv.part"))
         os.mkfifo(self.path("y.csv.part"))
         for name, said in (("folder", "is a folder"), ("pipe", "is not a regular file"), ("/dev/null", "regular file"),
+                           ("/dev/stdout", "is not a regular file; name a file"),
                            ("no/such/out.csv", "No such file"), ("run.ini/out.csv", "cannot be written"),
                            ("x.csv", "is a folder"), ("y.csv", "is not a regular file")):
             self.refused(self.sim(name), "output.file", said)

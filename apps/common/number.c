@@ -63,13 +63,10 @@ static const double_double power_of_ten[] = {
 
 static const double smallest = 1e-20, largest = 1e20;
 
-/* Exact product (Dekker 1971). */
+/* Exact product. */
 static double_double product(double a, double b) {
-    const double split_a = 134217729.0 * a, split_b = 134217729.0 * b;
-    const double a1 = split_a - (split_a - a), a2 = a - a1;
-    const double b1 = split_b - (split_b - b), b2 = b - b1;
     const double high = a * b;
-    const double_double result = {high, ((a1 * b1 - high) + a1 * b2 + a2 * b1) + a2 * b2};
+    const double_double result = {high, fma(a, b, -high)};
 
     return result;
 }

@@ -109,6 +109,11 @@ int result_file_check(result_file *file, const char *path) {
     if (obstacle != NULL) {
         return refuse(file, file->path, obstacle, EXIT_BAD_INPUT);
     }
+    obstacle =
+        path_obstacle(path); /* a link of the system may lead to what has no name: /dev/stdout */
+    if (obstacle != NULL) {
+        return refuse(file, path, obstacle, EXIT_BAD_INPUT);
+    }
     if (lstat(file->part, &status) == 0 && S_ISLNK(status.st_mode)) {
         return refuse(file, file->part, "is a symbolic link; remove it", EXIT_BAD_INPUT);
     }

@@ -435,6 +435,18 @@ static void judge_torque(const config *conf, const char *key, double torque,
                 units, "more than the teeth bear");
 }
 
+/* A speed with decimals that is a round one in rad/s, to the digits that people write. */
+static void judge_speed(const config *conf, const char *key, double speed) {
+    static const double of_a_radian = 30 / 3.14159265358979323846, roundness = 100;
+    const double written = of_a_radian * speed, meant = of_a_radian * written;
+    const double whole = floor(written + 0.5), round = roundness * floor(meant / roundness + 0.5);
+
+    if (is_given(conf, key) && fabs(written - whole) > 1e-9 * fabs(written) && round != 0 &&
+        fabs(meant - round) <= 5e-5 * fabs(round)) {
+        tell(conf, key, " rpm", "which is no round speed", "in rad/s", round);
+    }
+}
+
 /* A noise that changes less than once in a run is none. */
 static void judge_noise_interval(const config *conf) {
     static const double usual[] = {1e-7, 1e-3};
@@ -526,6 +538,9 @@ static void judge_run(const config *conf, const usual_gear *usual) {
     judge_torque(conf, "load.mean_Nm", conf->mean_load, usual, 1);
     judge_torque(conf, "load.end_Nm", conf->end_load, usual, 1);
     judge_torque(conf, "load.noise_amplitude_Nm", conf->noise_amplitude, usual, 1);
+    judge_speed(conf, "drive.start_rpm", conf->start_speed);
+    judge_speed(conf, "drive.end_rpm", conf->end_speed);
+    judge_speed(conf, "analysis.stop_rpm", conf->stop_speed);
     judge_noise_interval(conf);
     if (conf->model == MODEL_3D) {
         judge_flank_scale(conf);

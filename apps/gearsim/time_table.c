@@ -306,13 +306,23 @@ static double piece_integral(const piece *part, double s) {
            (part->c[0] + s * (0.5 * part->c[1] + s * (part->c[2] / 3.0 + s * 0.25 * part->c[3])));
 }
 
-/* A cubic stays within the hull of its Bezier points. */
+/* At both ends, or where the slope is 0: the roots of c1 + 2 c2 s + 3 c3 s^2, without loss of digits. */
 static double piece_largest(const piece *part) {
-    const double *c = part->c, h = part->length;
-    const double first = c[0] + c[1] * h / 3.0;
-    const double second = c[0] + h * (2.0 * c[1] + c[2] * h) / 3.0;
+    const double *c = part->c;
+    const double discriminant = c[2] * c[2] - 3.0 * c[1] * c[3];
+    double largest = fmax(fabs(c[0]), fabs(piece_value(part, part->length)));
 
-    return fmax(fmax(fabs(c[0]), fabs(first)), fmax(fabs(second), fabs(piece_value(part, h))));
+    if (discriminant >= 0.0) {
+        const double q = -(c[2] + copysign(sqrt(discriminant), c[2]));
+        const double roots[2] = {q / (3.0 * c[3]), c[1] / q};
+
+        for (int i = 0; i < 2; ++i) {
+            if (roots[i] > 0.0 && roots[i] < part->length) {
+                largest = fmax(largest, fabs(piece_value(part, roots[i])));
+            }
+        }
+    }
+    return largest;
 }
 
 /* Whether the solver has to start again between two pieces. */
@@ -365,6 +375,23 @@ static time_table *make_table(const table_reader *reader, int is_cubic, int repe
     return table;
 }
 
+/* Cubics through rows at uneven distances may swing far beyond them. */
+static void warn_of_swing(const table_reader *reader, const time_table *table) {
+    double lowest = reader->rows[0].value, highest = lowest;
+
+    for (int i = 1; i < reader->count; ++i) {
+        lowest = fmin(lowest, reader->rows[i].value);
+        highest = fmax(highest, reader->rows[i].value);
+    }
+    const double unit = reader->is_speed ? rad_per_s : 1.0;
+    if (table->largest > fmax(fabs(lowest), fabs(highest)) + 0.5 * (highest - lowest)) {
+        config_warn(reader->conf, reader->key,
+                    "cubic, the table goes to %.6g where its rows are from %.6g to %.6g: rows at "
+                    "even distances, or interpolation = linear, would keep it near them",
+                    table->largest / unit, lowest / unit, highest / unit);
+    }
+}
+
 static int read_table(const config *conf, time_table **table, const char *path, const char *key,
                       int is_speed, enum table_interpolation interpolation, int repeats) {
     table_reader reader = {.conf = conf, .path = path, .key = key, .is_speed = is_speed};
@@ -382,6 +409,9 @@ static int read_table(const config *conf, time_table **table, const char *path, 
     if (!failed) {
         *table = make_table(&reader, interpolation == INTERPOLATION_CUBIC, repeats);
         failed = *table == NULL ? message_no_memory(conf->messages) : 0;
+    }
+    if (!failed) {
+        warn_of_swing(&reader, *table);
     }
     free(reader.rows);
     return failed;

@@ -40,7 +40,7 @@ double time_table_curvature(const time_table *table, double time);
 /* Time of the next row behind a time, HUGE_VAL = there is none; is_kink: the torque steps, or the speed has a kink. */
 double time_table_next_row(const time_table *table, double time, int *is_kink);
 
-/* Bound of the absolute value that the table reaches; without cubics the largest of its rows. */
+/* Largest absolute value that the table reaches. */
 double time_table_largest(const time_table *table);
 
 /* How far times may be off by rounding (s). */
