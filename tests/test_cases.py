@@ -135,6 +135,13 @@ class Misaligned(Case):
         c = self.run_columns([f"pose.skew_mrad={skew}", f"pose.inclination_mrad={inclination}"])
         return sum(c["te_um"]) / len(c["te_um"]), max(c["te_um"]) - min(c["te_um"]), min(c["contact_length_mm"])
 
+    def arm(self, skew, inclination):
+        """Mean moment on the pinion about its axis at mid-face across the plane of action, over its transverse force."""
+        c = self.run_columns([f"pose.skew_mrad={skew}", f"pose.inclination_mrad={inclination}", "output.wrench=on"])
+        columns = zip(*(c[f"pinion_{name}"] for name in ("force_x_N", "force_y_N", "moment_x_Nm", "moment_y_Nm")))
+        arms = [(m_x * y - m_y * x) / (x * x + y * y) for x, y, m_x, m_y in columns]
+        return 1e3 * sum(arms) / len(arms)
+
     def test_what_its_page_says(self):
         page, parallel = self.page(), self.te(0, 0)
         for skew, inclination in ((0, 0), (0.1, 0), (0.2, 0), (0.3, 0), (0, 0.1), (0, 0.2), (0, 0.3)):
@@ -147,6 +154,15 @@ class Misaligned(Case):
         turn = 0.1 * g["wheel_working_pitch_radius_mm"] * math.tan(math.radians(g["base_helix_angle_deg"]))
         self.assertAlmostEqual(self.te(0, 0.1)[0] - parallel[0], turn, delta=0.01 * turn)
         self.assertAlmostEqual(self.te(0.1, 0)[0] - parallel[0], 0, delta=0.01 * turn)
+
+        # The load moves by b/6 (K - 1), K = 1 + half the gap over the deflection.
+        deflection = 170579 / (g["wheel_base_radius_mm"] * 1e-3) / g["mean_mesh_stiffness_N_per_um"]
+        for skew, inclination, see in ((0.1, 0, math.cos), (-0.2, 0, math.cos), (0, 0.3, math.sin)):
+            gap = (skew + inclination) * 360 * see(math.radians(g["working_pressure_angle_deg"]))
+            moved = self.arm(0, 0) - self.arm(skew, inclination)
+            self.assertAlmostEqual(moved, -360 / 6 * 0.5 * gap / deflection, delta=0.006 * abs(moved))
+            if skew != -0.2:
+                self.assertIn(f"| {moved:.1f} |", page)
 
         # One end stands clear where the gap is twice the deflection under the smallest stiffness.
         gap = 360 * math.cos(math.radians(g["working_pressure_angle_deg"]))
