@@ -44,6 +44,20 @@ EXAMPLE = (
 )
 
 
+class Ring(Case):
+    def test_measurements_of_a_ring_are_refused(self):
+        with open(PARAMS, encoding="utf-8") as file:
+            text = re.sub(r"(?m)^.*_(tip|start)_diameter_mm.*\n", "", file.read())
+        for key, value in (("wheel_teeth", -120), ("center_distance_mm", 73.8), ("normal_pressure_angle_deg", 20)):
+            text = re.sub(rf"(?m)^{key} = .*$", f"{key} = {value}", text)
+        self.write("ring.ini", text)
+        said = "must have external teeth; measurements of a ring are not read"
+        self.refused(said, "ring.ini", "--gear", "wheel", "--datum-face", "I", "--count", "clockwise",
+                     "--measured-pitch", PITCH, "--pitch", "p.csv")
+        self.refused(said, "ring.ini", "--gear", "wheel", "--datum-face", "I", "--count", "clockwise",
+                     "--traces", TRACES, "--flanks", "f.csv")
+
+
 class Example(Case):
     def pitch_of(self, side):
         return [float(row["deviation_um"]) for row in rows_of(self.path("p.csv")) if row["flank"] == side]

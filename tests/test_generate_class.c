@@ -14,10 +14,13 @@ static gm_generate_options options;
 static gm_quality quality;
 static gm_io_error error;
 
-/* Teeth of pinion and wheel, module mm, helix angle deg, face width mm; all within the standard. */
-static const double gears[][5] = {
-    {45, 41, 1.65, 33, 17.5}, {20, 60, 3, 0, 30}, {11, 90, 2, -25, 20}, {17, 18, 20, 30, 150}};
-enum { GEARS = sizeof gears / sizeof gears[0] };
+/* Teeth of pinion and wheel (< 0: a ring), module mm, helix angle deg, face width mm; all within the standard. */
+static const double gears[][5] = {{45, 41, 1.65, 33, 17.5},
+                                  {20, 60, 3, 0, 30},
+                                  {11, 90, 2, -25, 20},
+                                  {17, 18, 20, 30, 150},
+                                  {25, -80, 2, 15, 30}};
+enum { GEARS = sizeof gears / sizeof gears[0], RING = GEARS - 1 };
 
 static void begin(int which) {
     gm_pair_params params;
@@ -28,7 +31,7 @@ static void begin(int which) {
     params.normal_pressure_angle = 20.0 / 180.0 * pi;
     params.helix_angle = gears[which][3] / 180.0 * pi;
     params.face_width = 1e-3 * gears[which][4];
-    params.center_distance = 0.5 * (params.pinion_teeth + params.wheel_teeth) *
+    params.center_distance = 0.5 * abs(params.pinion_teeth + params.wheel_teeth) *
                              params.normal_module / cos(params.helix_angle) * 1.002;
     pair = make_pair(&params);
     gm_generate_options_default(&options);
@@ -222,7 +225,9 @@ static double wave_angle(int wheel, int order, const gm_deviation_set *set, doub
         sqrt(pow(gear->start_radius / gear->base_radius, 2.0) - 1.0); /* tan of the profile angle */
     const double chi_tip = sqrt(pow(gear->tip_radius / gear->base_radius, 2.0) - 1.0);
     const double chi = chi_start + t2 * (chi_tip - chi_start);
-    const double s = (wheel == 0) == (set->side == GM_DRIVE) ? -1.0 : 1.0;
+    /* A ring's flanks look the other way, and turn as those of the pinion do. */
+    const int as_pinion = wheel == 0 || pair.wheel.sign < 0.0;
+    const double s = as_pinion == (set->side == GM_DRIVE) ? -1.0 : 1.0;
     return order * (2.0 * pi * set->tooth / gear->teeth + s * chi +
                     t1 * pair.face_width * tan(pair.base_helix_angle) / gear->base_radius);
 }
@@ -273,13 +278,14 @@ static void assert_wave(int wheel, int side, int order, double amplitude) {
 
 static void waves_go_on_from_tooth_to_tooth(void) {
     const gm_flank_wave wave = {67, 0.8e-6};
-    begin(0);
-    options.waves = &wave;
-    options.wave_count = 1;
-    for (int wheel = 0; wheel < 2; ++wheel) {
+    for (int i = 0; i < 3; ++i) {
+        const int wheel = i > 0;
+        begin(i == 2 ? RING : 0);
+        options.waves = &wave;
+        options.wave_count = 1;
         GM_ASSERT_INT(generate(wheel), GM_IO_OK);
         for (int side = 0; side < 2; ++side) {
-            gm_test_context("wheel %d, side %d", wheel, side);
+            gm_test_context("gear %d, side %d", i, side);
             assert_wave(wheel, side, 67, 0.8e-6);
         }
         assert_measures_to_class(wheel);

@@ -530,7 +530,7 @@ enum gm_number_style {
  * @param[in]  wheel   0 = the pinion was measured, else the wheel; its base circle makes roll lengths of diameters
  * @param[in]  style   enum gm_number_style
  * @param[out] error   file, line and reason; may be NULL
- * @return GM_IO_OK, GM_IO_ERR_NULL, GM_IO_ERR_FILE, GM_IO_ERR_FORMAT, GM_IO_ERR_MEMORY
+ * @return GM_IO_OK, GM_IO_ERR_NULL, GM_IO_ERR_FILE, GM_IO_ERR_FORMAT, GM_IO_ERR_OPTION (a ring), GM_IO_ERR_MEMORY
  *
  * Accuracy: each number is the double nearest to the text in metres; roll lengths of diameters to two roundings, next
  *           to the base circle too.

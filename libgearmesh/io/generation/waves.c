@@ -21,12 +21,12 @@ static double face_advance(const gmi_generator *make) {
 /*
  * Turns of the gear at which a point of a flank comes into contact, less a constant and with the opposite
  * sign. Forward rotation moves the contact of pinion drive and wheel coast flanks to the tip, that of the
- * others to the root.
+ * others to the root; so it is on a ring, whose roll lengths fall towards the tip.
  */
 static double contact_turns(const gmi_generator *make, int tooth, int side, double t1, double t2) {
     const gm_gear *gear = make->gear;
-    const double rho =
-        gear->start_roll_length + t2 * (gear->tip_roll_length - gear->start_roll_length);
+    const double rho = gear->sign * (gear->start_roll_length +
+                                     t2 * (gear->tip_roll_length - gear->start_roll_length));
     const double roll = (side == GM_DRIVE) == !make->wheel ? -rho : rho;
     return (double)tooth / gear->teeth +
            (roll + t1 * face_advance(make)) / (2.0 * GMI_PI * gear->base_radius);

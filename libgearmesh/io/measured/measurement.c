@@ -67,10 +67,22 @@ int gm_measurement_tooth(const gm_measurement *measurement, const gm_pair *pair,
     return (zero + steps + teeth) % teeth;
 }
 
+int gmi_measurement_check_gear(const gm_gear *gear, gm_io_error *error) {
+    if (!(gear->sign < 0.0)) {
+        return GM_IO_OK;
+    }
+    return gmi_error_set(error, GM_IO_ERR_OPTION, 0,
+                         "the gear that was measured: must have external teeth; measurements of a "
+                         "ring are not read, its deviation and pitch files are");
+}
+
 int gmi_measurement_check(const gm_measurement *measurement, const gm_pair *pair, int wheel,
                           gm_io_error *error) {
     const int teeth = gmi_gear_of(pair, wheel)->teeth;
-    const int status = gmi_check_teeth(teeth, error);
+    int status = gmi_check_teeth(teeth, error);
+    if (status == GM_IO_OK) {
+        status = gmi_measurement_check_gear(gmi_gear_of(pair, wheel), error);
+    }
     if (status != GM_IO_OK) {
         return status;
     }

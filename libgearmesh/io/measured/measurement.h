@@ -17,6 +17,9 @@
 int gmi_measurement_check(const gm_measurement *measurement, const gm_pair *pair, int wheel,
                           gm_io_error *error);
 
+/** Refuses a ring: its roll lengths fall towards the tip, and its normals look inwards. */
+int gmi_measurement_check_gear(const gm_gear *gear, gm_io_error *error);
+
 /** Radius of the circle on which the pitch was measured (m): that of reference unless another one is given. */
 double gmi_measuring_radius(const gm_measurement *measurement, const gm_gear *gear);
 

@@ -275,10 +275,10 @@ int gm_traces_read(gm_traces *traces, const char *path, const gm_pair *pair, int
         return gmi_error_null(error);
     }
 
-    int status;
-    if (gmi_is_mka(path)) {
+    int status = gmi_measurement_check_gear(gmi_gear_of(pair, wheel), error);
+    if (status == GM_IO_OK && gmi_is_mka(path)) {
         status = gmi_mka_traces(traces, path, pair, wheel, style, error);
-    } else {
+    } else if (status == GM_IO_OK) {
         loader load;
         memset(&load, 0, sizeof load);
         load.gear = gmi_gear_of(pair, wheel);

@@ -12,7 +12,7 @@
 
 /**
  * What a radial shift of a ball in a tooth space is to each of its flanks, along the base tangent: sin(alpha_t +
- * eta), eta = half the angle of the space, both at the reference circle. The normals of the two flanks stand at
+ * eta), - in a ring, eta = half the angle of the space, both at the reference circle. The normals of the two flanks stand at
  * that angle to the tangent of the ball's circle.
  */
 double gmi_ball_sine(const gm_pair *pair, const gm_gear *gear);
