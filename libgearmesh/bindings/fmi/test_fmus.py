@@ -22,38 +22,7 @@ MODELS = ("GearMesh", "GearPair")
 RPM = np.pi / 30
 
 # The gears that the FMUs have by themselves, as gearsim takes them.
-PARAMETERS = """
-[gears]
-pinion_teeth = 45
-wheel_teeth = 41
-normal_module_mm = 1.65
-normal_pressure_angle_deg = 16
-helix_angle_deg = 33
-center_distance_mm = 85
-face_width_mm = 17.5
-backlash_um = 100
-[mesh]
-stiffness_N_per_m = 1.05e8
-damping_Ns_per_m = 844.361
-[bodies]
-pinion_inertia_kg_m2 = 2.1e-3
-wheel_inertia_kg_m2 = 2.1e-3
-[drive]
-kind = torque
-start_rpm = 1000
-torque_Nm = 25
-[load]
-mean_Nm = 20
-[analysis]
-duration_s = 0.02
-[solver]
-relative_tolerance = 1e-8
-absolute_tolerance_um = 1e-8
-[output]
-rate_Hz = 10000
-oversampling = 1
-digits = 15
-"""
+PARAMETERS = ROOT / "tests" / "clients" / "params.ini"
 
 
 @pytest.fixture(name="fmu", scope="session")
@@ -63,13 +32,9 @@ def fixture_fmu(request):
 
 
 @pytest.fixture(name="run", scope="session")
-def fixture_run(request, tmp_path_factory):
-    """What gearsim computes: with ideal flanks, or with those of a folder."""
-    def run(**settings):
-        parameters = tmp_path_factory.mktemp("run") / "params.ini"
-        parameters.write_text(PARAMETERS, encoding="utf-8")
-        return gearmesh.gearsim(parameters, settings, request.config.getoption("--gearsim"))
-    return run
+def fixture_run(request):
+    """What gearsim computes."""
+    return lambda **settings: gearmesh.gearsim(PARAMETERS, settings, request.config.getoption("--gearsim"))
 
 
 def start_of(run):

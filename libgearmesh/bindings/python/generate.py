@@ -18,7 +18,7 @@ from header import Header  # noqa: E402
 
 # Structs that a caller fills (with keywords), that are read-only numbers, and that come in arrays.
 PARAMETERS = {"gm_pair_params": "PairParameters", "gm_pose": "Pose", "gm_mesh_params": "MeshParameters",
-              "gm_modification": "ModificationParameters"}
+              "gm_modification": "ModificationParameters", "gm_body": "Body"}
 RECORDS = {"gm_gear": "Gear", "gm_pair": "PairRecord"}
 ARRAYS = {"gm_gradient": "Gradient", "gm_penetration": "Penetration", "gm_wrench": "Wrench",
           "gm_mesh_result": "MeshResult"}
@@ -33,7 +33,7 @@ def declared(struct, types):
 
 def parameter_type(header):
     def type_of(field):
-        if field.pointers:
+        if field.pointers or field.size:
             return "ArrayLike"
         if field.enum in header.enums:
             return f"Union[int, Literal[{', '.join(repr(name) for name in short_names(header.enums[field.enum]))}]]"

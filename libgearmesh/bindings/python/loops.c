@@ -8,18 +8,36 @@
 #include <gearmesh/gearmesh.h>
 #include <math.h>
 
-static int evaluate_states(const gm_mesh *mesh, size_t count, const gm_state *states, int wanted,
-                           gm_workspace *workspace, gm_mesh_result *results) {
+/* poses: NULL, or [count][2] pose of the wheel and its rate. */
+static int evaluate_position(const gm_mesh *mesh, const gm_position *position, const gm_pose *pose,
+                             int wanted, gm_workspace *workspace, gm_mesh_result *result) {
+    if (pose == NULL) {
+        return gm_mesh_evaluate_at(mesh, position, wanted, workspace, result);
+    }
+    const gm_motion motion = {.position = *position, .pose = pose[0], .pose_rate = pose[1]};
+    return gm_mesh_evaluate_posed(mesh, &motion, wanted, workspace, result);
+}
+
+static int evaluate_states(const gm_mesh *mesh, size_t count, const gm_state *states,
+                           const gm_pose *poses, int wanted, gm_workspace *workspace,
+                           gm_mesh_result *results) {
     int status = GM_OK;
     for (size_t k = 0; k < count && status >= GM_OK; ++k) {
-        status = gm_mesh_evaluate(mesh, &states[k], wanted, workspace, &results[k]);
+        gm_position position;
+        status = gm_position_from_state(gm_mesh_pair(mesh), &states[k], &position);
+        if (status >= GM_OK) {
+            /* What is refused as angles is NaN in the position, and refused again. */
+            status = evaluate_position(mesh, &position, poses != NULL ? &poses[2 * k] : NULL,
+                                       wanted, workspace, &results[k]);
+        }
     }
     return status < GM_OK ? status : GM_OK;
 }
 
 /* coordinates: [count][3] pinion angle (rad), x (m), dx/dt (m/s). */
 static int evaluate_offsets(const gm_mesh *mesh, size_t count, const double *coordinates,
-                            int wanted, gm_workspace *workspace, gm_mesh_result *results) {
+                            const gm_pose *poses, int wanted, gm_workspace *workspace,
+                            gm_mesh_result *results) {
     int status = GM_OK;
     for (size_t k = 0; k < count && status >= GM_OK; ++k) {
         const double *given = &coordinates[3 * k];
@@ -27,9 +45,20 @@ static int evaluate_offsets(const gm_mesh *mesh, size_t count, const double *coo
         status = gm_position_from_pinion_angle(gm_mesh_pair(mesh), given[0], given[1], given[2],
                                                &position);
         if (status >= GM_OK) {
-            /* What is refused as angles is NaN in the position, and refused again. */
-            status = gm_mesh_evaluate_at(mesh, &position, wanted, workspace, &results[k]);
+            status = evaluate_position(mesh, &position, poses != NULL ? &poses[2 * k] : NULL,
+                                       wanted, workspace, &results[k]);
         }
+    }
+    return status < GM_OK ? status : GM_OK;
+}
+
+/* bodies, loads: [count][2] pinion, wheel. */
+static int evaluate_bodies(const gm_mesh *mesh, size_t count, const gm_body *bodies, int wanted,
+                           gm_workspace *workspace, gm_mesh_result *results, gm_load *loads) {
+    int status = GM_OK;
+    for (size_t k = 0; k < count && status >= GM_OK; ++k) {
+        status = gm_mesh_evaluate_bodies(mesh, &bodies[2 * k], &bodies[2 * k + 1], wanted,
+                                         workspace, &results[k], &loads[2 * k], &loads[2 * k + 1]);
     }
     return status < GM_OK ? status : GM_OK;
 }

@@ -146,7 +146,7 @@ def test_refused_states_are_nan_and_the_others_are_not(mesh):
 def test_calls_at_fault_are_told(mesh):
     with pytest.raises(gearmesh.Error, match="must be one of force, derivatives"):
         mesh.evaluate(0.0, 0.0, want="torque")
-    with pytest.raises(TypeError, match="no argument angle"):
+    with pytest.raises(TypeError, match="angle"):
         mesh.evaluate(0.0, 0.0, angle=1.0)
 
 
@@ -164,6 +164,55 @@ def test_pose_of_the_mesh_shifts_the_error_as_an_involute_does(pair):
     plain = gearmesh.Mesh(pair, **LAW)
     difference = np.mean(posed.static(np.linspace(0, 0.14, 50), 20.0).offset - plain.static(np.linspace(0, 0.14, 50), 20.0).offset)
     assert difference == pytest.approx(change * np.sin(pair.working_pressure_angle), rel=1e-2)
+
+
+def test_pose_of_a_call_is_that_of_a_mesh(pair, mesh):
+    states = states_about_contact(pair, 20)
+    pose = {"center_distance_change": 3e-6, "skew": 1e-4}
+    posed = gearmesh.Mesh(pair, **LAW, pose=pose).evaluate(*states, want="wrench")
+    called = mesh.evaluate(*states, want="wrench", pose=pose)
+    assert called.force == pytest.approx(posed.force, rel=1e-9)
+    assert called.wrench.wheel_moment == pytest.approx(posed.wrench.wheel_moment, rel=1e-9, abs=1e-9)
+
+    # One pose for each state, and a wheel that moves away is a mesh that opens: it damps.
+    each = mesh.evaluate(*states, pose={"skew": np.linspace(0, 1e-4, 20)})
+    assert each.force[0] == mesh.evaluate(*(state[0] for state in states)).force
+    assert each.force[-1] == mesh.evaluate(*(state[-1] for state in states), pose={"skew": 1e-4}).force
+    assert (mesh.evaluate(*states, pose_rate={"center_distance_change": 1e-3}).force < mesh.evaluate(*states).force).all()
+    with pytest.raises(TypeError, match="no such argument: tilt"):
+        mesh.evaluate(*states, pose={"tilt": 1.0})
+
+
+def test_bodies_get_the_torques_of_the_angles_and_balance_each_other(pair, mesh):
+    pinion_angle, wheel_angle, pinion_speed, wheel_speed = states_about_contact(pair, 30)
+
+    def about_z(angle):
+        c, s, zero, one = np.cos(angle), np.sin(angle), np.zeros_like(angle), np.ones_like(angle)
+        return np.stack([np.stack([c, -s, zero], -1), np.stack([s, c, zero], -1), np.stack([zero, zero, one], -1)], -2)
+
+    # In a frame that is turned and moved against that of the drawing; the wheel turns clockwise.
+    frame, origin, middle = about_z(np.array(0.7)), np.array([1.0, 2.0, 3.0]), np.array([0.0, 0.0, pair.face_width / 2])
+    z = np.array([0.0, 0.0, 1.0])
+    pinion = {"position": origin + frame @ middle, "rotation": frame @ about_z(pinion_angle), "velocity": np.zeros(3),
+              "angular_velocity": pinion_speed[:, None] * z}
+    wheel = {"position": origin + frame @ (middle + [pair.center_distance, 0, 0]), "rotation": frame @ about_z(-wheel_angle),
+             "velocity": np.zeros(3), "angular_velocity": -wheel_speed[:, None] * z}
+    found = mesh.evaluate_bodies(pinion, wheel)
+    expected = mesh.evaluate(pinion_angle, wheel_angle, pinion_speed, wheel_speed)
+    # Angles of 50 rad come back from a matrix with a few 1e-15, worth 1e-8 of 5 um.
+    assert -found.pinion_moment[:, 2] == pytest.approx(expected.pinion_torque, rel=1e-6)
+    assert -found.wheel_moment[:, 2] == pytest.approx(expected.wheel_torque, rel=1e-6)
+
+    # Force and moment of both together are none, about any point.
+    force = np.linalg.norm(found.pinion_force, axis=1)
+    assert found.pinion_force + found.wheel_force == pytest.approx(0, abs=1e-9 * force.max())
+    total = (found.pinion_moment + found.wheel_moment + np.cross(pinion["position"], found.pinion_force) +
+             np.cross(wheel["position"], found.wheel_force))
+    assert total == pytest.approx(0, abs=1e-8 * force.max())
+    with pytest.raises(TypeError, match="missing: rotation, velocity, angular_velocity"):
+        mesh.evaluate_bodies({"position": np.zeros(3)}, wheel)
+    with pytest.raises(gearmesh.Error, match=r"position: must have the shape \[..., 3\]"):
+        mesh.evaluate_bodies({**pinion, "position": 1.0}, wheel)
 
 
 def test_elastic_teeth_have_a_workspace_in_every_thread(pair):

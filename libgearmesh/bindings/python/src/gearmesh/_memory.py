@@ -92,5 +92,32 @@ def dtype_of(kind: Any) -> np.dtype:
                      "offsets": [field.offset for field in fields], "itemsize": ffi.sizeof(kind)})
 
 
-STATE = dtype_of(ffi.typeof("gm_state"))
+STATE, POSE, BODY, LOAD = (dtype_of(ffi.typeof(name)) for name in ("gm_state", "gm_pose", "gm_body", "gm_load"))
 RESULT = np.dtype((np.record, dtype_of(ffi.typeof("gm_mesh_result"))))
+
+
+def filled(kind: np.dtype, values: Mapping[str, Any], *, required: bool = False) -> Any:
+    """An array of structs from arrays that broadcast together by their leading axes. Fields that are left out are 0, or
+    refused if they are required."""
+    names: tuple[str, ...] = kind.names or ()
+    for name in values:
+        if name not in names:
+            raise TypeError(f"no such argument: {name}; there are {', '.join(names)}")
+    missing = [name for name in names if name not in values]
+    if missing and required:
+        raise TypeError(f"missing: {', '.join(missing)}")
+
+    # Matrices may come as such: the last axes of a field count as one.
+    arrays = {}
+    for name, value in values.items():
+        array, own = np.asarray(value, dtype=float), kind[name].shape
+        if own == (9,) and array.shape[-2:] == (3, 3):
+            array = array.reshape(array.shape[:-2] + (9,))
+        if array.shape[array.ndim - len(own):] != own:
+            raise Error(f"{name}: must have the shape [..., {own[0]}] (got {list(array.shape)})")
+        arrays[name] = array
+    shape = np.broadcast_shapes(*(array.shape[:array.ndim - len(kind[name].shape)] for name, array in arrays.items()))
+    structs = np.zeros(shape, kind)
+    for name, array in arrays.items():
+        structs[name] = array
+    return structs

@@ -4,7 +4,7 @@
 from __future__ import annotations
 
 import threading
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
 from typing import TYPE_CHECKING, Any, Literal, NamedTuple, Union
 
 import numpy as np
@@ -12,8 +12,8 @@ from numpy.typing import ArrayLike, NDArray
 
 from . import _records
 from ._gearmesh import ffi, lib
-from ._memory import RESULT, STATE, Error, doubles, enum_value, fill, refusal, status_text
-from ._records import MeshResult
+from ._memory import BODY, LOAD, POSE, RESULT, STATE, Error, doubles, enum_value, fill, filled, refusal, status_text
+from ._records import Body, MeshResult
 from .flanks import Flanks
 from .pair import Pair
 
@@ -29,6 +29,25 @@ class StaticResult(NamedTuple):
 
     result: MeshResult
     """the mesh there, with derivatives"""
+
+
+class BodiesResult(NamedTuple):
+    """What the mesh does to two bodies at their reference points, in the common frame, each [..., 3]."""
+
+    result: MeshResult
+    """in the frame of the mesh, with the wrench"""
+
+    pinion_force: NDArray[np.float64]
+    """(N)"""
+
+    pinion_moment: NDArray[np.float64]
+    """(N m)"""
+
+    wheel_force: NDArray[np.float64]
+    """(N)"""
+
+    wheel_moment: NDArray[np.float64]
+    """(N m)"""
 
 
 class Mesh:
@@ -69,28 +88,27 @@ class Mesh:
         self._of_thread = threading.local()
 
     def evaluate(self, pinion_angle: ArrayLike, wheel_angle: ArrayLike, pinion_speed: ArrayLike = 0.0,
-                 wheel_speed: ArrayLike = 0.0, *, want: str | Iterable[str] = (), **state: ArrayLike) -> MeshResult:
+                 wheel_speed: ArrayLike = 0.0, *, want: str | Iterable[str] = (),
+                 pose: Mapping[str, ArrayLike] | None = None,
+                 pose_rate: Mapping[str, ArrayLike] | None = None) -> MeshResult:
         """
         Force, penetration and contact at angles (rad) and speeds (rad/s), numbers or arrays that broadcast together.
 
-        `want`: members of gm_wanted, one or several: "derivatives", "wrench", "pairs". `state`: further fields of gm_state.
+        `want`: members of gm_wanted, one or several: "derivatives", "wrench", "pairs". `pose` of the wheel at each state,
+        in addition to the one that the mesh was prepared in, and its rate: dicts of fields of gm_pose (m, rad; m/s, rad/s).
 
         The result has the shape of the arguments and the fields of gm_mesh_result as attributes: `force` (N),
-        `force_by.wheel_angle` (N/rad), `contact.drive_contact`, `wrench.pinion_moment` [..., 3] (N m) ...; what was not asked for
-        is NaN. So is everything where a state is refused: an angle that is no number, or |x| of half a base pitch, where a
-        tooth would be skipped. Solvers that control their step take NaN as a demand for a smaller one.
+        `force_by.wheel_angle` (N/rad), `contact.drive_contact`, `wrench.pinion_moment` [..., 3] (N m) ...; what was not
+        asked for is NaN. So is everything where a state is refused: an angle that is no number, or |x| of half a base pitch,
+        where a tooth would be skipped. Solvers that control their step take NaN as a demand for a smaller one.
         """
-        state.update(pinion_angle=pinion_angle, wheel_angle=wheel_angle, pinion_speed=pinion_speed, wheel_speed=wheel_speed)
-        unknown = set(state) - set(STATE.names or ())
-        if unknown:
-            raise TypeError(f"evaluate() has no argument {', '.join(sorted(unknown))}")
-        states: Any = np.empty(np.broadcast_shapes(*(np.shape(value) for value in state.values())), STATE)
-        for name in STATE.names or ():
-            states[name] = state.get(name, 0.0)
-        return self._evaluate(lib.evaluate_states, "gm_state *", states, states.shape, want)
+        states = filled(STATE, {"pinion_angle": pinion_angle, "wheel_angle": wheel_angle, "pinion_speed": pinion_speed,
+                                "wheel_speed": wheel_speed})
+        return self._evaluate(lib.evaluate_states, "gm_state *", states, states.shape, want, pose, pose_rate)
 
     def evaluate_offset(self, pinion_angle: ArrayLike, offset: ArrayLike, offset_rate: ArrayLike = 0.0, *,
-                        want: str | Iterable[str] = ()) -> MeshResult:
+                        want: str | Iterable[str] = (), pose: Mapping[str, ArrayLike] | None = None,
+                        pose_rate: Mapping[str, ArrayLike] | None = None) -> MeshResult:
         """
         The same for a solver that integrates x = r_bp phi_p - r_bw phi_w in place of the wheel's angle: pinion angle (rad),
         x (m) and dx/dt (m/s).
@@ -99,7 +117,23 @@ class Mesh:
         """
         coordinates = np.stack(np.broadcast_arrays(*(np.asarray(value, dtype=float) for value in
                                                      (pinion_angle, offset, offset_rate))), axis=-1)
-        return self._evaluate(lib.evaluate_offsets, "double *", coordinates, coordinates.shape[:-1], want)
+        return self._evaluate(lib.evaluate_offsets, "double *", coordinates, coordinates.shape[:-1], want, pose, pose_rate)
+
+    def evaluate_bodies(self, pinion: Body, wheel: Body, *, want: str | Iterable[str] = ()) -> BodiesResult:
+        """
+        Force and moment on two rigid bodies in any common frame, as a multibody code has them.
+
+        Each body is a dict of the fields of gm_body: `position` [..., 3] of the middle of its face (m), `rotation`
+        [..., 3, 3] from the body's axes to the common frame, `velocity` [..., 3] (m/s), `angular_velocity` [..., 3] (rad/s).
+        Angles and NaN are as in evaluate(); whole turns need not be known.
+        """
+        pair = np.broadcast_arrays(*(filled(BODY, body, required=True) for body in (pinion, wheel)))
+        bodies = np.stack(pair, axis=-1)
+        results, loads = np.empty(bodies.shape[:-1], RESULT), np.empty(bodies.shape, LOAD)
+        _check(lib.evaluate_bodies(self._struct, results.size, _pointer("gm_body *", bodies), _wanted(want),
+                                   self._workspace(), _pointer("gm_mesh_result *", results), _pointer("gm_load *", loads)))
+        return BodiesResult(_shown(results), loads["force"][..., 0, :], loads["moment"][..., 0, :],
+                            loads["force"][..., 1, :], loads["moment"][..., 1, :])
 
     def static(self, pinion_angle: ArrayLike, wheel_torque: ArrayLike) -> StaticResult:
         """
@@ -148,13 +182,21 @@ class Mesh:
         return self._of_thread.workspace
 
     def _evaluate(self, loop: Any, kind: str, given: NDArray[Any], shape: tuple[int, ...],
-                  want: Union[str, Iterable[str]]) -> MeshResult:
-        wanted = sum({enum_value("gm_wanted", name) for name in ([want] if isinstance(want, str) else want)})
+                  want: Union[str, Iterable[str]], pose: Mapping[str, ArrayLike] | None,
+                  pose_rate: Mapping[str, ArrayLike] | None) -> MeshResult:
+        poses = None
+        if pose is not None or pose_rate is not None:
+            poses = np.empty((*shape, 2), POSE)
+            poses[..., 0], poses[..., 1] = filled(POSE, pose or {}), filled(POSE, pose_rate or {})
         results = np.empty(shape, RESULT)
-        status = loop(self._struct, results.size, _pointer(kind, given), wanted, self._workspace(),
-                      _pointer("gm_mesh_result *", results))
-        _check(status)
+        _check(loop(self._struct, results.size, _pointer(kind, given),
+                    ffi.NULL if poses is None else _pointer("gm_pose *", poses), _wanted(want), self._workspace(),
+                    _pointer("gm_mesh_result *", results)))
         return _shown(results)
+
+
+def _wanted(want: Union[str, Iterable[str]]) -> int:
+    return sum({enum_value("gm_wanted", name) for name in ([want] if isinstance(want, str) else want)})
 
 
 def _pointer(kind: str, array: NDArray[Any]) -> Any:
