@@ -116,7 +116,7 @@ static const key_spec keys[] = {
     {NAME("mesh", "iso_blank_factor"), NUMBER(UNIT_SI, BETWEEN(0.01, 2)), INTO(iso_blank_factor), .standard = "1",
      .used = FOR_ISO6336, .help = "C_R of ISO 6336-1, below 1 for thin rims and webs"},
     {NAME("mesh", "damping_Ns_per_m"), NUMBER(UNIT_SI, BETWEEN(0, 1e15)), INTO(damping),
-     .derived = "0 without damping_ratio", .used = FOR_DYNAMIC, .example = "844", .help = "of one tooth pair"},
+     .derived = "0", .used = FOR_DYNAMIC, .example = "844", .help = "of one tooth pair"},
     {NAME("mesh", "damping_ratio"), NUMBER(UNIT_SHARE, BETWEEN(0, 1)), INTO(damping_ratio),
      .derived = "as damping_Ns_per_m", .used = FOR_DYNAMIC,
      .help = "in place of it: share of critical damping, of both bodies on the mean stiffness of the mesh"},
