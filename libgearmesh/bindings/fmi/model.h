@@ -13,8 +13,8 @@
 
 enum {
     MAX_STATES = 4,
-    MAX_INPUTS = 4,
-    MAX_OUTPUTS = 6,
+    MAX_INPUTS = 14,
+    MAX_OUTPUTS = 16,
     INDICATORS = 2,
     TEXTS = 4,
     TEXT_SIZE = 1024
@@ -60,7 +60,8 @@ typedef struct fmu_variable {
     int state;      /* of a derivative: which state */
 } fmu_variable;
 
-/* The partial derivatives of an evaluation: rows derivatives, then outputs; columns states, then inputs. */
+/* The partial derivatives of an evaluation: rows derivatives, then outputs; columns states, then inputs. NaN: not known, to
+ * be found by differences. */
 typedef struct fmu_jacobian {
     double by[MAX_STATES + MAX_OUTPUTS][MAX_STATES + MAX_INPUTS];
 } fmu_jacobian;

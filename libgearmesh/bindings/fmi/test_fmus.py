@@ -191,6 +191,37 @@ def test_a_mesh_between_two_shafts_gives_the_torques_of_the_library(fmu, version
 
 
 @pytest.mark.parametrize("version", VERSIONS)
+def test_a_mesh_follows_the_motion_of_the_wheel(fmu, version, tmp_path):
+    mesh = gearmesh.Mesh(
+        gearmesh.Pair(pinion_teeth=45, wheel_teeth=41, normal_module=1.65e-3, normal_pressure_angle=np.radians(16),
+                      helix_angle=np.radians(33), center_distance=0.085, face_width=0.0175, backlash=100e-6),
+        stiffness=1.05e8, damping=844.361)
+    instance = Instance(fmu("GearMesh", version), tmp_path)
+    inputs = {"pinion_angle": 1.3e-3, "pinion_speed": 0.01}
+    pose, rate = {"center_distance_change": 1e-6, "axial_shift": -2e-6, "inclination": 2e-5}, {"offset": -1e-4, "skew": 1e-4}
+    instance.set(**inputs, **{f"motion.{name}": value for name, value in pose.items()},
+                 **{f"motion_rate.{name}": value for name, value in rate.items()})
+
+    def evaluate(pose, rate):
+        return mesh.evaluate(1.3e-3, 0.0, 0.01, want="wrench", pose=pose, pose_rate=rate)
+
+    expected = evaluate(pose, rate)
+    assert expected.force > 100
+    parts = [f"{gear}_{part}.{axis}" for gear in ("pinion", "wheel") for part in ("force", "moment") for axis in "xyz"]
+    wrench = np.concatenate([expected.wrench[name] for name in
+                             ("pinion_force", "pinion_moment", "wheel_force", "wheel_moment")])
+    assert instance.get("force", *parts) == pytest.approx([expected.force, *wrench], rel=1e-9, abs=1e-9)
+
+    # By the pose there are differences inside, which one-sided ones of other steps confirm.
+    for known, more in (("motion.skew", ({**pose, "skew": 3e-8}, rate)),
+                        ("motion_rate.offset", (pose, {**rate, "offset": -1e-4 + 1e-5}))):
+        ahead, size = evaluate(*more), 3e-8 if "skew" in known else 1e-5
+        slope = [(ahead.force - expected.force) / size, (ahead.wrench.wheel_moment[1] - expected.wrench.wheel_moment[1]) / size]
+        assert instance.derivatives(["force", "wheel_moment.y"], [known])[:, 0] == pytest.approx(slope, rel=1e-3)
+    instance.free()
+
+
+@pytest.mark.parametrize("version", VERSIONS)
 def test_elastic_teeth_come_by_a_parameter(fmu, version, tmp_path):
     mesh = gearmesh.Mesh(
         gearmesh.Pair(pinion_teeth=45, wheel_teeth=41, normal_module=1.65e-3, normal_pressure_angle=np.radians(16),
