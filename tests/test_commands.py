@@ -70,7 +70,8 @@ class Completion(unittest.TestCase):
 
     @classmethod
     def setUpClass(cls):
-        path = os.pathsep.join([os.path.dirname(os.path.abspath(GEARSIM)), os.environ["PATH"]])
+        gearflanks = os.path.join(BUILD, "apps", "gearflanks")
+        path = os.pathsep.join([os.path.dirname(os.path.abspath(GEARSIM)), gearflanks, os.environ["PATH"]])
         cls.environment = {**os.environ, "PATH": path, "LC_ALL": "C"}
 
     def check_both(self, complete):
