@@ -68,6 +68,8 @@ static void what_is_no_ripple_is_refused(void) {
     char fault[200], many[400] = "1:1:0";
     GM_ASSERT_INT(ripple_parse(&made, "1:1:0, 0:5:0", fault, sizeof fault), -1);
     GM_ASSERT(strstr(fault, "(got 0:5:0)") != NULL);
+    GM_ASSERT_INT(ripple_parse(&made, "1:1:0,", fault, sizeof fault), -1);
+    GM_ASSERT(strstr(fault, "(got nothing)") != NULL);
     for (int i = 1; i < RIPPLE_HARMONICS; ++i) {
         strcat(many, ",1:1:0");
     }

@@ -16,7 +16,11 @@ static const double highest_order = 1e4, largest_amplitude = 1e12, largest_phase
 enum { FIELDS = 3, FIELD_SIZE = 48 };
 
 static int refuse(char *fault, size_t size, const char *right, const char *got, int length) {
-    snprintf(fault, size, "must be %s (got %.*s)", right, length < 80 ? length : 80, got);
+    if (length == 0) {
+        snprintf(fault, size, "must be %s (got nothing)", right);
+    } else {
+        snprintf(fault, size, "must be %s (got %.*s)", right, length < 80 ? length : 80, got);
+    }
     return -1;
 }
 
