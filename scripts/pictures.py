@@ -48,6 +48,15 @@ class Result:
             raise results.RunError(f"{self.path}: {tracks.why}")
         return tracks
 
+    @property
+    def why_no_tracks(self):
+        """Why the force has no tooth orders; None if it has."""
+        try:
+            self.tracks()
+        except results.RunError as error:
+            return str(error)
+        return None
+
     def frame_at(self, speed_rpm):
         """Number of the frame whose speed is nearest; where the tooth orders are loudest if no speed is given."""
         tracks = self.tracks()
@@ -259,3 +268,30 @@ def difference(found, folder):
         "columns": int(level_dB.shape[1]), "rows": int(level_dB.shape[0]), "row_low": maps[0].row_range[0],
         "row_high": maps[0].row_range[1], "reach": float(max(1.0, math.ceil(reach))), **lines.rim_values(known, [], edge),
     }
+
+
+# ----------------------------------------------------------------------------------------------------
+# All of them
+# ----------------------------------------------------------------------------------------------------
+
+
+def of_run(result, folder, at_rpm=None):
+    """{name: (file of gnuplot, variables)} of one run: all that it has."""
+    if result.is_static:
+        found = {"_static": static_curves(result, folder), "_harmonics": static_harmonics(result, folder)}
+        return {name: picture for name, picture in found.items() if picture}
+    found = {"_spectrum": spectrum(result, folder, at_rpm)}
+    if "dte_um" in result.columns:
+        found["_signal"] = time_signal(result, folder, at_rpm)
+        found["_turn"] = one_turn(result, folder, at_rpm)
+    else:
+        program.warn(f"{result.path}: no column dte_um: no pictures of the transmission error")
+    return found
+
+
+def of_several(found, folder):
+    """The same of several runs."""
+    made = {"_compare": comparison(found, folder)}
+    if len(found) == 2 and not any(result.tracks().run.is_constant for result in found):
+        made["_difference"] = difference(found, folder)
+    return made

@@ -65,7 +65,12 @@ def of_file(path):
     """Summary of a run of either kind."""
     columns, provenance, incomplete = read_all(path)
     results.check_numbers(path, columns)
-    found = {"file": path, "program": provenance.get("version", ""), "warnings": warnings_of(provenance, incomplete)}
+    return of_columns(path, columns, provenance, incomplete)
+
+
+def of_columns(path, columns, provenance, incomplete):
+    """The same of a run that has been read."""
+    found = {"file": path, "gearsim": provenance.get("gearsim", ""), "warnings": warnings_of(provenance, incomplete)}
     gears = lines.gears_of(path, provenance, Options)
     found["gears"] = {"pinion_teeth": gears.pinion_teeth, "wheel_teeth": gears.wheel_teeth,
                       "eigenfrequency": number(gears.eigenfrequency_Hz, "Hz", "the head of the run does not say it")}

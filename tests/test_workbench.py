@@ -1,7 +1,10 @@
 #!/usr/bin/env python3
 # SPDX-FileCopyrightText: The gearmesh authors
 # SPDX-License-Identifier: BSD-3-Clause
-"""scripts/summary and scripts/plot: of runs whose numbers are known."""
+"""scripts/summary, scripts/plot and scripts/report: of runs whose numbers are known."""
+import base64
+import html.parser
+import io
 import json
 import os
 import sys
@@ -16,9 +19,12 @@ import program  # noqa: E402
 program.require("numpy", "scipy")
 
 import numpy as np  # noqa: E402
+from scipy.io import wavfile  # noqa: E402
 
 import pictures  # noqa: E402
+import runup  # noqa: E402
 import script_case  # noqa: E402
+import sound  # noqa: E402
 import tracking  # noqa: E402
 
 HEAD = "# gearsim 0.0.0\n# gears.pinion_teeth = 23\n# gears.wheel_teeth = -71\n"
@@ -213,6 +219,89 @@ class Pictures(Case):
             result = script_case.call("plot", *arguments, folder=self.folder)
             self.assertEqual(result.returncode, 2)
             self.assertIn(message, result.stderr)
+
+
+class Page(html.parser.HTMLParser):
+    """What a page loads, and the attributes of its sound."""
+
+    def __init__(self, text):
+        super().__init__()
+        self.sources, self.audio = [], []
+        self.feed(text)
+
+    def handle_starttag(self, tag, attrs):
+        attributes = dict(attrs)
+        self.sources += [attributes[name] for name in ("src", "href") if name in attributes]
+        if tag == "audio":
+            self.audio.append(attributes)
+
+
+class Reports(Case):
+    def report(self, *arguments):
+        self.call("report", *arguments, "--output", "r.html")
+        with open(os.path.join(self.folder, "r.html"), encoding="utf-8") as file:
+            return file.read()
+
+    def test_a_report_holds_everything_itself(self):
+        head = HEAD + "# eigenfrequency_Hz = 700\n# mesh.stiffness_N_per_m = 1e8\n# flanks.pinion = <b>.csv\n"
+        self.write("a.csv", head, self.run_up())
+        self.write("s.csv", head, self.static())
+        text = self.report("a.csv", "s.csv", "--title", "it's <b> & \"q\"")
+        page = Page(text)
+        self.assertEqual([source[:60] for source in page.sources if not source.startswith(("data:", "#"))], [])
+        for part in ("<title>it&#x27;s &lt;b&gt; &amp; &quot;q&quot;</title>", "order 23 (mesh 1) crosses the resonance",
+                     "at 100 N m: TE peak-to-peak", "&lt;b&gt;.csv", "stiffness_N_per_m", "gearsim", "0.0.0"):
+            self.assertTrue(part in text, part)
+        self.assertEqual(sum(source.startswith("data:image/") for source in page.sources), 6 + 2)
+
+        # The sound takes as long as the run, and the cursor rises with the speed from the foot of the map to its top.
+        (audio,) = page.audio
+        rate_Hz, samples = wavfile.read(io.BytesIO(base64.b64decode(audio["src"].partition(",")[2])))
+        self.assertEqual(rate_Hz, sound.RATE_HZ)
+        self.assertAlmostEqual(len(samples) / rate_Hz, 2.0, delta=0.01)
+        places = json.loads(audio["data-places"])
+        self.assertAlmostEqual(places[0], 0.895, delta=0.001)
+        self.assertAlmostEqual(places[-1], 0.20, delta=0.001)
+        self.assertTrue((np.diff(places) <= 0).all())
+
+    def test_two_runs_are_compared(self):
+        self.write("a.csv", HEAD, self.run_up())
+        self.write("b.csv", HEAD, self.run_up(dte_um=None))
+        result = script_case.call("report", "a.csv", "b.csv", "--sound", "none", folder=self.folder)
+        self.assertEqual((result.returncode, len(result.stderr.splitlines())), (0, 1))  # of the missing column
+        with open(os.path.join(self.folder, "a.html"), encoding="utf-8") as file:
+            text = file.read()
+        self.assertTrue('id="comparison"' in text and 'href="#run2"' in text)
+        self.assertFalse(Page(text).audio)
+
+    def test_a_run_that_cannot_be_drawn_is_told_in_words(self):
+        still = self.run_up()
+        still["pinion_speed_rpm"], still["pinion_angle_rad"] = 0 * still["time_s"], 0 * still["time_s"]
+        self.write("a.csv", HEAD, still)
+        self.assertTrue("a.csv: the pinion stands still." in self.report("a.csv"))
+
+    def test_sound_is_the_force(self):
+        """A sine of 50 N keeps its frequency and its amplitude; a housing lifts what is at its resonance."""
+        time_s = np.arange(8192) / 8192.0
+        run = runup.Run(time_s, 0 * time_s + 60.0, 2 * np.pi * time_s, 300.0 + 50.0 * np.sin(2 * np.pi * 650.0 * time_s))
+        values = sound.of_run(run, "force")
+        full_N = sound.full_scale_N([values / 2, values])
+        self.assertAlmostEqual(full_N, 50.0 / sound.PEAK, delta=0.5)
+        inner = values[2000:-2000]
+        self.assertAlmostEqual(np.sqrt(2) * inner.std(), 50.0, delta=0.5)
+        self.assertAlmostEqual(np.sum(np.diff(np.sign(inner)) > 0) / (len(inner) / sound.RATE_HZ), 650.0, delta=3.0)
+        housing_N = sound.full_scale_N([sound.of_run(run, "housing")])
+        # 1 / (2 x 0.06) of the first resonance, a little less than that with what the others add.
+        self.assertAlmostEqual(housing_N / full_N, 1 / 0.12, delta=0.6)
+
+    def test_bad_input(self):
+        self.write("a.csv", HEAD, self.run_up())
+        for arguments, message in ((["nowhere.csv"], "nowhere.csv"), (["a.csv", "--output", "no/where.html"], "no such folder"),
+                                   (["a.csv", "--at", "1"], "--at: must be")):
+            result = script_case.call("report", *arguments, folder=self.folder)
+            self.assertEqual(result.returncode, 2, arguments)
+            self.assertIn(message, result.stderr)
+        self.assertEqual(os.listdir(self.folder), ["a.csv"])
 
 
 if __name__ == "__main__":
