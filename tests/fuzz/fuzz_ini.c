@@ -17,7 +17,7 @@
 static fuzz_file input;
 
 static void claim_config(const config *conf) {
-    FUZZ_CLAIM(conf->gears.pinion_teeth >= 3 && conf->gears.wheel_teeth >= 3);
+    FUZZ_CLAIM(conf->gears.pinion_teeth >= 3 && abs(conf->gears.wheel_teeth) >= 3);
     FUZZ_CLAIM(isfinite(conf->gears.normal_module) && isfinite(conf->gears.center_distance));
     FUZZ_CLAIM(isfinite(conf->flank_scale) && conf->profile_from < conf->profile_to);
     FUZZ_CLAIM(conf->damping >= 0.0 && conf->noise_amplitude >= 0.0 && conf->noise_interval > 0.0);

@@ -17,7 +17,8 @@ enum raw_numbers {
     RAW_DEVIATIONS = 4,
     RAW_TEETH = 8,
     EXTREME = 16,
-    POSED = 32
+    POSED = 32,
+    RING = 64
 };
 
 static void take_params(fuzz_bytes *bytes, int how, gm_pair_params *params) {
@@ -29,6 +30,9 @@ static void take_params(fuzz_bytes *bytes, int how, gm_pair_params *params) {
     } else {
         params->pinion_teeth = 3 + fuzz_byte(bytes);
         params->wheel_teeth = 3 + fuzz_byte(bytes);
+        if (how & RING) {
+            params->wheel_teeth = -params->wheel_teeth - params->pinion_teeth;
+        }
         params->base_helix = fuzz_byte(bytes) & 1;
     }
 
@@ -70,12 +74,13 @@ static void take_params(fuzz_bytes *bytes, int how, gm_pair_params *params) {
     const double m = how & EXTREME ? pow(10.0, fuzz_between(bytes, -7.0, 7.0)) : 1e-3;
     const double helix = fuzz_byte(bytes) & 1 ? 0.0 : fuzz_between(bytes, -1.0, 1.0);
     const double rp = 0.5 * m * params->pinion_teeth / cos(helix);
-    const double rw = 0.5 * m * params->wheel_teeth / cos(helix);
+    const double outwards = params->wheel_teeth < 0 ? -1.0 : 1.0;
+    const double rw = 0.5 * m * fabs((double)params->wheel_teeth) / cos(helix);
     const uint8_t given = fuzz_byte(bytes);
     params->normal_module = m;
     params->normal_pressure_angle = fuzz_between(bytes, 0.01, 0.78);
     params->helix_angle = helix;
-    params->center_distance = (rp + rw) * fuzz_between(bytes, 0.9, 1.1);
+    params->center_distance = fabs(rp + outwards * rw) * fuzz_between(bytes, 0.9, 1.1);
     params->face_width = m * fuzz_between(bytes, 0.01, 40.0);
     if (given & 1) {
         params->pinion_profile_shift = fuzz_between(bytes, -1.0, 1.5);
@@ -90,13 +95,13 @@ static void take_params(fuzz_bytes *bytes, int how, gm_pair_params *params) {
         params->pinion_tip_radius = rp + m * fuzz_between(bytes, -1.0, 2.0);
     }
     if (given & 16) {
-        params->wheel_tip_radius = rw + m * fuzz_between(bytes, -1.0, 2.0);
+        params->wheel_tip_radius = rw + outwards * m * fuzz_between(bytes, -1.0, 2.0);
     }
     if (given & 32) {
         params->pinion_start_radius = rp + m * fuzz_between(bytes, -3.0, 1.0);
     }
     if (given & 64) {
-        params->wheel_start_radius = rw + m * fuzz_between(bytes, -3.0, 1.0);
+        params->wheel_start_radius = rw + outwards * m * fuzz_between(bytes, -3.0, 1.0);
     }
     if (given & 128) {
         params->pinion_normal_thickness = m * fuzz_between(bytes, 0.5, 2.5);
@@ -244,7 +249,7 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size) {
     const double m = params.normal_module;
     if (status == GM_OK && fuzz_byte(&bytes) & 1) {
         pinion = take_flanks(&bytes, how, params.pinion_teeth, m);
-        wheel = take_flanks(&bytes, how, params.wheel_teeth, m);
+        wheel = take_flanks(&bytes, how, pair.wheel.teeth, m);
     }
 
     gm_state state;
