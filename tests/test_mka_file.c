@@ -201,6 +201,7 @@ static void what_is_not_understood_is_refused_with_its_line(void) {
     refuse(PLAIN "Zahn-Nr.: 1 links / 2  Werte  z= 7.5\n 1.0 2.x\n", 20, "got '2.x'");
     refuse(PLAIN "Zahn-Nr.: 1 links / 2  Werte  z= 7.5\n 1.0 2,5\n", 20, "got '2,5'");
     GM_ASSERT_STRING(error.option, "style");
+    refuse(PLAIN "Zahn-Nr. links: 1 / 2 Werte z= 7.5\n 1.0 2.0\n", 19, "its flank");
     refuse(PLAIN "Zahn-Nr.: 1 links\n 1.0 2.5\n", 19, "a number of values");
     refuse(PLAIN "Zahn-Nr.: 1 links / 2 Werte\n 1.0 2.5\n", 19, "its place z=, x= or d=");
     refuse(PLAIN "Zahn-Nr.: 1 links / 2 Werte q= 3\n 1.0 2.5\n", 19, "its place z=, x= or d=");

@@ -373,6 +373,9 @@ static int read_head(const reader *from, char *text, trace_head *head) {
 
     /* The flank, and how many values there are. */
     head->trace.flank = find_flank(text, &text);
+    if (head->trace.flank < 0) {
+        return fail_head(from, "its flank behind the tooth");
+    }
     text += strcspn(text, "0123456789");
     text = read_count(text, &head->values);
     if (head->values < 2) {
