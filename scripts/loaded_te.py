@@ -155,7 +155,8 @@ class Gears:
     def _read(self):
         """What the file says, with all defaults, and what follows from its gears."""
         text = self._call({}, "--geometry")
-        self.geometry = {key: float(value) for key, _, value in (line.partition(" = ") for line in text.splitlines())}
+        self.geometry = {
+            key: float(value.partition(",")[0]) for key, _, value in (line.partition(" = ") for line in text.splitlines())}
         names = "pinion_angle_rad,te_um"
         self.parameters, table = self._run({"output.columns": names, "analysis.loads": 1})
         self.mean_Nm = float(self.parameters["load.mean_Nm"])

@@ -17,7 +17,7 @@
 #include <stdio.h>
 
 enum mesh_model { MODEL_SIMPLE, MODEL_3D };
-enum mesh_law { LAW_CONSTANT, LAW_ISO6336 };
+enum mesh_law { LAW_CONSTANT, LAW_ISO6336, LAW_ELASTIC };
 enum drive_kind { DRIVE_SPEED, DRIVE_TORQUE };
 enum analysis_type { ANALYSIS_DYNAMIC, ANALYSIS_STATIC };
 enum static_period { PERIOD_MESH, PERIOD_PINION, PERIOD_HUNTING };
@@ -38,6 +38,7 @@ enum config_purpose {
 typedef struct flank_files {
     char *deviations; /* path as it can be opened from the working folder, NULL = ideal */
     char *pitch;
+    char *tooth_stiffness; /* factors of single teeth, NULL = 1 */
 } flank_files;
 
 /* Keys of one modification; MODIFICATION_SHAPE is the only one that is no number. */
@@ -60,6 +61,8 @@ typedef struct config {
     char *path; /* of the INI file, as given */
 
     gm_pair_params gears;
+    double pinion_bore_radius; /* of a disc that winds up, m; NaN: rigid body */
+    double wheel_bore_radius;
 
     flank_files pinion_flanks;
     flank_files wheel_flanks;
@@ -73,11 +76,16 @@ typedef struct config {
 
     enum mesh_model model;
     enum mesh_law law;
-    double stiffness;        /* K of one tooth pair, N/m */
-    double iso_blank_factor; /* C_R of ISO 6336-1 */
-    double damping;          /* D of one tooth pair, N s/m; NaN: not given */
-    double damping_ratio;    /* zeta of both bodies on the mean mesh, NaN: not given */
-    double simple_stiffness; /* of the simple model, N/m; NaN: stiffness * eps_alpha */
+    double stiffness;             /* K of one tooth pair, N/m */
+    double iso_blank_factor;      /* C_R of ISO 6336-1 */
+    double damping;               /* D of one tooth pair, N s/m; NaN: not given */
+    double damping_ratio;         /* zeta of both bodies on the mean mesh, NaN: not given */
+    double simple_stiffness;      /* of the simple model, N/m; NaN: stiffness * eps_alpha */
+    double pinion_youngs_modulus; /* N/m2 */
+    double wheel_youngs_modulus;
+    double pinion_poisson_ratio;
+    double wheel_poisson_ratio;
+    int stations; /* of elastic teeth along the face */
 
     gm_pose pose; /* of the wheel against the drawing */
 
@@ -126,8 +134,9 @@ typedef struct config {
     double output_rate; /* Hz */
     int oversampling;
     int digits;
-    char *columns;          /* names separated by commas, NULL = all */
-    enum wrench_use wrench; /* all contains force and moment on each gear */
+    char *columns;           /* names separated by commas, NULL = all */
+    enum wrench_use wrench;  /* all contains force and moment on each gear */
+    char *load_distribution; /* file of a static analysis, NULL = none */
 
     message_sink *messages; /* where to speak, NULL = nobody listens */
     enum config_purpose purpose;

@@ -162,6 +162,10 @@ static int check_output_is_no_input(const config *conf) {
            check_not_input(conf, conf->wheel_flanks.deviations, "flanks.wheel") +
            check_not_input(conf, conf->pinion_flanks.pitch, "flanks.pinion_pitch") +
            check_not_input(conf, conf->wheel_flanks.pitch, "flanks.wheel_pitch") +
+           check_not_input(conf, conf->pinion_flanks.tooth_stiffness,
+                           "flanks.pinion_tooth_stiffness") +
+           check_not_input(conf, conf->wheel_flanks.tooth_stiffness,
+                           "flanks.wheel_tooth_stiffness") +
            check_not_input(conf, conf->drive_file, "drive.file") +
            check_not_input(conf, conf->load_file, "load.file");
 }

@@ -14,6 +14,7 @@
 #include "modification_keys.h"
 #include "slips.h"
 
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -117,6 +118,9 @@ static const char *effective_text(const config *conf, int index) {
     if (strcmp(key_at(index)->full_name, "output.file") == 0) {
         return conf->output_file;
     }
+    if (strcmp(key_at(index)->full_name, "mesh.law") == 0) {
+        return conf->law == LAW_CONSTANT ? "constant" : "elastic";
+    }
     return key_at(index)->standard;
 }
 
@@ -193,6 +197,10 @@ static int read_values(config *conf, const config_request *request) {
         return EXIT_BAD_INPUT;
     }
 
+    /* Who gives a stiffness means it; from the gear data alone the teeth are elastic. */
+    if (config_text(conf, "mesh.law") == NULL) {
+        conf->law = isnan(conf->stiffness) ? LAW_ELASTIC : LAW_CONSTANT;
+    }
     if (conf->output_file == NULL) {
         conf->output_file = default_output_file(conf->path);
     }
@@ -235,6 +243,7 @@ int config_load(config *conf, const config_request *request) {
 static void free_flank_files(flank_files *files) {
     free(files->deviations);
     free(files->pitch);
+    free(files->tooth_stiffness);
 }
 
 void config_free(config *conf) {
@@ -249,6 +258,7 @@ void config_free(config *conf) {
     free(conf->load_file);
     free(conf->output_file);
     free(conf->columns);
+    free(conf->load_distribution);
     free(conf->path);
     memset(conf, 0, sizeof *conf);
 }

@@ -3,6 +3,7 @@
 
 #include "gear_mesh.h"
 #include "drawing.h"
+#include "tooth_stiffness.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -13,6 +14,14 @@ static int load_flanks(gear_mesh *mesh, const config *conf) {
 
     if (status == 0) {
         status = gear_flanks_load(&mesh->flanks[GM_WHEEL], conf, &mesh->pair, GM_WHEEL);
+    }
+    if (status == 0 && conf->law == LAW_ELASTIC) {
+        status = tooth_stiffness_load(&mesh->tooth_stiffness[GM_PINION], conf, GM_PINION,
+                                      mesh->pair.pinion.teeth);
+    }
+    if (status == 0 && conf->law == LAW_ELASTIC) {
+        status = tooth_stiffness_load(&mesh->tooth_stiffness[GM_WHEEL], conf, GM_WHEEL,
+                                      mesh->pair.wheel.teeth);
     }
     return status;
 }
@@ -47,17 +56,34 @@ static int refuse_pose(const config *conf, const gm_pair *pair) {
     return EXIT_BAD_INPUT;
 }
 
-static gm_mesh_params params_of(const config *conf) {
+static gm_mesh_params params_of(const config *conf, const gear_mesh *mesh) {
+    static const int laws[] = {[LAW_CONSTANT] = GM_LAW_CONSTANT,
+                               [LAW_ISO6336] = GM_LAW_ISO6336,
+                               [LAW_ELASTIC] = GM_LAW_ELASTIC};
     gm_mesh_params params;
 
     gm_mesh_params_default(&params);
     params.model = conf->model == MODEL_SIMPLE ? GM_MODEL_SIMPLE : GM_MODEL_3D;
-    params.law = conf->law == LAW_ISO6336 ? GM_LAW_ISO6336 : GM_LAW_CONSTANT;
+    params.law = laws[conf->law];
     params.stiffness = conf->stiffness;
     params.iso_blank_factor = conf->iso_blank_factor;
     params.damping = isnan(conf->damping) ? 0.0 : conf->damping;
     params.simple_stiffness = conf->simple_stiffness;
     params.pose = conf->pose;
+
+    /* What elastic teeth are made of, and the load that their stiffness is stated at. */
+    params.pinion_youngs_modulus = conf->pinion_youngs_modulus;
+    params.wheel_youngs_modulus = conf->wheel_youngs_modulus;
+    params.pinion_poisson_ratio = conf->pinion_poisson_ratio;
+    params.wheel_poisson_ratio = conf->wheel_poisson_ratio;
+    params.pinion_bore_radius = conf->pinion_bore_radius;
+    params.wheel_bore_radius = conf->wheel_bore_radius;
+    params.pinion_tooth_stiffness = mesh->tooth_stiffness[GM_PINION];
+    params.wheel_tooth_stiffness = mesh->tooth_stiffness[GM_WHEEL];
+    params.stations = conf->stations;
+    if (fabs(conf->mean_load) > 0) {
+        params.reference_torque = fabs(conf->mean_load);
+    }
     return params;
 }
 
@@ -105,6 +131,48 @@ static void warn_of_light_load(const config *conf, const gm_pair *pair) {
     }
 }
 
+/* Radius in modules at which the rounding of the rack's tip fills the space between its flanks. */
+static double largest_fillet_radius(const gm_pair *pair, const char *field) {
+    const gm_gear *gear = strncmp(field, "pinion", 6) == 0 ? &pair->pinion : &pair->wheel;
+    const double alpha = pair->normal_pressure_angle;
+
+    return (0.25 * 3.14159265358979323846 - gear->rack_dedendum * tan(alpha)) * cos(alpha) /
+           (1 - sin(alpha));
+}
+
+static int is_listing_without_law(const config *conf) {
+    return conf->purpose == CONFIG_FOR_GEOMETRY && config_text(conf, "mesh.law") == NULL;
+}
+
+/* Gears whose teeth have no elastic law; without a law asked for, a listing of the drawing goes without. */
+static int refuse_elastic(const config *conf, const gm_pair *pair, const gm_mesh_params *params,
+                          void *memory, size_t size) {
+    const char *field = NULL;
+    const char *requirement = NULL;
+    const int status = gm_mesh_check_teeth(params, pair, &field, &requirement, memory, size);
+    if (status != GM_ERR_GEOMETRY || field == NULL) {
+        return EXIT_RUN_FAILED;
+    }
+    if (is_listing_without_law(conf)) {
+        return 0;
+    }
+
+    /* Bores are no field of the drawing. */
+    const char *key = strcmp(field, "pinion_bore_radius") == 0  ? "gears.pinion_bore_diameter_mm"
+                      : strcmp(field, "wheel_bore_radius") == 0 ? "gears.wheel_bore_diameter_mm"
+                                                                : config_key_of_field(field);
+    const char *text = config_text(conf, key);
+    char most[48] = "";
+    if (strstr(field, "fillet_radius") != NULL) {
+        snprintf(most, sizeof most, ", here %.6g", largest_fillet_radius(pair, field));
+    }
+    config_complain(conf, key,
+                    "must be %s%s (got %s), for elastic teeth: mesh.law = elastic is taken "
+                    "without mesh.stiffness_N_per_m",
+                    requirement, most, text != NULL ? text : "none, so it is derived");
+    return EXIT_BAD_INPUT;
+}
+
 static int refuse_iso6336(const config *conf) {
     config_complain(conf, "mesh.law",
                     "must be constant for these gears, to which ISO 6336-1 gives no stiffness: "
@@ -120,17 +188,54 @@ static double damping_of_ratio(const gear_mesh *mesh, const config *conf) {
     return isfinite(damping) ? damping / mesh->pair.transverse_contact_ratio : 0.0;
 }
 
+static int refuse(const config *conf, const gear_mesh *mesh, const gm_mesh_params *params,
+                  int status, void *memory, size_t size) {
+    if (status == GM_POSE_OUT_OF_MESH) {
+        return refuse_pose(conf, &mesh->pair);
+    }
+    return status == GM_ERR_GEOMETRY && conf->law == LAW_ELASTIC
+               ? refuse_elastic(conf, &mesh->pair, params, memory, size)
+               : EXIT_RUN_FAILED;
+}
+
+/* Too many lines of contact at once, or gears that ISO 6336-1 does not know. */
+static int refuse_without_size(const config *conf, const gm_pair *pair) {
+    if (conf->law == LAW_ISO6336) {
+        return refuse_iso6336(conf);
+    }
+    if (is_listing_without_law(conf)) {
+        return 0;
+    }
+    config_complain(conf, "mesh.law",
+                    "must be constant for these gears, of which more teeth touch at once than "
+                    "elastic ones may: a total contact ratio of 10 (got elastic, and %.3f)",
+                    pair->total_contact_ratio);
+    return EXIT_BAD_INPUT;
+}
+
+/* Memory in which elastic teeth keep their last balance. */
+static int make_workspace(gear_mesh *mesh, const config *conf) {
+    const size_t size = gm_workspace_size(mesh->prepared);
+    void *memory = size > 0 ? malloc(size) : NULL;
+
+    if (size > 0 && memory == NULL) {
+        return message_no_memory(conf->messages);
+    }
+    return gm_workspace_init(&mesh->workspace, mesh->prepared, memory, size) == GM_OK
+               ? 0
+               : EXIT_RUN_FAILED;
+}
+
 /* Pair, flanks and law as one object; none without a stiffness, which only a run requires. */
 static int prepare(gear_mesh *mesh, const config *conf) {
-    gm_mesh_params params = params_of(conf);
+    gm_mesh_params params = params_of(conf, mesh);
 
-    if (gm_mesh_params_check(&params, NULL, NULL) == GM_OK &&
-        gm_mesh_size(&params, &mesh->pair) == 0) {
-        return refuse_iso6336(conf);
+    if (gm_mesh_params_check(&params, NULL, NULL) != GM_OK) {
+        return 0;
     }
     const size_t size = gm_mesh_size(&params, &mesh->pair);
     if (size == 0) {
-        return 0;
+        return refuse_without_size(conf, &mesh->pair);
     }
     void *memory = malloc(size);
     if (memory == NULL) {
@@ -146,10 +251,11 @@ static int prepare(gear_mesh *mesh, const config *conf) {
         status = gm_mesh_init(&mesh->prepared, &params, &mesh->pair, pinion, wheel, memory, size);
     }
     if (status == GM_OK) {
-        return 0;
+        return make_workspace(mesh, conf);
     }
+    const int exit_code = refuse(conf, mesh, &params, status, memory, size);
     free(memory);
-    return status == GM_POSE_OUT_OF_MESH ? refuse_pose(conf, &mesh->pair) : EXIT_RUN_FAILED;
+    return exit_code;
 }
 
 int gear_mesh_open(gear_mesh *mesh, const config *conf) {
@@ -171,7 +277,7 @@ int gear_mesh_open(gear_mesh *mesh, const config *conf) {
     if (conf->model == MODEL_3D && conf->purpose == CONFIG_FOR_RUN) {
         status = load_flanks(mesh, conf);
     }
-    if (status == 0) {
+    if (status == 0 && conf->purpose != CONFIG_FOR_FLANKS) {
         status = prepare(mesh, conf);
     }
     if (status != 0) {
@@ -181,7 +287,10 @@ int gear_mesh_open(gear_mesh *mesh, const config *conf) {
 }
 
 void gear_mesh_close(gear_mesh *mesh) {
-    free(mesh->prepared); /* it begins at its memory */
+    free(mesh->prepared); /* they begin at their memory */
+    free(mesh->workspace);
+    free(mesh->tooth_stiffness[GM_PINION]);
+    free(mesh->tooth_stiffness[GM_WHEEL]);
     gear_flanks_free(&mesh->flanks[GM_PINION]);
     gear_flanks_free(&mesh->flanks[GM_WHEEL]);
     memset(mesh, 0, sizeof *mesh);

@@ -12,7 +12,9 @@ typedef struct gear_mesh {
     gm_pair pair;
     double wheel_shift;    /* of the wheel along its axis, by its pose (m) */
     gear_flanks flanks[2]; /* GM_PINION, GM_WHEEL */
-    gm_mesh *prepared;     /* pair, flanks and law as one; NULL where [mesh] gives no stiffness */
+    gm_mesh *prepared;     /* pair, flanks and law as one; NULL where there is no law */
+    gm_workspace *workspace; /* of elastic teeth, for one thread; NULL with other laws */
+    double *tooth_stiffness[2]; /* [enum gm_role] factors of single teeth, NULL = 1 */
 } gear_mesh;
 
 /* Derives the pair, warns of its drawing, and for a run loads the flanks. Returns 0 or an exit code after a message. The

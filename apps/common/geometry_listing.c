@@ -26,6 +26,21 @@ static void print_value(const listing *to, const char *name, double value) {
     }
 }
 
+/* Mean, smallest and largest: one line, or three members. */
+static void print_spread(const listing *to, const char *name, const double spread[3]) {
+    static const char *const of[] = {"", "_smallest", "_largest"};
+
+    if (to->object == NULL) {
+        fprintf(to->stream, "%s = %.17g, %.17g, %.17g\n", name, spread[0], spread[1], spread[2]);
+        return;
+    }
+    for (int i = 0; i < 3; ++i) {
+        char member[64];
+        snprintf(member, sizeof member, "%s%s", name, of[i]);
+        print_value(to, member, spread[i]);
+    }
+}
+
 static double degrees(double angle) {
     return angle * (180 / pi);
 }
@@ -82,7 +97,9 @@ static void print_teeth(const gm_pair *pair, const listing *to) {
 }
 
 /* What the law derived from the gears; 1 N/(mm um) is 1e9 N/m2. */
-static void print_law(const gm_pair *pair, const config *conf, const listing *to) {
+static void print_law(const gear_mesh *mesh, const config *conf, const listing *to) {
+    const gm_pair *pair = &mesh->pair;
+
     if (conf->law == LAW_ISO6336) {
         const double factor = conf->iso_blank_factor;
         print_value(to, "iso_single_stiffness_N_per_mm_um",
@@ -90,12 +107,21 @@ static void print_law(const gm_pair *pair, const config *conf, const listing *to
         print_value(to, "iso_mesh_stiffness_N_per_mm_um",
                     1e-9 * gm_iso6336_mesh_stiffness(pair, factor));
     }
+    gm_mesh_stiffness elastic;
+    if (gm_mesh_elastic_stiffness(mesh->prepared, &elastic) == GM_OK) {
+        const double single[] = {1e-6 * elastic.single_mean, 1e-6 * elastic.single_smallest,
+                                 1e-6 * elastic.single_largest};
+        const double all[] = {1e-6 * elastic.mesh_mean, 1e-6 * elastic.mesh_smallest,
+                              1e-6 * elastic.mesh_largest};
+        print_spread(to, "single_stiffness_N_per_um", single);
+        print_spread(to, "mesh_stiffness_N_per_um", all);
+    }
 }
 
 static void print_all(const gear_mesh *mesh, const config *conf, const listing *to) {
     print_pair(&mesh->pair, to);
     print_teeth(&mesh->pair, to);
-    print_law(&mesh->pair, conf, to);
+    print_law(mesh, conf, to);
     print_value(to, "mean_mesh_stiffness_N_per_um", 1e-6 * gm_mesh_mean_stiffness(mesh->prepared));
     print_value(to, "eigenfrequency_Hz", gear_mesh_eigenfrequency(mesh, conf));
     print_value(to, "mesh_frequency_per_rpm_Hz", mesh->pair.pinion.teeth / 60.0);

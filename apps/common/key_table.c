@@ -133,6 +133,7 @@ static const struct {
     [UNIT_MM_DIAMETER] = {2e3, 1},
     [UNIT_UM] = {1e6, 1},
     [UNIT_MRAD] = {1e3, 1},
+    [UNIT_GPA] = {1, 1e9},
     [UNIT_DEG] = {180, 3.14159265358979323846},
     [UNIT_RPM] = {30, 3.14159265358979323846},
 };
@@ -405,6 +406,9 @@ static const char *describe_use(const key_spec *key) {
     }
     if (key->used & FOR_ISO6336) {
         return "law = iso6336";
+    }
+    if (key->used & FOR_ELASTIC) {
+        return "law = elastic";
     }
     return key->used & FOR_SIMPLE ? "model = simple" : NULL;
 }

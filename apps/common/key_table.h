@@ -30,6 +30,7 @@ enum key_unit {
     UNIT_MM_DIAMETER,
     UNIT_UM,
     UNIT_MRAD,
+    UNIT_GPA,
     UNIT_DEG,
     UNIT_RPM
 };
@@ -51,7 +52,8 @@ enum key_situation {
     FOR_RUN = 1 << 6, /* only in `required`: not for --geometry */
     FOR_ALL = 1 << 7, /* only in `required`: for --geometry as well */
     FOR_CONSTANT = 1 << 8,
-    FOR_ISO6336 = 1 << 9
+    FOR_ISO6336 = 1 << 9,
+    FOR_ELASTIC = 1 << 10
 };
 
 typedef struct key_spec {

@@ -81,6 +81,10 @@ static const key_spec keys[] = {
     {NAME("gears", "wheel_start_diameter_mm"), NUMBER(UNIT_MM_DIAMETER, DIAMETER),
      INTO_GEARS(wheel_start_radius), .derived = "the point that meets the pinion's tip",
      .help = "start of the active profile"},
+    {NAME("gears", "pinion_bore_diameter_mm"), NUMBER(UNIT_MM_DIAMETER, DIAMETER), INTO(pinion_bore_radius),
+     .derived = "rigid body", .used = FOR_ELASTIC, .help = "the body winds up between bore and root circle"},
+    {NAME("gears", "wheel_bore_diameter_mm"), NUMBER(UNIT_MM_DIAMETER, DIAMETER), INTO(wheel_bore_radius),
+     .derived = "rigid body", .used = FOR_ELASTIC, .help = "the body winds up between bore and root circle"},
     {NAME("gears", "base_helix"), CHOICE("iso paper"), INTO_GEARS(base_helix), .standard = "iso",
      .help = "paper: as printed there in Eq. 6, which is wrong"},
 
@@ -92,6 +96,10 @@ static const key_spec keys[] = {
      .derived = "ideal", .used = FOR_3D, .help = "file of pitch deviations"},
     {NAME("flanks", "wheel_pitch"), .kind = KEY_PATH, INTO(wheel_flanks.pitch),
      .derived = "ideal", .used = FOR_3D, .help = "file of pitch deviations"},
+    {NAME("flanks", "pinion_tooth_stiffness"), .kind = KEY_PATH, INTO(pinion_flanks.tooth_stiffness),
+     .derived = "all teeth alike", .used = FOR_3D | FOR_ELASTIC, .help = "file tooth,factor: teeth softer by a crack or spall"},
+    {NAME("flanks", "wheel_tooth_stiffness"), .kind = KEY_PATH, INTO(wheel_flanks.tooth_stiffness),
+     .derived = "all teeth alike", .used = FOR_3D | FOR_ELASTIC, .help = "file tooth,factor: teeth softer by a crack or spall"},
     {NAME("flanks", "scale"), NUMBER(UNIT_SI, ANY), INTO(flank_scale), .standard = "1",
      .used = FOR_3D, .help = "multiplies deviations and pitch"},
     {NAME("flanks", "deviation_direction"), CHOICE("normal transverse"), INTO(deviation_direction),
@@ -109,8 +117,9 @@ static const key_spec keys[] = {
 
     {NAME("mesh", "model"), CHOICE("simple 3d"), INTO(model), .standard = "3d",
      .help = "simple: a spring with backlash"},
-    {NAME("mesh", "law"), CHOICE("constant iso6336"), INTO(law), .standard = "constant",
-     .help = "iso6336: the stiffness of ISO 6336-1, method B, from the gear data"},
+    {NAME("mesh", "law"), CHOICE("constant iso6336 elastic"), INTO(law),
+     .derived = "constant with stiffness_N_per_m, else elastic",
+     .help = "iso6336: stiffness of ISO 6336-1, method B; elastic: teeth that bend and share the load; both from the gear data"},
     {NAME("mesh", "stiffness_N_per_m"), NUMBER(UNIT_SI, STIFFNESS), INTO(stiffness), .used = FOR_CONSTANT,
      .required = FOR_RUN | FOR_CONSTANT, .example = "1.05e8", .help = "of one tooth pair in contact over the full face width"},
     {NAME("mesh", "iso_blank_factor"), NUMBER(UNIT_SI, BETWEEN(0.01, 2)), INTO(iso_blank_factor), .standard = "1",
@@ -123,6 +132,17 @@ static const key_spec keys[] = {
     {NAME("mesh", "simple_stiffness_N_per_m"), NUMBER(UNIT_SI, STIFFNESS), INTO(simple_stiffness),
      .derived = "stiffness_N_per_m * eps_alpha", .used = FOR_SIMPLE,
      .help = "of the simple model"},
+
+    {NAME("mesh", "pinion_youngs_modulus_GPa"), NUMBER(UNIT_GPA, BETWEEN(1e-3, 1e6)), INTO(pinion_youngs_modulus),
+     .standard = "206", .help = "E of the pinion's material"},
+    {NAME("mesh", "wheel_youngs_modulus_GPa"), NUMBER(UNIT_GPA, BETWEEN(1e-3, 1e6)), INTO(wheel_youngs_modulus),
+     .standard = "206", .help = "E of the wheel's material"},
+    {NAME("mesh", "pinion_poisson_ratio"), NUMBER(UNIT_SI, BETWEEN(0, 0.499)), INTO(pinion_poisson_ratio),
+     .standard = "0.3", .help = "nu of the pinion's material"},
+    {NAME("mesh", "wheel_poisson_ratio"), NUMBER(UNIT_SI, BETWEEN(0, 0.499)), INTO(wheel_poisson_ratio),
+     .standard = "0.3", .help = "nu of the wheel's material"},
+    {NAME("mesh", "stations"), COUNT(2, 97), INTO(stations), .standard = "17", .used = FOR_ELASTIC,
+     .help = "along the face, at which the teeth deflect; 17: 0.3 % in the force"},
 
     {NAME("pose", "center_distance_change_um"), NUMBER(UNIT_UM, UP_TO(1e9)), INTO(pose.center_distance_change),
      .standard = "0", .help = "the wheel's axis has moved away from the pinion's"},
@@ -228,6 +248,8 @@ static const key_spec keys[] = {
      .standard = "all", .help = "names separated by commas"},
     {NAME("output", "wrench"), CHOICE("off on"), INTO(wrench),
      .standard = "off", .help = "on: force and moment on each gear as columns; off: those named in columns"},
+    {NAME("output", "load_distribution"), .kind = KEY_PATH, INTO(load_distribution), .derived = "none",
+     .used = FOR_STATIC | FOR_3D, .help = "CSV of line load, pressure and gap: a row for each position, pair and station"},
 };
 /* clang-format on */
 
@@ -238,9 +260,11 @@ const key_table gearsim_keys = {"gearsim", keys, (int)(sizeof keys / sizeof keys
  * Situations
  * ------------------------------------------------------------------------------------------- */
 
+static const unsigned law_situation[] = {
+    [LAW_CONSTANT] = FOR_CONSTANT, [LAW_ISO6336] = FOR_ISO6336, [LAW_ELASTIC] = FOR_ELASTIC};
+
 static unsigned situation_of(const config *conf) {
-    return (unsigned)(conf->model == MODEL_3D ? FOR_3D : FOR_SIMPLE) |
-           (unsigned)(conf->law == LAW_CONSTANT ? FOR_CONSTANT : FOR_ISO6336) |
+    return (unsigned)(conf->model == MODEL_3D ? FOR_3D : FOR_SIMPLE) | law_situation[conf->law] |
            (unsigned)(conf->drive == DRIVE_SPEED ? FOR_SPEED : FOR_TORQUE) |
            (unsigned)(conf->analysis == ANALYSIS_DYNAMIC ? FOR_DYNAMIC : FOR_STATIC);
 }
@@ -253,8 +277,10 @@ int key_is_used(const key_spec *key, const config *conf, const char **reason) {
                                                      : "analysis.type = static";
     } else if (lacking & (FOR_SPEED | FOR_TORQUE)) {
         *reason = conf->drive == DRIVE_SPEED ? "drive.kind = speed" : "drive.kind = torque";
-    } else if (lacking & (FOR_CONSTANT | FOR_ISO6336)) {
-        *reason = conf->law == LAW_CONSTANT ? "mesh.law = constant" : "mesh.law = iso6336";
+    } else if (lacking & (FOR_CONSTANT | FOR_ISO6336 | FOR_ELASTIC)) {
+        *reason = conf->law == LAW_CONSTANT  ? "mesh.law = constant"
+                  : conf->law == LAW_ISO6336 ? "mesh.law = iso6336"
+                                             : "mesh.law = elastic";
     } else if (lacking) {
         *reason = conf->model == MODEL_3D ? "mesh.model = 3d" : "mesh.model = simple";
     }

@@ -46,6 +46,9 @@ static int perform(const arguments *args, const config *conf, const gear_mesh *m
     if (status == 0) {
         status = output_check(conf, names.name, names.count);
     }
+    if (status == 0) {
+        status = statics_check(conf);
+    }
     if (status == 0 && args->task == TASK_CHECK) {
         forecast_print(conf, &names, args->as_json, stdout);
         return EXIT_DONE;

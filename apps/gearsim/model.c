@@ -164,7 +164,7 @@ static int equilibrium(const gear_model *model, double force, double *offset) {
         return GM_OK;
     }
     return gm_static_equilibrium(gears->prepared, 0.0, force * gears->pair.wheel.base_radius,
-                                 (double)NAN, NULL, offset, NULL);
+                                 (double)NAN, gears->workspace, offset, NULL);
 }
 
 int model_quasi_static_start(const gear_model *model, double state[]) {
@@ -256,9 +256,9 @@ int model_evaluate(const gear_model *model, const gear_motion *motion, int wante
     const int status = gm_position_from_pinion_angle(
         &model->gears->pair, motion->pinion_angle, motion->offset, motion->offset_rate, &position);
 
-    return status != GM_OK
-               ? status
-               : gm_mesh_evaluate_at(model->gears->prepared, &position, wanted, NULL, result);
+    return status != GM_OK ? status
+                           : gm_mesh_evaluate_at(model->gears->prepared, &position, wanted,
+                                                 model->gears->workspace, result);
 }
 
 /* From x' = r_bp phi_p' - r_bw phi_w'. */

@@ -17,11 +17,6 @@ static double transmission_error(const static_position *position) {
     return -position->offset * micro;
 }
 
-/* Touching part of the face width, summed over the pairs and both flanks. */
-static double touching(const static_position *position) {
-    return position->mesh.contact.drive_contact + position->mesh.contact.coast_contact;
-}
-
 static double mesh_stiffness(const static_position *position) {
     return gm_mesh_touching_stiffness(position->gears->prepared, &position->mesh) * 1e-6;
 }
@@ -29,8 +24,12 @@ static double mesh_stiffness(const static_position *position) {
 /* Along the lines of contact, which lie at the base helix angle to the face width. */
 static double contact_length(const static_position *position) {
     const gm_pair *pair = &position->gears->pair;
+    const gm_penetration *contact = &position->mesh.contact;
+    const double width = position->conf->law == LAW_ELASTIC
+                             ? position->faces.touching_width
+                             : (contact->drive_contact + contact->coast_contact) * pair->face_width;
 
-    return touching(position) * pair->face_width / cos(pair->base_helix_angle) * 1e3;
+    return width / cos(pair->base_helix_angle) * 1e3;
 }
 
 static double pairs_in_contact(const static_position *position) {
@@ -48,22 +47,48 @@ static double load_torque(const static_position *position) {
 WRENCH_COLUMNS(COMPONENT)
 #undef COMPONENT
 
+static double face_load_factor(const static_position *position) {
+    return position->faces.face_load_factor;
+}
+
+static double largest_line_load(const static_position *position) {
+    return position->faces.largest_line_load * 1e-3;
+}
+
+static double largest_pressure(const static_position *position) {
+    return position->faces.largest_pressure * 1e-6;
+}
+
 /* The load tells rows apart only where there are several. */
-const static_column static_columns[] = {{"pinion_angle_rad", 0, 0, pinion_angle},
-                                        {"te_um", 0, 0, transmission_error},
-                                        {"mesh_stiffness_N_per_um", 0, 0, mesh_stiffness},
-                                        {"contact_length_mm", 0, 0, contact_length},
-                                        {"pairs_in_contact", 0, 0, pairs_in_contact},
-                                        {"load_torque_Nm", 1, 0, load_torque},
-#define ROW(name, component) {#name, 0, 1, name},
-                                        WRENCH_COLUMNS(ROW)
-#undef ROW
+/* clang-format off */
+#define ROW(name, component) {#name, ALWAYS, NEEDS_WRENCH, name},
+const static_column static_columns[] = {
+    {"pinion_angle_rad", ALWAYS, NEEDS_NOTHING, pinion_angle},
+    {"te_um", ALWAYS, NEEDS_NOTHING, transmission_error},
+    {"mesh_stiffness_N_per_um", ALWAYS, NEEDS_NOTHING, mesh_stiffness},
+    {"contact_length_mm", ALWAYS, NEEDS_FACES, contact_length},
+    {"pairs_in_contact", ALWAYS, NEEDS_NOTHING, pairs_in_contact},
+    {"load_torque_Nm", OF_SEVERAL_LOADS, NEEDS_NOTHING, load_torque},
+    {"face_load_factor", OF_ELASTIC_TEETH, NEEDS_FACES, face_load_factor},
+    {"largest_line_load_N_per_mm", OF_ELASTIC_TEETH, NEEDS_FACES, largest_line_load},
+    {"largest_pressure_N_per_mm2", OF_ELASTIC_TEETH, NEEDS_FACES, largest_pressure},
+    WRENCH_COLUMNS(ROW)
 };
+#undef ROW
+/* clang-format on */
 
 const int static_column_count = sizeof static_columns / sizeof static_columns[0];
 
 int static_column_is_there(const config *conf, int column) {
-    return !static_columns[column].of_several_loads || conf->loads > 1;
+    switch (static_columns[column].use) {
+    case OF_SEVERAL_LOADS:
+        return conf->loads > 1;
+    case OF_ELASTIC_TEETH:
+        return conf->law == LAW_ELASTIC;
+    case ALWAYS:
+    default:
+        return 1;
+    }
 }
 
 column_names static_column_names(const config *conf) {

@@ -18,19 +18,26 @@ typedef struct static_position {
     double load;         /* N m */
     double offset;       /* x (m) */
     gm_mesh_result mesh; /* there */
+    gm_load faces;       /* how the flanks are loaded */
 } static_position;
+
+/* When there is a column. */
+enum static_column_use { ALWAYS, OF_SEVERAL_LOADS, OF_ELASTIC_TEETH };
+
+/* What a column takes from static_position that is only found where a column is asked for. */
+enum static_column_need { NEEDS_NOTHING, NEEDS_WRENCH, NEEDS_FACES };
 
 typedef struct static_column {
     const char *name;     /* with its unit */
-    int of_several_loads; /* there only if the analysis has several loads */
-    int is_of_wrench;     /* takes the wrench */
+    enum static_column_use use;   /* of which analyses it is a column */
+    enum static_column_need need; /* beyond the equilibrium */
     double (*value)(const static_position *position);
 } static_column;
 
 extern const static_column static_columns[];
 extern const int static_column_count; /* at most COLUMNS_MAX */
 
-/* Those of the analysis. */
+/* Those of the analysis, in the order of static_columns. */
 column_names static_column_names(const config *conf);
 
 /* Whether this one of static_columns is there. */

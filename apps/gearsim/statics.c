@@ -6,10 +6,13 @@
  */
 #include "statics.h"
 #include "interrupt.h"
+#include "load_file.h"
+#include "memory.h"
 #include "output.h"
 #include "static_columns.h"
 
 #include <math.h>
+#include <stdlib.h>
 
 static const double two_pi = 6.283185307179586;
 
@@ -47,26 +50,41 @@ typedef struct sweep {
     double slope;  /* its derivative by the pinion angle (m/rad) */
 } sweep;
 
-static int find_wrench(const gear_mesh *gears, static_position *position) {
-    gm_position at;
+/* Where rows go. */
+typedef struct static_results {
+    output_file *output;
+    load_file *distribution; /* NULL = none */
+    gm_load_point *points;   /* of one position */
+    int capacity;
+} static_results;
+
+/* The equilibrium itself has neither wrench nor line loads. */
+static int find_needed(const static_results *results, unsigned needs, static_position *at) {
+    gm_position position;
     gm_mesh_result result;
-    int status = gm_position_from_pinion_angle(&gears->pair, position->pinion_angle,
-                                               position->offset, 0.0, &at);
-    if (status == GM_OK) {
-        status = gm_mesh_evaluate_at(gears->prepared, &at, GM_WANT_WRENCH, NULL, &result);
+    int status = gm_position_from_pinion_angle(&at->gears->pair, at->pinion_angle, at->offset, 0.0,
+                                               &position);
+
+    if (status == GM_OK && (needs & 1u << NEEDS_WRENCH)) {
+        status = gm_mesh_evaluate_at(at->gears->prepared, &position, GM_WANT_WRENCH,
+                                     at->gears->workspace, &result);
+        at->mesh.wrench = result.wrench;
     }
-    position->mesh.wrench = result.wrench;
+    if (status == GM_OK && (needs & 1u << NEEDS_FACES)) {
+        status = gm_mesh_load(at->gears->prepared, &position, at->gears->workspace, results->points,
+                              results->capacity, &at->faces);
+    }
     return status;
 }
 
 static int write_position(const config *conf, const gear_mesh *gears, double angle, sweep *before,
-                          output_file *output, int *status) {
+                          const static_results *results, int *status) {
     const gm_pair *pair = &gears->pair;
     const double guess = before->offset + before->slope * (angle - before->angle);
     static_position position = {
         .conf = conf, .gears = gears, .pinion_angle = angle, .load = before->load};
 
-    *status = gm_static_equilibrium(gears->prepared, angle, before->load, guess, NULL,
+    *status = gm_static_equilibrium(gears->prepared, angle, before->load, guess, gears->workspace,
                                     &position.offset, &position.mesh);
     if (*status != GM_OK) {
         return EXIT_RUN_FAILED;
@@ -79,23 +97,33 @@ static int write_position(const config *conf, const gear_mesh *gears, double ang
                                                    position.mesh.force_by.pinion_angle /
                                                    position.mesh.force_by.wheel_angle;
 
-    /* The columns that are there; the equilibrium has no wrench. */
-    double values[COLUMNS_MAX];
-    int count = 0, has_wrench = 0;
-    for (int i = 0; i < static_column_count; ++i) {
-        if (!static_column_is_there(conf, i)) {
-            continue;
+    /* What the columns that are asked for, and the other file, take beyond the equilibrium. */
+    unsigned needs = results->distribution != NULL ? 1u << NEEDS_FACES : 0;
+    for (int i = 0, count = 0; i < static_column_count; ++i) {
+        if (static_column_is_there(conf, i)) {
+            needs |= output_wants(results->output, count) ? 1u << static_columns[i].need : 0;
+            ++count;
         }
-        if (static_columns[i].is_of_wrench && output_wants(output, count) && !has_wrench) {
-            *status = find_wrench(gears, &position);
-            if (*status != GM_OK) {
-                return EXIT_RUN_FAILED;
-            }
-            has_wrench = 1;
-        }
-        values[count++] = static_columns[i].value(&position);
     }
-    return output_row(output, values);
+    if (conf->law != LAW_ELASTIC && results->distribution == NULL) {
+        needs &= ~(1u << NEEDS_FACES); /* the sums tell the length of contact */
+    }
+    *status = find_needed(results, needs, &position);
+    if (*status != GM_OK) {
+        return EXIT_RUN_FAILED;
+    }
+    double values[COLUMNS_MAX];
+    int count = 0;
+    for (int i = 0; i < static_column_count; ++i) {
+        if (static_column_is_there(conf, i)) {
+            values[count++] = static_columns[i].value(&position);
+        }
+    }
+    if (load_file_rows(results->distribution, angle, before->load, results->points,
+                       position.faces.points) != 0) {
+        return EXIT_RUN_FAILED;
+    }
+    return output_row(results->output, values);
 }
 
 /* Which position a message is about. */
@@ -106,7 +134,8 @@ static const char *place_text(char text[PLACE_SIZE], double load, double angle) 
 }
 
 /* Why a position could not be written, as a message and in the file. */
-static int fail(const config *conf, output_file *output, double load, double angle, int status) {
+static int fail(const config *conf, const static_results *results, double load, double angle,
+                int status) {
     char place[PLACE_SIZE];
     char why[256];
 
@@ -117,23 +146,26 @@ static int fail(const config *conf, output_file *output, double load, double ang
         snprintf(why, sizeof why, "no equilibrium %s: %s", place, gm_status_text(status));
     }
     message_of_program(conf->messages, "%s", why);
-    output_close(output, why);
+    output_close(results->output, why);
+    load_file_close(results->distribution, why);
     return EXIT_RUN_FAILED;
 }
 
-static int interrupted(const config *conf, output_file *output, double load, double angle) {
+static int interrupted(const config *conf, const static_results *results, double load,
+                       double angle) {
     char place[PLACE_SIZE];
     char why[128];
 
     snprintf(why, sizeof why, "interrupted %s", place_text(place, load, angle));
     message_of_program(conf->messages, "%s", why);
-    output_close(output, why);
+    output_close(results->output, why);
+    load_file_close(results->distribution, why);
     return EXIT_INTERRUPTED;
 }
 
 /* The period under one load; 0, or an exit code and the file is closed. */
 static int write_period(const config *conf, const gear_mesh *gears, double load,
-                        output_file *output) {
+                        const static_results *results) {
     sweep before = {load, 0.0, (double)NAN, 0.0};
 
     for (int position = 0; position < conf->positions; ++position) {
@@ -141,38 +173,59 @@ static int write_period(const config *conf, const gear_mesh *gears, double load,
         int status;
 
         if (interrupt_requested()) {
-            return interrupted(conf, output, load, angle);
+            return interrupted(conf, results, load, angle);
         }
-        if (write_position(conf, gears, angle, &before, output, &status) != 0) {
-            return fail(conf, output, load, angle, status);
+        if (write_position(conf, gears, angle, &before, results, &status) != 0) {
+            return fail(conf, results, load, angle, status);
         }
     }
     return 0;
 }
 
-static int write_all(const config *conf, const gear_mesh *gears, output_file *output) {
+static int write_all(const config *conf, const gear_mesh *gears, const static_results *results) {
     for (int index = 0; index < conf->loads; ++index) {
-        const int exit_code = write_period(conf, gears, load_of(conf, index), output);
+        const int exit_code = write_period(conf, gears, load_of(conf, index), results);
         if (exit_code != 0) {
             return exit_code;
         }
     }
-    return output_close(output, NULL);
+    const int exit_code = output_close(results->output, NULL);
+    const int other = load_file_close(results->distribution, NULL);
+    return exit_code != 0 ? exit_code : other;
 }
 
 double statics_rows(const config *conf) {
     return (double)conf->loads * conf->positions;
 }
 
+int statics_check(const config *conf) {
+    return load_file_check(conf);
+}
+
 int statics_run(const config *conf, const gear_mesh *gears) {
     const column_names names = static_column_names(conf);
-    int exit_code = 0;
+    static_results results = {.distribution = NULL};
+    int exit_code = load_file_open(&results.distribution, conf);
+
+    /* Points of a position are kept where a file takes them. */
+    if (exit_code == 0 && results.distribution != NULL) {
+        results.capacity = gm_mesh_load_points(gears->prepared);
+        results.points = allocate((size_t)results.capacity, sizeof *results.points);
+        exit_code = results.points != NULL ? 0 : message_no_memory(conf->messages);
+    }
+    if (exit_code != 0) {
+        (void)load_file_close(results.distribution, "no rows");
+        return exit_code;
+    }
 
     interrupt_watch(SECOND_KILLS);
-    output_file *output = output_open(conf, names.name, names.count, &exit_code);
-    if (output != NULL) {
-        exit_code = write_all(conf, gears, output);
+    results.output = output_open(conf, names.name, names.count, &exit_code);
+    if (results.output != NULL) {
+        exit_code = write_all(conf, gears, &results);
+    } else {
+        (void)load_file_close(results.distribution, "there is no result");
     }
     interrupt_unwatch();
+    free(results.points);
     return exit_code;
 }

@@ -7,6 +7,9 @@
 
 #include "gear_mesh.h"
 
+/* Checks that its second file can be written. 0, or EXIT_BAD_INPUT after a message. */
+int statics_check(const config *conf);
+
 /* Returns an exit code, after a message if it is not EXIT_DONE. */
 int statics_run(const config *conf, const gear_mesh *gears);
 

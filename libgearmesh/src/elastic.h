@@ -300,6 +300,13 @@ typedef struct gmi_elastic_result {
 int gmi_elastic_solve(const gmi_elastic *law, gmi_elastic_work *work, double approach,
                       gmi_elastic_result *result);
 
+/*
+ * Line load at any z of a placed line, after gmi_elastic_solve(): from the deflections of the stations beside it.
+ * deviation: of both flanks there (m). *gamma: approach of the surfaces, <= 0 where they do not touch (m).
+ */
+double gmi_elastic_load_at(const gmi_elastic *law, const gmi_elastic_work *work, int row, double z,
+                           double deviation, double *gamma);
+
 /* ---------------------------------------------------------------------------------------------
  * Derivatives
  * ------------------------------------------------------------------------------------------- */

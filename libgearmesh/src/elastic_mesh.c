@@ -410,80 +410,6 @@ static int place(side_view *view, const gm_position *position, int wanted, gmi_e
     return gmi_elastic_place(law, &lines, work);
 }
 
-/* Material of both flanks at a point of a line; slopes along z and along the pinion's roll length. */
-typedef struct material {
-    double value, by_z, by_roll;
-} material;
-
-/* The flanks that meet on a line, and what tilted axes do there. */
-typedef struct line_view {
-    const side_view *side;
-    gmi_flank pinion, wheel;
-    gmi_tilted_line tilted;
-} line_view;
-
-static line_view view_line(const side_view *view, const gmi_elastic_line *line) {
-    const gm_mesh *mesh = view->mesh;
-    const gm_pair *pair = mesh->pair;
-    const gmi_engagement *at = &mesh->engagement;
-    const gmi_side *prepared = &mesh->side[view->side];
-    const int steps = view->teeth.step * (line->index - view->lines.first);
-    const int pinion = (view->teeth.pinion + steps) % pair->pinion.teeth;
-    const int wheel = (view->teeth.wheel + steps) % pair->wheel.teeth;
-    line_view seen = {
-        .side = view,
-        .pinion = gmi_flank_of(prepared->pinion, pinion < 0 ? pinion + pair->pinion.teeth : pinion),
-        .wheel = gmi_flank_of(prepared->wheel, wheel < 0 ? wheel + pair->wheel.teeth : wheel),
-    };
-    if (at->is_tilted) {
-        const double origin =
-            view->lines.origin + (double)line->index * pair->transverse_base_pitch;
-        gmi_tilt_line(pair, at, view->side, origin, &seen.tilted);
-    }
-    return seen;
-}
-
-static material material_at(const line_view *line, double z, double roll) {
-    const side_view *view = line->side;
-    const gm_mesh *mesh = view->mesh;
-    const gm_pair *pair = mesh->pair;
-    const gmi_engagement *at = &mesh->engagement;
-    const gmi_side *prepared = &mesh->side[view->side];
-    const double per_width = 1.0 / pair->face_width;
-    const double t1 = at->face_from + z * per_width;
-    material sum = {line->pinion.pitch + line->wheel.pitch, 0.0, 0.0};
-
-    /* Each flank at its own roll length; the wheel's falls as the pinion's grows. */
-    if (prepared->pinion != NULL) {
-        const gmi_surface flank =
-            gmi_surface_at(prepared->pinion, &prepared->pinion_grid, line->pinion.values, t1,
-                           roll - pair->pinion.start_roll_length);
-        sum.value += flank.value;
-        sum.by_z += flank.by_t1 * per_width;
-        sum.by_roll += flank.by_roll;
-    }
-    if (prepared->wheel != NULL) {
-        const gmi_surface flank =
-            gmi_surface_at(prepared->wheel, &prepared->wheel_grid, line->wheel.values, t1,
-                           at->line_of_action - roll - at->wheel_profile_start);
-        sum.value += flank.value;
-        sum.by_z += flank.by_t1 * per_width;
-        sum.by_roll -= flank.by_roll;
-    }
-
-    /* Tilted axes: a parabola along the line. */
-    if (at->is_tilted) {
-        const gmi_tilted_line *tilted = &line->tilted;
-        const double *shift = tilted->shift;
-        const double by_roll = tilted->by_origin[0] + tilted->by_origin[1] * t1;
-        const double along = (shift[1] + 2.0 * shift[2] * t1) * per_width;
-        sum.value += shift[0] + (shift[1] + shift[2] * t1) * t1;
-        sum.by_roll += by_roll;
-        sum.by_z += along - view->lines.advance * per_width * by_roll;
-    }
-    return sum;
-}
-
 /* Whether there is anything at all beside the drawing. */
 static int is_drawn(const gm_mesh *mesh, int side) {
     const gmi_side *prepared = &mesh->side[side];
@@ -498,15 +424,20 @@ static void set_material(const side_view *view, gmi_elastic_work *work) {
         memset(work->deviation_by_z, 0, bytes);
         return;
     }
+    const gmi_engagement *at = &view->mesh->engagement;
+    const double per_width = 1.0 / view->mesh->pair->face_width;
     for (int row = 0; row < work->count; ++row) {
         const gmi_elastic_line *line = &work->line[row];
-        const line_view seen = view_line(view, line);
+        const gmi_line_flanks flanks =
+            gmi_line_flanks_of(view->mesh, view->side, &view->lines, &view->teeth, line->index);
         for (int half = 0; half < 2; ++half) {
             const int first = line->slot + half * work->slots;
             for (int p = first; p < first + line->elements; ++p) {
-                const material point = material_at(&seen, work->z[p], work->roll[p]);
+                const gmi_surface point =
+                    gmi_line_flanks_at(&flanks, at->face_from + work->z[p] * per_width,
+                                       work->roll[p], at->line_of_action);
                 work->deviation[p] = point.value;
-                work->deviation_by_z[p] = point.by_z;
+                work->deviation_by_z[p] = point.by_t1 * per_width;
                 work->deviation_by_roll[p] = point.by_roll;
             }
         }

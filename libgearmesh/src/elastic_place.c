@@ -8,6 +8,7 @@
  */
 #include "elastic.h"
 
+#include "hertz.h"
 #include "internal.h"
 
 #include <math.h>
@@ -488,4 +489,40 @@ int gmi_elastic_place(const gmi_elastic *law, const gmi_elastic_lines_at *at,
     count_lines(work);
     follow_teeth(work);
     return good ? GM_OK : GM_ERR_PARAMETER;
+}
+
+/* ---------------------------------------------------------------------------------------------
+ * Between the points
+ * ------------------------------------------------------------------------------------------- */
+
+double gmi_elastic_load_at(const gmi_elastic *law, const gmi_elastic_work *work, int row, double z,
+                           double deviation, double *gamma) {
+    const gmi_elastic_lines_at *at = &work->at;
+    const gmi_elastic_line *line = &work->line[row];
+
+    /* Both teeth there. */
+    const double roll = at->origin + (double)line->index * at->pitch + at->climb * z;
+    const double wheel_roll = at->line_of_action - roll;
+    const int number = line->index - at->first;
+    const tooth_pair teeth = {{at->pinion_softness != NULL ? at->pinion_softness[number] : 1.0,
+                               at->wheel_softness != NULL ? at->wheel_softness[number] : 1.0},
+                              law->rim_compliance,
+                              at->line_of_action};
+    double pinion[2], wheel[2], tooth, rate;
+    read_table(&law->gear[0], 1, 0, &roll, pinion, NULL);
+    read_table(&law->gear[1], 1, 0, &wheel_roll, wheel, NULL);
+    join_teeth(1, &teeth, pinion, wheel, &tooth, &rate);
+
+    /* Deflections of the element that holds z. */
+    const int last = line->element + line->elements - 1;
+    const int element = first_element(z, law);
+    const int e = element < line->element ? line->element : element > last ? last : element;
+    const double place = z * law->per_spacing - (double)e;
+    const double *phi = work->state + row * work->stations + e;
+    const double *psi = work->state + work->lines_max * work->stations + e;
+    *gamma = work->approach + deviation - tooth * (phi[0] + place * (phi[1] - phi[0])) -
+             (psi[0] + place * (psi[1] - psi[0]));
+    gmi_hertz_state contact;
+    gmi_hertz_evaluate(law->hertz_compliance, rate, *gamma, &contact);
+    return contact.load;
 }

@@ -582,7 +582,8 @@ struct gm_mesh {
     int model;        /* enum gm_model */
     gmi_law law;
     const struct gmi_elastic_mesh *elastic; /* NULL = constant stiffness */
-    gm_cache *cache;                        /* NULL = exact */
+    double contact_compliance; /* 1 / E* = sum of (1 - nu^2) / E of both gears (m2/N) */
+    gm_cache *cache;           /* NULL = exact */
 };
 
 /* As gm_mesh_evaluate_at() without the cache, of a position that has been checked and posed. GM_OK or GM_NO_CONVERGENCE. */

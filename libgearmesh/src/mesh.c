@@ -77,7 +77,7 @@ static const char *field_at_fault(const gm_mesh_params *params, const char **wan
         *wanted = stiffness;
         return "simple_stiffness";
     }
-    return params->law == GM_LAW_ELASTIC ? gmi_elastic_field_at_fault(params, wanted) : NULL;
+    return gmi_elastic_field_at_fault(params, wanted);
 }
 
 int gm_mesh_params_check(const gm_mesh_params *params, const char **field,
@@ -183,6 +183,10 @@ int gm_mesh_init(gm_mesh **mesh, const gm_mesh_params *params, const gm_pair *pa
         }
     }
     made->law = gmi_law_of(&law, pair);
+    made->contact_compliance = (1.0 - params->pinion_poisson_ratio * params->pinion_poisson_ratio) /
+                                   params->pinion_youngs_modulus +
+                               (1.0 - params->wheel_poisson_ratio * params->wheel_poisson_ratio) /
+                                   params->wheel_youngs_modulus;
     made->is_posed = engagement.offset_shift != 0.0 || engagement.phase_shift != 0.0;
     if (params->model == GM_MODEL_SIMPLE) {
         pinion_flanks = wheel_flanks = NULL;

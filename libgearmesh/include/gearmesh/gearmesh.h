@@ -767,7 +767,7 @@ typedef struct gm_mesh_params {
         simple_stiffness; /**< spring of the simple model, 1e-30 .. 1e30 N/m [NaN: K eps_alpha] */
     gm_pose pose;         /**< of the wheel [as drawn] */
 
-    /* Of elastic teeth alone. The stiffness is then not needed: it follows. */
+    /* Of elastic teeth, which need no stiffness: it follows. With other laws E and nu give the contact pressure. */
     double pinion_youngs_modulus; /**< E, 1e6 .. 1e15 N/m2 [206e9] */
     double wheel_youngs_modulus;  /**< as for the pinion */
     double pinion_poisson_ratio;  /**< nu, 0 .. 0.499 [0.3] */
@@ -1093,6 +1093,53 @@ GM_API double gm_mesh_touching_stiffness(const gm_mesh *mesh, const gm_mesh_resu
 GM_API int gm_static_equilibrium(const gm_mesh *mesh, double pinion_angle, double wheel_torque,
                                  double guess, gm_workspace *workspace, double *offset,
                                  gm_mesh_result *result);
+
+/** The load at one point of a line of contact. */
+typedef struct gm_load_point {
+    int side;                  /**< GM_DRIVE or GM_COAST */
+    int pinion_tooth;          /**< 0 .. z_p - 1 */
+    int wheel_tooth;           /**< 0 .. z_w - 1 */
+    double z;                  /**< along the face (m) */
+    double pinion_roll_length; /**< rho_p (m) */
+    double wheel_roll_length;  /**< rho_w, of a ring above 0 too (m) */
+    double
+        line_load; /**< q, normal force per length of the contact line (N/m); its integral over z is the
+                               transverse force */
+    double pressure; /**< p_0 = 2 q / (pi a), largest Hertzian pressure there (N/m2) */
+    double gap;      /**< between the surfaces, < 0 pressed into each other (m) */
+} gm_load_point;
+
+/** How a mesh is loaded at one position; NaN where nothing touches. */
+typedef struct gm_load {
+    double largest_line_load; /**< of all points and ends of lines (N/m) */
+    double largest_pressure;  /**< likewise (N/m2) */
+    double
+        face_load_factor; /**< largest line load over the mean one along the lines that touch: of a single
+                                       spur pair max(q) b / F */
+    double touching_width; /**< touching part of the face, summed over all lines (m) */
+    int points;            /**< how many were written */
+} gm_load;
+
+/** How many points gm_mesh_load() gives at most; 0 for NULL. */
+GM_API int gm_mesh_load_points(const gm_mesh *mesh);
+
+/**
+ * Load along the lines of contact, without damping: at the stations of the face (17 with the constant law) that a line
+ * passes, in the order of sides, lines and z.
+ *
+ * @param[in]     mesh       the mesh, not of the simple model
+ * @param[in]     position   where the gears are
+ * @param[in,out] workspace  as gm_mesh_evaluate()
+ * @param[out]    points     [capacity]; NULL: not wanted
+ * @param[in]     capacity   gm_mesh_load_points() is always enough
+ * @param[out]    load       all fields; NaN and 0 on an error
+ * @return as gm_mesh_evaluate_at(); GM_ERR_GEOMETRY (simple model), GM_ERR_MEMORY (more points than the capacity)
+ *
+ * Accuracy: elastic teeth as docs/elastic.md. Pressure of a line contact [Johnson], from E and nu of gm_mesh_params with
+ * any law.
+ */
+GM_API int gm_mesh_load(const gm_mesh *mesh, const gm_position *position, gm_workspace *workspace,
+                        gm_load_point *points, int capacity, gm_load *load);
 
 /* ---------------------------------------------------------------------------------------------
  * Cache of the 3D model, for long sweeps

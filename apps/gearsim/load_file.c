@@ -1,0 +1,159 @@
+/* SPDX-FileCopyrightText: The gearmesh authors */
+/* SPDX-License-Identifier: BSD-3-Clause */
+
+#include "load_file.h"
+#include "memory.h"
+#include "number.h"
+#include "result_file.h"
+
+#include <errno.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+static const char key[] = "output.load_distribution";
+
+struct load_file {
+    result_file result;
+    FILE *stream; /* on a descriptor of its own */
+    int digits;
+    message_sink *messages;
+};
+
+/* The result by that name must be another file. */
+static int check_names(const config *conf) {
+    if (!result_file_would_replace(conf->load_distribution, conf->output_file)) {
+        return 0;
+    }
+    config_complain(conf, key, "must be another file than output.file (got %s)",
+                    conf->load_distribution);
+    return EXIT_BAD_INPUT;
+}
+
+static int complain(const config *conf, const result_file *result, int exit_code) {
+    if (exit_code != EXIT_DONE) {
+        config_complain(conf, key, "'%s' %s", result->wrong_path, result->reason);
+    }
+    return exit_code;
+}
+
+int load_file_check(const config *conf) {
+    if (conf->load_distribution == NULL || conf->analysis != ANALYSIS_STATIC) {
+        return 0;
+    }
+    int status = check_names(conf);
+    if (status == 0) {
+        result_file result;
+        status = complain(conf, &result, result_file_check(&result, conf->load_distribution));
+        result_file_free(&result);
+    }
+    return status;
+}
+
+static int fail(const load_file *file) {
+    message_of_program(file->messages, "%s: %s", file->result.part, strerror(errno));
+    return EXIT_RUN_FAILED;
+}
+
+static void write_head(const load_file *file, const config *conf) {
+    for (int i = 0; i < conf->provenance_count; ++i) {
+        fprintf(file->stream, "# %s\n", conf->provenance[i]);
+    }
+    fputs("pinion_angle_rad,load_torque_Nm,pair,flank,z_mm,pinion_roll_length_mm,"
+          "wheel_roll_length_mm,line_load_N_per_mm,pressure_N_per_mm2,gap_um\n",
+          file->stream);
+}
+
+static void free_file(load_file *file) {
+    if (file->stream != NULL) {
+        fclose(file->stream);
+    }
+    result_file_free(&file->result);
+    free(file);
+}
+
+int load_file_open(load_file **file, const config *conf) {
+    *file = NULL;
+    if (conf->load_distribution == NULL || conf->analysis != ANALYSIS_STATIC) {
+        return 0;
+    }
+    int status = check_names(conf);
+    if (status != 0) {
+        return status;
+    }
+    load_file *opened = allocate(1, sizeof *opened);
+    if (opened == NULL) {
+        return message_no_memory(conf->messages);
+    }
+    opened->messages = conf->messages;
+    opened->digits = conf->digits;
+    opened->result.data = opened->result.lock = -1;
+    status = complain(conf, &opened->result,
+                      result_file_check(&opened->result, conf->load_distribution));
+    if (status == EXIT_DONE) {
+        status = complain(conf, &opened->result, result_file_open(&opened->result));
+    }
+    if (status == EXIT_DONE) {
+        const int descriptor = dup(opened->result.data);
+        opened->stream = descriptor >= 0 ? fdopen(descriptor, "w") : NULL;
+        status = opened->stream != NULL ? EXIT_DONE : fail(opened);
+    }
+    if (status != EXIT_DONE) {
+        free_file(opened);
+        return status;
+    }
+    write_head(opened, conf);
+    *file = opened;
+    return 0;
+}
+
+static void put_number(const load_file *file, char before, double value) {
+    char text[NUMBER_TEXT_SIZE];
+
+    number_format(text, value, file->digits);
+    fputc(before, file->stream);
+    fputs(text, file->stream);
+}
+
+int load_file_rows(load_file *file, double pinion_angle, double load, const gm_load_point *points,
+                   int count) {
+    if (file == NULL) {
+        return 0;
+    }
+    for (int i = 0; i < count; ++i) {
+        const gm_load_point *point = &points[i];
+        char angle[NUMBER_TEXT_SIZE];
+        number_format(angle, pinion_angle, file->digits);
+        fputs(angle, file->stream);
+        put_number(file, ',', load);
+        fprintf(file->stream, ",%d,%s", point->pinion_tooth,
+                point->side == GM_DRIVE ? "drive" : "coast");
+        put_number(file, ',', 1e3 * point->z);
+        put_number(file, ',', 1e3 * point->pinion_roll_length);
+        put_number(file, ',', 1e3 * point->wheel_roll_length);
+        put_number(file, ',', 1e-3 * point->line_load);
+        put_number(file, ',', 1e-6 * point->pressure);
+        put_number(file, ',', 1e6 * point->gap);
+        fputc('\n', file->stream);
+    }
+    return ferror(file->stream) ? fail(file) : 0;
+}
+
+int load_file_close(load_file *file, const char *incomplete) {
+    if (file == NULL) {
+        return 0;
+    }
+    if (incomplete != NULL) {
+        fprintf(file->stream, "# incomplete: %s\n", incomplete);
+    }
+    int status = fflush(file->stream) == 0 ? EXIT_DONE : fail(file);
+    if (status == EXIT_DONE && incomplete == NULL) {
+        const result_file *wrong;
+        status = result_files_replace(&file->result, 1, &wrong);
+        if (status != EXIT_DONE) {
+            message_of_program(file->messages, "'%s' %s", wrong->wrong_path, wrong->reason);
+        }
+    }
+    free_file(file);
+    return status;
+}

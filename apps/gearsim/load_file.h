@@ -1,0 +1,29 @@
+/* SPDX-FileCopyrightText: The gearmesh authors */
+/* SPDX-License-Identifier: BSD-3-Clause */
+
+/*
+ * The file of `output.load_distribution`: line load, pressure and gap of each station that a line of contact passes, as
+ * CSV. It grows in FILE.part and gets its name when it is whole, as the result.
+ */
+#ifndef GEARSIM_LOAD_FILE_H
+#define GEARSIM_LOAD_FILE_H
+
+#include "config.h"
+
+typedef struct load_file load_file;
+
+/* Checks that the file can be written, without touching one. 0, or EXIT_BAD_INPUT after a message; 0 without the key. */
+int load_file_check(const config *conf);
+
+/* Opens FILE.part and writes its head; *file is NULL without the key. Returns 0 or an exit code after a message. */
+int load_file_open(load_file **file, const config *conf);
+
+/* Rows of one position; `file` may be NULL. 0, or EXIT_RUN_FAILED (disk) after a message. */
+int load_file_rows(load_file *file, double pinion_angle, double load, const gm_load_point *points,
+                   int count);
+
+/* Ends the file and frees it: `incomplete` NULL = whole; else keep FILE.part and say why. `file` may be NULL. Returns 0, or
+ * EXIT_RUN_FAILED after a message. */
+int load_file_close(load_file *file, const char *incomplete);
+
+#endif

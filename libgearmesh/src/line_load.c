@@ -1,0 +1,214 @@
+/* SPDX-FileCopyrightText: The gearmesh authors */
+/* SPDX-License-Identifier: BSD-3-Clause */
+
+/*
+ * The load along the lines of contact, station by station. With constant stiffness K of a pair over the common face b the
+ * line load is K f / b; elastic teeth have it from their deflections.
+ */
+#include "elastic_mesh.h"
+#include "internal.h"
+#include "penetration.h"
+#include "surface.h"
+
+#include <math.h>
+
+enum { STATIONS = 17 }; /* where the law has none of its own */
+
+static int stations_of(const gm_mesh *mesh) {
+    return mesh->elastic != NULL ? mesh->elastic->law.stations : STATIONS;
+}
+
+int gm_mesh_load_points(const gm_mesh *mesh) {
+    if (mesh == NULL) {
+        return 0;
+    }
+    return 2 * stations_of(mesh) * gmi_elastic_lines(mesh->pair->total_contact_ratio);
+}
+
+/* All that is found, and where it goes. */
+typedef struct walk {
+    const gm_mesh *mesh;
+    gm_load_point *points;
+    int capacity;
+    gm_load *load;
+    double force;  /* of all lines, transverse (N) */
+    double length; /* of those that touch, along z (m) */
+} walk;
+
+/* One side, whose lines have been found. */
+typedef struct side_lines {
+    int side;
+    gmi_lines lines;
+    gmi_teeth teeth;
+    double delta;           /* ideal penetration (m) */
+    double reach;           /* rho_p + rho_w (m) */
+    gmi_elastic_work *work; /* solved; NULL with constant stiffness */
+} side_lines;
+
+/*
+ * Line contact [Johnson]: half width a = sqrt(4 q rho_red / (pi E*)), p_0 = 2 q / (pi a), with the curvature of the normal
+ * section, rho_red = rho_p rho_w / (T cos(beta_b)).
+ */
+static double pressure_of(const gm_mesh *mesh, double line_load, double roll, double wheel_roll) {
+    const double cosine = cos(mesh->pair->base_helix_angle);
+    const double radius = roll * wheel_roll / ((roll + wheel_roll) * cosine);
+    const double half_width = sqrt(4.0 * line_load * radius * mesh->contact_compliance / GMI_PI);
+    return line_load > 0.0 ? 2.0 * line_load / (GMI_PI * half_width) : 0.0;
+}
+
+/* row: of the elastic workspace. */
+static gm_load_point point_at(const gm_mesh *mesh, const side_lines *found,
+                              const gmi_line_flanks *flanks, int index, int row, double t1) {
+    const gm_pair *pair = mesh->pair;
+    const double roll = found->lines.origin + (double)index * pair->transverse_base_pitch +
+                        found->lines.advance * t1;
+    const double material = gmi_line_flanks_at(flanks, t1, roll, found->reach).value;
+    gm_load_point point = {
+        .side = found->side,
+        .pinion_tooth = flanks->pinion_tooth,
+        .wheel_tooth = flanks->wheel_tooth,
+        .z = pair->face_start + t1 * pair->face_width,
+        .pinion_roll_length = roll,
+        .wheel_roll_length = fabs(found->reach - roll),
+    };
+    double approach;
+    if (found->work != NULL) {
+        const double z = (t1 - mesh->engagement.face_from) * pair->face_width;
+        point.line_load =
+            gmi_elastic_load_at(&mesh->elastic->law, found->work, row, z, material, &approach);
+    } else {
+        const double gain =
+            mesh->engagement.is_tilted ? gmi_tilt_gain(pair, &mesh->engagement, found->side) : 1.0;
+        approach = gain * found->delta + material;
+        point.line_load = fmax(0.0, approach) * mesh->law.stiffness / pair->face_width;
+    }
+    point.gap = -approach;
+    point.pressure = pressure_of(mesh, point.line_load, roll, found->reach - roll);
+    return point;
+}
+
+static void count_point(walk *w, const gm_load_point *point) {
+    w->load->largest_line_load = fmax(w->load->largest_line_load, point->line_load);
+    w->load->largest_pressure = fmax(w->load->largest_pressure, point->pressure);
+}
+
+/* Stations of one line within its ends, and the ends themselves. Returns GM_OK or GM_ERR_MEMORY. */
+static int walk_line(walk *w, const side_lines *found, int index, int row, gmi_interval part) {
+    const gm_mesh *mesh = w->mesh;
+    const gmi_engagement *at = &mesh->engagement;
+    const gmi_line_flanks flanks =
+        gmi_line_flanks_of(mesh, found->side, &found->lines, &found->teeth, index);
+    const int stations = stations_of(mesh);
+    const double spacing = (at->face_to - at->face_from) / (double)(stations - 1);
+    int touches = 0;
+    for (int k = 0; k < stations; ++k) {
+        const double t1 = k == stations - 1 ? at->face_to : at->face_from + (double)k * spacing;
+        if (!(t1 >= part.from && t1 <= part.to)) {
+            continue;
+        }
+        const gm_load_point point = point_at(mesh, found, &flanks, index, row, t1);
+        count_point(w, &point);
+        touches = touches || point.line_load > 0.0;
+        if (w->points != NULL) {
+            if (w->load->points == w->capacity) {
+                return GM_ERR_MEMORY;
+            }
+            w->points[w->load->points] = point;
+        }
+        ++w->load->points;
+    }
+    for (int end = 0; end < 2; ++end) {
+        const gm_load_point point =
+            point_at(mesh, found, &flanks, index, row, end == 0 ? part.from : part.to);
+        count_point(w, &point);
+        touches = touches || point.line_load > 0.0;
+    }
+    w->length += touches ? (part.to - part.from) * mesh->pair->face_width : 0.0;
+    return GM_OK;
+}
+
+/* Row of a line in the workspace; -1: it is not there. */
+static int row_of(const gmi_elastic_work *work, int index) {
+    for (int row = 0; row < work->count; ++row) {
+        if (work->line[row].index == index) {
+            return row;
+        }
+    }
+    return -1;
+}
+
+/* Of elastic teeth: where their points carry load. */
+static double touching_width(const gmi_elastic_work *work) {
+    double width = 0.0;
+    for (int p = 0; p < 2 * work->slots; ++p) {
+        width += work->load[p] > 0.0 ? work->weight[p] : 0.0;
+    }
+    return width;
+}
+
+static int walk_side(walk *w, int side, const gm_position *position, gm_workspace *workspace) {
+    const gm_mesh *mesh = w->mesh;
+    const gm_pair *pair = mesh->pair;
+    const gmi_engagement *at = &mesh->engagement;
+    gmi_side_sum sum;
+    int status = gmi_side_sum_by_law(mesh, side, position, GMI_SUM, workspace, &sum);
+    if (status != GM_OK || sum.sum == 0.0) {
+        return status;
+    }
+    w->force += mesh->law.stiffness * sum.sum;
+    w->load->touching_width += mesh->elastic != NULL ? touching_width(&workspace->side[side])
+                                                     : sum.contact * pair->face_width;
+
+    /* Elastic teeth do not move the path by what they give way. */
+    side_lines found = {.side = side, .delta = gmi_ideal_penetration(at, side, position->offset)};
+    found.work = mesh->elastic != NULL ? &workspace->side[side] : NULL;
+    found.reach = at->line_of_action + (found.work != NULL ? 0.0 : found.delta);
+    gm_position lines_at = *position;
+    if (found.work != NULL) {
+        lines_at.offset = gmi_side_sign(side) * 0.5 * at->backlash;
+    }
+    gmi_lines_find(pair, at, side, &lines_at, &found.lines);
+    found.teeth = gmi_lines_teeth(pair, side, &lines_at, &found.lines);
+    const gmi_line_ends ends = gmi_line_ends_find(pair, at, &found.lines);
+    for (int k = found.lines.first; k <= found.lines.last && status == GM_OK; ++k) {
+        const gmi_interval part = gmi_line_clip(&ends, k);
+        const int row = found.work != NULL ? row_of(found.work, k) : 0;
+        if (part.from < part.to && row >= 0) {
+            status = walk_line(w, &found, k, row, part);
+        }
+    }
+    return status;
+}
+
+int gm_mesh_load(const gm_mesh *mesh, const gm_position *position, gm_workspace *workspace,
+                 gm_load_point *points, int capacity, gm_load *load) {
+    if (load == NULL) {
+        return GM_ERR_NULL;
+    }
+    const gm_load none = {gmi_nan(), gmi_nan(), gmi_nan(), gmi_nan(), 0};
+    *load = none;
+    if (mesh == NULL || position == NULL || (mesh->elastic != NULL && workspace == NULL)) {
+        return GM_ERR_NULL;
+    }
+    if (mesh->model == GM_MODEL_SIMPLE) {
+        return GM_ERR_GEOMETRY;
+    }
+    const gm_position posed = gmi_mesh_posed(mesh, position);
+    int status = gmi_check_position(mesh->pair, &posed);
+
+    gm_load found = {0.0, 0.0, 0.0, 0.0, 0};
+    walk w = {.mesh = mesh, .points = points, .capacity = capacity, .load = &found};
+    for (int side = GM_DRIVE; side <= GM_COAST && status == GM_OK; ++side) {
+        status = walk_side(&w, side, &posed, workspace);
+    }
+    if (status != GM_OK) {
+        return status;
+    }
+    if (found.largest_line_load > 0.0) {
+        *load = found;
+        load->face_load_factor = found.largest_line_load * w.length / w.force;
+    }
+    load->touching_width = found.touching_width;
+    load->points = found.points;
+    return GM_OK;
+}
