@@ -583,6 +583,76 @@ static void wrench_acts_where_the_load_is(void) {
     release(&skewed);
 }
 
+/* Line loads at stations and ends add up to the force, and follow from Hertz what the pressure is. */
+static void line_loads_are_the_force(void) {
+    const gm_pair_params gears = spur62();
+    gm_mesh_params law = elastic_law();
+    law.pose.inclination = 2e-4;
+    for (int k = 0; k < 2; ++k) {
+        law.law = k == 0 ? GM_LAW_ELASTIC : GM_LAW_CONSTANT;
+        law.stiffness = 2.8e8;
+        elastic_mesh m;
+        memset(&m, 0, sizeof m);
+        if (k == 0) {
+            GM_ASSERT_INT(make(&m, &gears, &law, NULL, NULL), GM_OK);
+        } else {
+            GM_ASSERT_INT(gm_pair_init(&m.pair, &gears), GM_OK);
+            const size_t size = gm_mesh_size(&law, &m.pair);
+            m.mesh_memory = malloc(size);
+            GM_ASSERT_INT(gm_mesh_init(&m.mesh, &law, &m.pair, NULL, NULL, m.mesh_memory, size),
+                          GM_OK);
+        }
+        const gm_state state = pressed_state(&m, 0.01, 6e-6);
+        const gm_mesh_result r = evaluate(&m, &state, GM_WANT_FORCE);
+        gm_position position;
+        GM_ASSERT_INT(gm_position_from_state(&m.pair, &state, &position), GM_OK);
+        gm_line_load_point points[400];
+        gm_line_loads loads;
+        GM_ASSERT(gm_mesh_line_load_points(m.mesh) <= 400);
+        GM_ASSERT_INT(gm_mesh_line_loads(m.mesh, &position, m.workspace, points, 400, &loads),
+                      GM_OK);
+
+        /* Two pairs on 17 stations. */
+        GM_ASSERT_INT(loads.points, 34);
+        double force = 0.0, largest = 0.0;
+        for (int n = 0; n < loads.points; ++n) {
+            const gm_line_load_point *p = &points[n];
+            const int is_end = n % 17 == 0 || n % 17 == 16;
+            force += p->line_load * gears.face_width / 16.0 * (is_end ? 0.5 : 1.0);
+            largest = fmax(largest, p->line_load);
+            GM_ASSERT_INT(p->side, GM_DRIVE);
+            GM_ASSERT_REL(p->pinion_roll_length + p->wheel_roll_length, m.pair.line_of_action,
+                          k == 0 ? 1e-12 : 1e-3);
+            GM_ASSERT((p->gap < 0.0) == (p->line_load > 0.0));
+            const double radius = p->pinion_roll_length * p->wheel_roll_length /
+                                  (p->pinion_roll_length + p->wheel_roll_length);
+            GM_ASSERT_REL(p->pressure,
+                          sqrt(p->line_load * 206e9 / (2.0 * 0.91) / (3.14159265358979 * radius)),
+                          1e-9);
+        }
+        GM_ASSERT_REL(force, r.force, 2e-3);
+        GM_ASSERT_REL(loads.largest_line_load, largest, 1e-12);
+        GM_ASSERT_REL(loads.face_load_factor, largest * 2.0 * gears.face_width / r.force, 1e-9);
+        GM_ASSERT_REL(loads.touching_width, 2.0 * gears.face_width, 1e-9);
+
+        /* Without points, and with too little room. */
+        gm_line_loads again;
+        GM_ASSERT_INT(gm_mesh_line_loads(m.mesh, &position, m.workspace, NULL, 0, &again), GM_OK);
+        GM_ASSERT_REL(again.largest_pressure, loads.largest_pressure, 1e-6);
+        GM_ASSERT_INT(gm_mesh_line_loads(m.mesh, &position, m.workspace, points, 33, &again),
+                      GM_ERR_MEMORY);
+        GM_ASSERT_NAN(again.largest_line_load);
+        GM_ASSERT_INT(gm_mesh_line_loads(NULL, &position, m.workspace, points, 400, &again),
+                      GM_ERR_NULL);
+        position.offset = (double)NAN;
+        GM_ASSERT_INT(gm_mesh_line_loads(m.mesh, &position, m.workspace, points, 400, &again),
+                      GM_STATE_NOT_FINITE);
+        GM_ASSERT_NAN(again.face_load_factor);
+
+        release(&m);
+    }
+}
+
 static void bad_input_is_refused(void) {
     const gm_pair_params gears = spur62();
     gm_mesh_params law = elastic_law();
@@ -668,6 +738,7 @@ int main(int argc, char **argv) {
         GM_TEST(stiffness_is_that_at_the_reference_torque),
         GM_TEST(cache_holds_elastic_teeth),
         GM_TEST(wrench_acts_where_the_load_is),
+        GM_TEST(line_loads_are_the_force),
         GM_TEST(bad_input_is_refused),
     };
     return gm_test_main("unit.elastic_mesh", tests, GM_TEST_COUNT(tests), argc, argv);

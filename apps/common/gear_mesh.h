@@ -10,10 +10,10 @@
 
 typedef struct gear_mesh {
     gm_pair pair;
-    double wheel_shift;    /* of the wheel along its axis, by its pose (m) */
-    gear_flanks flanks[2]; /* GM_PINION, GM_WHEEL */
-    gm_mesh *prepared;     /* pair, flanks and law as one; NULL where there is no law */
-    gm_workspace *workspace; /* of elastic teeth, for one thread; NULL with other laws */
+    double wheel_shift;         /* of the wheel along its axis, by its pose (m) */
+    gear_flanks flanks[2];      /* GM_PINION, GM_WHEEL */
+    gm_mesh *prepared;          /* pair, flanks and law as one; NULL where there is no law */
+    gm_workspace *workspace;    /* of elastic teeth, for one thread; NULL with other laws */
     double *tooth_stiffness[2]; /* [enum gm_role] factors of single teeth, NULL = 1 */
 } gear_mesh;
 

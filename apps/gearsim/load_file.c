@@ -115,13 +115,13 @@ static void put_number(const load_file *file, char before, double value) {
     fputs(text, file->stream);
 }
 
-int load_file_rows(load_file *file, double pinion_angle, double load, const gm_load_point *points,
-                   int count) {
+int load_file_rows(load_file *file, double pinion_angle, double load,
+                   const gm_line_load_point *points, int count) {
     if (file == NULL) {
         return 0;
     }
     for (int i = 0; i < count; ++i) {
-        const gm_load_point *point = &points[i];
+        const gm_line_load_point *point = &points[i];
         char angle[NUMBER_TEXT_SIZE];
         number_format(angle, pinion_angle, file->digits);
         fputs(angle, file->stream);

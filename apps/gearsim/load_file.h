@@ -19,8 +19,8 @@ int load_file_check(const config *conf);
 int load_file_open(load_file **file, const config *conf);
 
 /* Rows of one position; `file` may be NULL. 0, or EXIT_RUN_FAILED (disk) after a message. */
-int load_file_rows(load_file *file, double pinion_angle, double load, const gm_load_point *points,
-                   int count);
+int load_file_rows(load_file *file, double pinion_angle, double load,
+                   const gm_line_load_point *points, int count);
 
 /* Ends the file and frees it: `incomplete` NULL = whole; else keep FILE.part and say why. `file` may be NULL. Returns 0, or
  * EXIT_RUN_FAILED after a message. */

@@ -61,17 +61,17 @@ static double largest_pressure(const static_position *position) {
 
 /* The load tells rows apart only where there are several. */
 /* clang-format off */
-#define ROW(name, component) {#name, ALWAYS, NEEDS_WRENCH, name},
+#define ROW(name, component) {#name, ALWAYS, TAKES_WRENCH, name},
 const static_column static_columns[] = {
-    {"pinion_angle_rad", ALWAYS, NEEDS_NOTHING, pinion_angle},
-    {"te_um", ALWAYS, NEEDS_NOTHING, transmission_error},
-    {"mesh_stiffness_N_per_um", ALWAYS, NEEDS_NOTHING, mesh_stiffness},
-    {"contact_length_mm", ALWAYS, NEEDS_FACES, contact_length},
-    {"pairs_in_contact", ALWAYS, NEEDS_NOTHING, pairs_in_contact},
-    {"load_torque_Nm", OF_SEVERAL_LOADS, NEEDS_NOTHING, load_torque},
-    {"face_load_factor", OF_ELASTIC_TEETH, NEEDS_FACES, face_load_factor},
-    {"largest_line_load_N_per_mm", OF_ELASTIC_TEETH, NEEDS_FACES, largest_line_load},
-    {"largest_pressure_N_per_mm2", OF_ELASTIC_TEETH, NEEDS_FACES, largest_pressure},
+    {"pinion_angle_rad", ALWAYS, TAKES_NOTHING, pinion_angle},
+    {"te_um", ALWAYS, TAKES_NOTHING, transmission_error},
+    {"mesh_stiffness_N_per_um", ALWAYS, TAKES_NOTHING, mesh_stiffness},
+    {"contact_length_mm", ALWAYS, TAKES_FACES, contact_length},
+    {"pairs_in_contact", ALWAYS, TAKES_NOTHING, pairs_in_contact},
+    {"load_torque_Nm", OF_SEVERAL_LOADS, TAKES_NOTHING, load_torque},
+    {"face_load_factor", OF_ELASTIC_TEETH, TAKES_FACES, face_load_factor},
+    {"largest_line_load_N_per_mm", OF_ELASTIC_TEETH, TAKES_FACES, largest_line_load},
+    {"largest_pressure_N_per_mm2", OF_ELASTIC_TEETH, TAKES_FACES, largest_pressure},
     WRENCH_COLUMNS(ROW)
 };
 #undef ROW

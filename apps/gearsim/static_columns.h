@@ -18,19 +18,19 @@ typedef struct static_position {
     double load;         /* N m */
     double offset;       /* x (m) */
     gm_mesh_result mesh; /* there */
-    gm_load faces;       /* how the flanks are loaded */
+    gm_line_loads faces; /* how the flanks are loaded */
 } static_position;
 
 /* When there is a column. */
 enum static_column_use { ALWAYS, OF_SEVERAL_LOADS, OF_ELASTIC_TEETH };
 
 /* What a column takes from static_position that is only found where a column is asked for. */
-enum static_column_need { NEEDS_NOTHING, NEEDS_WRENCH, NEEDS_FACES };
+enum static_column_taking { TAKES_NOTHING, TAKES_WRENCH, TAKES_FACES };
 
 typedef struct static_column {
-    const char *name;     /* with its unit */
-    enum static_column_use use;   /* of which analyses it is a column */
-    enum static_column_need need; /* beyond the equilibrium */
+    const char *name;                 /* with its unit */
+    enum static_column_use use;       /* of which analyses it is a column */
+    enum static_column_taking taking; /* beyond the equilibrium */
     double (*value)(const static_position *position);
 } static_column;
 

@@ -53,8 +53,8 @@ typedef struct sweep {
 /* Where rows go. */
 typedef struct static_results {
     output_file *output;
-    load_file *distribution; /* NULL = none */
-    gm_load_point *points;   /* of one position */
+    load_file *distribution;    /* NULL = none */
+    gm_line_load_point *points; /* of one position */
     int capacity;
 } static_results;
 
@@ -65,14 +65,14 @@ static int find_needed(const static_results *results, unsigned needs, static_pos
     int status = gm_position_from_pinion_angle(&at->gears->pair, at->pinion_angle, at->offset, 0.0,
                                                &position);
 
-    if (status == GM_OK && (needs & 1u << NEEDS_WRENCH)) {
+    if (status == GM_OK && (needs & 1u << TAKES_WRENCH)) {
         status = gm_mesh_evaluate_at(at->gears->prepared, &position, GM_WANT_WRENCH,
                                      at->gears->workspace, &result);
         at->mesh.wrench = result.wrench;
     }
-    if (status == GM_OK && (needs & 1u << NEEDS_FACES)) {
-        status = gm_mesh_load(at->gears->prepared, &position, at->gears->workspace, results->points,
-                              results->capacity, &at->faces);
+    if (status == GM_OK && (needs & 1u << TAKES_FACES)) {
+        status = gm_mesh_line_loads(at->gears->prepared, &position, at->gears->workspace,
+                                    results->points, results->capacity, &at->faces);
     }
     return status;
 }
@@ -98,15 +98,15 @@ static int write_position(const config *conf, const gear_mesh *gears, double ang
                                                    position.mesh.force_by.wheel_angle;
 
     /* What the columns that are asked for, and the other file, take beyond the equilibrium. */
-    unsigned needs = results->distribution != NULL ? 1u << NEEDS_FACES : 0;
+    unsigned needs = results->distribution != NULL ? 1u << TAKES_FACES : 0;
     for (int i = 0, count = 0; i < static_column_count; ++i) {
         if (static_column_is_there(conf, i)) {
-            needs |= output_wants(results->output, count) ? 1u << static_columns[i].need : 0;
+            needs |= output_wants(results->output, count) ? 1u << static_columns[i].taking : 0;
             ++count;
         }
     }
     if (conf->law != LAW_ELASTIC && results->distribution == NULL) {
-        needs &= ~(1u << NEEDS_FACES); /* the sums tell the length of contact */
+        needs &= ~(1u << TAKES_FACES); /* the sums tell the length of contact */
     }
     *status = find_needed(results, needs, &position);
     if (*status != GM_OK) {
@@ -209,7 +209,7 @@ int statics_run(const config *conf, const gear_mesh *gears) {
 
     /* Points of a position are kept where a file takes them. */
     if (exit_code == 0 && results.distribution != NULL) {
-        results.capacity = gm_mesh_load_points(gears->prepared);
+        results.capacity = gm_mesh_line_load_points(gears->prepared);
         results.points = allocate((size_t)results.capacity, sizeof *results.points);
         exit_code = results.points != NULL ? 0 : message_no_memory(conf->messages);
     }

@@ -18,7 +18,7 @@ static int stations_of(const gm_mesh *mesh) {
     return mesh->elastic != NULL ? mesh->elastic->law.stations : STATIONS;
 }
 
-int gm_mesh_load_points(const gm_mesh *mesh) {
+int gm_mesh_line_load_points(const gm_mesh *mesh) {
     if (mesh == NULL) {
         return 0;
     }
@@ -28,9 +28,9 @@ int gm_mesh_load_points(const gm_mesh *mesh) {
 /* All that is found, and where it goes. */
 typedef struct walk {
     const gm_mesh *mesh;
-    gm_load_point *points;
+    gm_line_load_point *points;
     int capacity;
-    gm_load *load;
+    gm_line_loads *load;
     double force;  /* of all lines, transverse (N) */
     double length; /* of those that touch, along z (m) */
 } walk;
@@ -57,13 +57,13 @@ static double pressure_of(const gm_mesh *mesh, double line_load, double roll, do
 }
 
 /* row: of the elastic workspace. */
-static gm_load_point point_at(const gm_mesh *mesh, const side_lines *found,
-                              const gmi_line_flanks *flanks, int index, int row, double t1) {
+static gm_line_load_point point_at(const gm_mesh *mesh, const side_lines *found,
+                                   const gmi_line_flanks *flanks, int index, int row, double t1) {
     const gm_pair *pair = mesh->pair;
     const double roll = found->lines.origin + (double)index * pair->transverse_base_pitch +
                         found->lines.advance * t1;
     const double material = gmi_line_flanks_at(flanks, t1, roll, found->reach).value;
-    gm_load_point point = {
+    gm_line_load_point point = {
         .side = found->side,
         .pinion_tooth = flanks->pinion_tooth,
         .wheel_tooth = flanks->wheel_tooth,
@@ -87,7 +87,7 @@ static gm_load_point point_at(const gm_mesh *mesh, const side_lines *found,
     return point;
 }
 
-static void count_point(walk *w, const gm_load_point *point) {
+static void count_point(walk *w, const gm_line_load_point *point) {
     w->load->largest_line_load = fmax(w->load->largest_line_load, point->line_load);
     w->load->largest_pressure = fmax(w->load->largest_pressure, point->pressure);
 }
@@ -106,7 +106,7 @@ static int walk_line(walk *w, const side_lines *found, int index, int row, gmi_i
         if (!(t1 >= part.from && t1 <= part.to)) {
             continue;
         }
-        const gm_load_point point = point_at(mesh, found, &flanks, index, row, t1);
+        const gm_line_load_point point = point_at(mesh, found, &flanks, index, row, t1);
         count_point(w, &point);
         touches = touches || point.line_load > 0.0;
         if (w->points != NULL) {
@@ -118,7 +118,7 @@ static int walk_line(walk *w, const side_lines *found, int index, int row, gmi_i
         ++w->load->points;
     }
     for (int end = 0; end < 2; ++end) {
-        const gm_load_point point =
+        const gm_line_load_point point =
             point_at(mesh, found, &flanks, index, row, end == 0 ? part.from : part.to);
         count_point(w, &point);
         touches = touches || point.line_load > 0.0;
@@ -180,12 +180,12 @@ static int walk_side(walk *w, int side, const gm_position *position, gm_workspac
     return status;
 }
 
-int gm_mesh_load(const gm_mesh *mesh, const gm_position *position, gm_workspace *workspace,
-                 gm_load_point *points, int capacity, gm_load *load) {
+int gm_mesh_line_loads(const gm_mesh *mesh, const gm_position *position, gm_workspace *workspace,
+                       gm_line_load_point *points, int capacity, gm_line_loads *load) {
     if (load == NULL) {
         return GM_ERR_NULL;
     }
-    const gm_load none = {gmi_nan(), gmi_nan(), gmi_nan(), gmi_nan(), 0};
+    const gm_line_loads none = {gmi_nan(), gmi_nan(), gmi_nan(), gmi_nan(), 0};
     *load = none;
     if (mesh == NULL || position == NULL || (mesh->elastic != NULL && workspace == NULL)) {
         return GM_ERR_NULL;
@@ -196,7 +196,7 @@ int gm_mesh_load(const gm_mesh *mesh, const gm_position *position, gm_workspace 
     const gm_position posed = gmi_mesh_posed(mesh, position);
     int status = gmi_check_position(mesh->pair, &posed);
 
-    gm_load found = {0.0, 0.0, 0.0, 0.0, 0};
+    gm_line_loads found = {0.0, 0.0, 0.0, 0.0, 0};
     walk w = {.mesh = mesh, .points = points, .capacity = capacity, .load = &found};
     for (int side = GM_DRIVE; side <= GM_COAST && status == GM_OK; ++side) {
         status = walk_side(&w, side, &posed, workspace);

@@ -1095,7 +1095,7 @@ GM_API int gm_static_equilibrium(const gm_mesh *mesh, double pinion_angle, doubl
                                  gm_mesh_result *result);
 
 /** The load at one point of a line of contact. */
-typedef struct gm_load_point {
+typedef struct gm_line_load_point {
     int side;                  /**< GM_DRIVE or GM_COAST */
     int pinion_tooth;          /**< 0 .. z_p - 1 */
     int wheel_tooth;           /**< 0 .. z_w - 1 */
@@ -1107,10 +1107,10 @@ typedef struct gm_load_point {
                                transverse force */
     double pressure; /**< p_0 = 2 q / (pi a), largest Hertzian pressure there (N/m2) */
     double gap;      /**< between the surfaces, < 0 pressed into each other (m) */
-} gm_load_point;
+} gm_line_load_point;
 
 /** How a mesh is loaded at one position; NaN where nothing touches. */
-typedef struct gm_load {
+typedef struct gm_line_loads {
     double largest_line_load; /**< of all points and ends of lines (N/m) */
     double largest_pressure;  /**< likewise (N/m2) */
     double
@@ -1118,10 +1118,10 @@ typedef struct gm_load {
                                        spur pair max(q) b / F */
     double touching_width; /**< touching part of the face, summed over all lines (m) */
     int points;            /**< how many were written */
-} gm_load;
+} gm_line_loads;
 
-/** How many points gm_mesh_load() gives at most; 0 for NULL. */
-GM_API int gm_mesh_load_points(const gm_mesh *mesh);
+/** How many points gm_mesh_line_loads() gives at most; 0 for NULL. */
+GM_API int gm_mesh_line_load_points(const gm_mesh *mesh);
 
 /**
  * Load along the lines of contact, without damping: at the stations of the face (17 with the constant law) that a line
@@ -1131,15 +1131,16 @@ GM_API int gm_mesh_load_points(const gm_mesh *mesh);
  * @param[in]     position   where the gears are
  * @param[in,out] workspace  as gm_mesh_evaluate()
  * @param[out]    points     [capacity]; NULL: not wanted
- * @param[in]     capacity   gm_mesh_load_points() is always enough
+ * @param[in]     capacity   gm_mesh_line_load_points() is always enough
  * @param[out]    load       all fields; NaN and 0 on an error
  * @return as gm_mesh_evaluate_at(); GM_ERR_GEOMETRY (simple model), GM_ERR_MEMORY (more points than the capacity)
  *
  * Accuracy: elastic teeth as docs/elastic.md. Pressure of a line contact [Johnson], from E and nu of gm_mesh_params with
  * any law.
  */
-GM_API int gm_mesh_load(const gm_mesh *mesh, const gm_position *position, gm_workspace *workspace,
-                        gm_load_point *points, int capacity, gm_load *load);
+GM_API int gm_mesh_line_loads(const gm_mesh *mesh, const gm_position *position,
+                              gm_workspace *workspace, gm_line_load_point *points, int capacity,
+                              gm_line_loads *load);
 
 /* ---------------------------------------------------------------------------------------------
  * Cache of the 3D model, for long sweeps

@@ -1,0 +1,227 @@
+#!/usr/bin/env python3
+# SPDX-FileCopyrightText: The gearmesh authors
+# SPDX-License-Identifier: BSD-3-Clause
+"""Elastic teeth through gearsim: gear data and a load, and nothing else, against finite elements and what a user may get wrong.
+
+    test_gearsim_elastic.py GEARSIM
+"""
+import csv
+import math
+import os
+import subprocess
+import sys
+import tempfile
+import unittest
+
+GEARSIM = ""
+
+SPUR = {  # 20/40, 300 N per mm of face
+    "gears": {"pinion_teeth": 20, "wheel_teeth": 40, "normal_module_mm": 4, "normal_pressure_angle_deg": 20,
+              "center_distance_mm": 120, "face_width_mm": 32},
+    "load": {"mean_Nm": 300 * 32 * 0.08 * math.cos(math.radians(20))},
+    "analysis": {"type": "static", "positions": 60},
+}
+NREL = {  # stage 3 of the NREL 5 MW gearbox, 720 N per mm
+    "gears": {"pinion_teeth": 24, "wheel_teeth": 95, "normal_module_mm": 14, "normal_pressure_angle_deg": 20,
+              "helix_angle_deg": 10, "center_distance_mm": 861.0001467, "face_width_mm": 360, "pinion_profile_shift": 0.48,
+              "wheel_profile_shift": 0.6691, "pinion_tip_diameter_mm": 380.7473416, "wheel_tip_diameter_mm": 1395.3761938},
+    "load": {"mean_Nm": 259200 * 0.6333850},
+    "analysis": {"type": "static", "positions": 60},
+}
+SPUR62 = {  # 62/62, 100 N per mm
+    "gears": {"pinion_teeth": 62, "wheel_teeth": 62, "normal_module_mm": 2, "normal_pressure_angle_deg": 20,
+              "center_distance_mm": 124, "face_width_mm": 20},
+    "load": {"mean_Nm": 2000 * 0.062 * math.cos(math.radians(20))},
+    "analysis": {"type": "static", "positions": 60},
+}
+
+
+class Elastic(unittest.TestCase):
+    def setUp(self):
+        folder = tempfile.TemporaryDirectory()
+        self.addCleanup(folder.cleanup)
+        self.folder = folder.name
+
+    def write(self, sections, name="run.ini"):
+        with open(os.path.join(self.folder, name), "w", encoding="utf-8") as file:
+            for section, keys in sections.items():
+                file.write(f"[{section}]\n" + "".join(f"{key} = {value}\n" for key, value in keys.items()))
+
+    def gearsim(self, *arguments):
+        return subprocess.run([GEARSIM, "run.ini", "--quiet", *arguments], cwd=self.folder, capture_output=True, text=True,
+                              check=False)
+
+    def table(self, name):
+        with open(os.path.join(self.folder, name), encoding="utf-8") as file:
+            return list(csv.DictReader(line for line in file if not line.startswith("#")))
+
+    def rows(self, sections, *arguments):
+        self.write(sections)
+        result = self.gearsim(*arguments)
+        self.assertEqual(result.returncode, 0, result.stderr)
+        return self.table("run.csv")
+
+    def refused(self, sections, *texts, arguments=()):
+        self.write(sections)
+        result = self.gearsim(*arguments)
+        self.assertEqual(result.returncode, 2, result.stderr)
+        for text in texts:
+            self.assertIn(text, result.stderr)
+
+    def test_transmission_error_is_that_of_finite_elements(self):
+        # Quadratic elements, plane and of twisted teeth at five positions: mean and peak to peak (um), and what they leave open.
+        for name, gears, mean, peak_to_peak, mean_part, peak_part in (("spur", SPUR, 14.025, 7.372, 0.025, 0.02),
+                                                                      ("NREL", NREL, 30.14, 3.39, 0.03, 0.15)):
+            with self.subTest(name):
+                error = [-float(row["te_um"]) for row in self.rows(gears)]
+                self.assertAlmostEqual(sum(error) / len(error), mean, delta=mean_part * mean)
+                self.assertAlmostEqual(max(error) - min(error), peak_to_peak, delta=peak_part * peak_to_peak)
+
+    def test_misaligned_flanks_carry_at_one_end(self):
+        # Face load factor by finite elements where one pair carries at the pitch point; the skew opens 5 and 20 um.
+        for gap_um, factor in ((5, 1.616), (20, 3.270)):
+            skew_mrad = gap_um / 20 / math.cos(math.radians(20))
+            gears = SPUR62["gears"] | {"backlash_um": 60}  # so that the other flanks stay apart
+            rows = self.rows(SPUR62 | {"gears": gears, "pose": {"skew_mrad": skew_mrad}})
+            single = [row for row in rows if float(row["pairs_in_contact"]) == 1]
+            middle = single[len(single) // 2]
+            self.assertAlmostEqual(float(middle["face_load_factor"]), factor, delta=0.12 * factor)
+
+    def test_line_loads_add_up_to_the_load(self):
+        rows = self.rows(NREL | {"output": {"load_distribution": "load.csv"}})
+        points = self.table("load.csv")
+        self.assertEqual(list(points[0]), "pinion_angle_rad load_torque_Nm pair flank z_mm pinion_roll_length_mm "
+                         "wheel_roll_length_mm line_load_N_per_mm pressure_N_per_mm2 gap_um".split())
+        self.assertEqual(len({point["pinion_angle_rad"] for point in points}), len(rows))
+
+        # Over all positions the sums of stations and the load agree, as ends of lines between stations even out.
+        width_mm = 360 / 16
+        total = sum(float(point["line_load_N_per_mm"]) for point in points) * width_mm / len(rows)
+        ends = sum(float(point["line_load_N_per_mm"]) for point in points
+                   if float(point["z_mm"]) in (0.0, 360.0)) * width_mm / 2 / len(rows)
+        self.assertAlmostEqual(total - ends, 259200, delta=0.01 * 259200)
+
+        # Hertz: p_0 = sqrt(q E* / (pi rho)), E* of two steel bodies.
+        point = max(points, key=lambda row: float(row["line_load_N_per_mm"]))
+        rho_p, rho_w = (float(point[f"{gear}_roll_length_mm"]) * 1e-3 for gear in ("pinion", "wheel"))
+        base_helix = math.radians(9.39073)
+        rho = rho_p * rho_w / (rho_p + rho_w) / math.cos(base_helix)
+        pressure = math.sqrt(float(point["line_load_N_per_mm"]) * 1e3 * 206e9 / (2 * 0.91) / (math.pi * rho))
+        self.assertAlmostEqual(float(point["pressure_N_per_mm2"]) * 1e6, pressure, delta=1e-4 * pressure)
+        self.assertEqual({point["flank"] for point in points}, {"drive"})
+
+        # The largest of a row is that of its points, or at the end of a line between them.
+        largest = max(float(row["largest_line_load_N_per_mm"]) for row in rows)
+        self.assertGreaterEqual(largest, float(point["line_load_N_per_mm"]) * 0.999999)
+        self.assertLess(largest, 1.15 * float(point["line_load_N_per_mm"]))
+
+    def test_constant_stiffness_has_line_loads_too(self):
+        self.rows(SPUR62 | {"mesh": {"stiffness_N_per_m": 2.8e8}, "output": {"load_distribution": "load.csv"}})
+        points = self.table("load.csv")
+        for angle in {point["pinion_angle_rad"] for point in points}:
+            loads = [float(point["line_load_N_per_mm"]) for point in points if point["pinion_angle_rad"] == angle]
+            self.assertAlmostEqual(sum(loads) / 17 * 20, 2000, delta=1e-5 * 2000)  # even along the face
+        self.assertNotIn("face_load_factor", self.table("run.csv")[0])
+
+    def test_soft_tooth_shows_once_a_turn(self):
+        with open(os.path.join(self.folder, "soft.csv"), "w", encoding="utf-8") as file:
+            file.write("# a crack\ntooth,factor\n7,0.7\n")
+        gears = SPUR62 | {"flanks": {"pinion_tooth_stiffness": "soft.csv"},
+                          "analysis": {"type": "static", "period": "pinion", "positions": 62 * 8}}
+        error = [-float(row["te_um"]) for row in self.rows(gears)]
+        passes = [error[8 * k:8 * k + 8] for k in range(62)]
+        usual = passes[30]
+        soft = [k for k in range(62) if max(abs(a - b) for a, b in zip(passes[k], usual)) > 0.02]
+        self.assertLessEqual(len(soft), 4)
+        self.assertGreaterEqual(len(soft), 2)
+        self.assertGreater(max(max(passes[k]) for k in soft), max(usual) * 1.02)
+
+    def test_softer_material_gives_way_more(self):
+        steel = [float(row["te_um"]) for row in self.rows(SPUR62)]
+        soft = [float(row["te_um"]) for row in
+                self.rows(SPUR62 | {"mesh": {"pinion_youngs_modulus_GPa": 103, "wheel_youngs_modulus_GPa": 103}})]
+        for a, b in zip(steel, soft):
+            self.assertTrue(1.9 < b / a < 2.0, b / a)  # the contact alone is not quite linear
+
+    def test_bodies_wind_up(self):
+        plain = self.rows(SPUR62)
+        wound = self.rows(SPUR62 | {"gears": SPUR62["gears"] | {"wheel_bore_diameter_mm": 40}})
+        moves = [float(a["te_um"]) - float(b["te_um"]) for a, b in zip(plain, wound)]
+        r_b, r_f, r_i, b = 0.062 * math.cos(math.radians(20)), 0.0595, 0.02, 0.02
+        shear_modulus = 206e9 / 2.6
+        expected = 2000 * r_b ** 2 / (4 * math.pi * shear_modulus * b) * (1 / r_i ** 2 - 1 / r_f ** 2) * 1e6
+        for move in moves:
+            self.assertAlmostEqual(move, expected, delta=1e-4 * expected)
+
+    def test_a_run_needs_gear_data_load_and_inertias_alone(self):
+        gears = NREL | {"analysis": {"duration_s": 0.02}, "drive": {"start_rpm": 300, "end_rpm": 300},
+                        "bodies": {"wheel_inertia_kg_m2": 600}, "mesh": {"damping_ratio": 0.05}}
+        rows = self.rows(gears)
+        late = [float(row["contact_force_N"]) for row in rows[len(rows) // 2:]]
+        self.assertAlmostEqual(sum(late) / len(late), 259200, delta=0.01 * 259200)
+        with open(os.path.join(self.folder, "run.csv"), encoding="utf-8") as file:
+            self.assertIn("# mesh.law = elastic\n", file.read())
+
+        # And the same from look-up tables.
+        cached = self.rows(gears, "--set", "solver.lookup=on")
+        for a, b in zip(rows, cached):
+            self.assertAlmostEqual(float(a["dte_um"]), float(b["dte_um"]), delta=0.1)
+
+    def test_listing_states_the_stiffness_at_the_load(self):
+        self.write(NREL)
+        result = self.gearsim("--geometry")
+        lines = dict(line.split(" = ") for line in result.stdout.splitlines())
+        mean, smallest, largest = (float(value) for value in lines["mesh_stiffness_N_per_um"].split(", "))
+        stiffness = [float(row["mesh_stiffness_N_per_um"]) for row in self.rows(NREL)]
+        self.assertAlmostEqual(mean, sum(stiffness) / len(stiffness), delta=2e-3 * mean)
+        self.assertAlmostEqual(smallest, min(stiffness), delta=1e-2 * mean)
+        self.assertAlmostEqual(largest, max(stiffness), delta=1e-2 * mean)
+        single = [float(value) for value in lines["single_stiffness_N_per_um"].split(", ")]
+        self.assertTrue(single[1] < single[0] < single[2] < smallest)
+
+    def test_teeth_that_have_no_elastic_law_are_refused_with_the_reason(self):
+        deep = SPUR62 | {"gears": SPUR62["gears"] | {"pinion_rack_dedendum": 1.75}}
+        self.refused(deep, "gears.pinion_rack_fillet_radius: must be", "here 0.", "mesh.stiffness_N_per_m")
+        self.refused(SPUR62 | {"gears": SPUR62["gears"] | {"wheel_bore_diameter_mm": 119.5}},
+                     "gears.wheel_bore_diameter_mm: must be a bore below the root circle")
+        few = {"gears": SPUR62["gears"] | {"pinion_teeth": 12, "center_distance_mm": 74, "pinion_tip_alteration": 0}}
+        self.refused(SPUR62 | few, "gears.pinion_")
+        ring = {"gears": SPUR62["gears"] | {"pinion_teeth": 36, "wheel_teeth": -93, "normal_module_mm": 21,
+                                            "center_distance_mm": 584, "pinion_profile_shift": 0.5039,
+                                            "wheel_profile_shift": 0.1171, "pinion_tip_alteration": -0.08338}}
+        self.refused(SPUR62 | ring, "gears.wheel_teeth: must be external teeth")
+        for key, value in (("pinion_youngs_modulus_GPa", 0), ("wheel_youngs_modulus_GPa", "1e7"),
+                           ("pinion_poisson_ratio", 0.5), ("stations", 1), ("stations", 98)):
+            self.refused(SPUR62 | {"mesh": {key: value}}, f"run.ini:", f"mesh.{key}: must be")
+
+        # A listing of the drawing goes without.
+        self.write(deep)
+        self.assertEqual(self.gearsim("--geometry").returncode, 0)
+
+    def test_files_of_soft_teeth_are_checked(self):
+        for text, message in (("tooth,stiffness\n", "soft.csv:1: the columns must be tooth,factor"),
+                              ("", "soft.csv:0: the columns must be tooth,factor (got nothing)"),
+                              ("tooth,factor\n62,0.5\n", "soft.csv:2: tooth must be a whole number from 0 to 61 (got 62)"),
+                              ("tooth,factor\n-1,0.5\n", "soft.csv:2: tooth must be"),
+                              ("tooth,factor\n1.5,0.5\n", "soft.csv:2: tooth must be"),
+                              ("tooth,factor\n1,0\n", "soft.csv:2: factor must be a number from 0.01 to 100"),
+                              ("tooth,factor\n1,nan\n", "soft.csv:2: factor must be a number"),
+                              ("tooth,factor\n1,0.5\n1,0.6\n", "soft.csv:3: each tooth must stand once"),
+                              ("tooth,factor\n1\n", "soft.csv:2: a row must be tooth,factor")):
+            with self.subTest(text):
+                with open(os.path.join(self.folder, "soft.csv"), "w", encoding="utf-8") as file:
+                    file.write(text)
+                self.refused(SPUR62 | {"flanks": {"wheel_tooth_stiffness": "soft.csv"}}, message,
+                             "flanks.wheel_tooth_stiffness: names this file")
+        self.refused(SPUR62 | {"flanks": {"pinion_tooth_stiffness": "none.csv"}}, "none.csv: No such file")
+
+    def test_load_distribution_must_be_a_file_of_its_own(self):
+        self.refused(SPUR62 | {"output": {"load_distribution": "run.csv"}}, "output.load_distribution: must be another file")
+        self.refused(SPUR62 | {"output": {"load_distribution": "missing/load.csv"}}, "output.load_distribution: ",
+                     arguments=("--check",))
+
+
+if __name__ == "__main__":
+    if len(sys.argv) > 1 and not sys.argv[1].startswith("-"):
+        GEARSIM = os.path.abspath(sys.argv.pop(1))
+    unittest.main()
