@@ -326,7 +326,7 @@ class Template(Case):
             self.assertRegex(template, rf"(?m)^(; )?{key} =")
 
     def test_each_kind_runs_as_it_stands_and_warns_of_nothing(self):
-        for kind in [[], ["dynamic"], ["static"], ["speed"], ["torque"], ["simple"], ["3d"], ["iso6336"]]:
+        for kind in [[], ["dynamic"], ["static"], ["speed"], ["torque"], ["simple"], ["3d"], ["iso6336"], ["elastic"]]:
             with self.subTest(kind):
                 self.write("run.ini", self.template(*kind))
                 done = self.accepted("run.ini", "--check")

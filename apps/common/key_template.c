@@ -75,6 +75,7 @@ int key_template_print(const char *kind, FILE *stream, message_sink *messages) {
         config_free(&conf);
         return message_no_memory(messages);
     }
+    conf.law = LAW_CONSTANT; /* the example has a stiffness */
 
     const key_spec *chosen = kind != NULL ? choose(&conf, kind, messages) : NULL;
     const int status = kind == NULL || chosen != NULL ? EXIT_DONE : EXIT_BAD_INPUT;

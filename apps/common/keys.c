@@ -248,7 +248,7 @@ static const key_spec keys[] = {
      .standard = "all", .help = "names separated by commas"},
     {NAME("output", "wrench"), CHOICE("off on"), INTO(wrench),
      .standard = "off", .help = "on: force and moment on each gear as columns; off: those named in columns"},
-    {NAME("output", "load_distribution"), .kind = KEY_PATH, INTO(load_distribution), .derived = "none",
+    {NAME("output", "load_distribution"), .kind = KEY_PATH, INTO(load_distribution), .derived = "not written",
      .used = FOR_STATIC | FOR_3D, .help = "CSV of line load, pressure and gap: a row for each position, pair and station"},
 };
 /* clang-format on */
