@@ -79,7 +79,8 @@ class Completion(unittest.TestCase):
         self.assertEqual(complete("gearsim", "--out"), ["--output"])
         self.assertLessEqual({"--set", "--template", "--json", "--check"}, set(complete("gearsim", "--")))
         self.assertIn("--traces", complete("gearflanks", "--"))
-        self.assertEqual(complete("gearsim", "--set", "flanks.wh"), ["flanks.wheel=", "flanks.wheel_pitch="])
+        self.assertEqual(complete("gearsim", "--set", "flanks.wh"),
+                         ["flanks.wheel=", "flanks.wheel_pitch=", "flanks.wheel_tooth_stiffness="])
         self.assertEqual(complete("gearsim", "--template", "st"), ["static"])
 
     def test_bash(self):

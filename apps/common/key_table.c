@@ -449,7 +449,8 @@ void key_table_print(const key_table *table, FILE *stream) {
 
 /* A default that is told in words but is a value. */
 static int is_value(const key_spec *key, const char *text) {
-    return text != NULL && (key->kind == KEY_CHOICE || number_is_plain(text));
+    return text != NULL && (key->kind == KEY_CHOICE ? key_choice_find(key->choices, text) >= 0
+                                                    : number_is_plain(text));
 }
 
 void key_print_line(const key_spec *key, const char *value, FILE *stream) {
