@@ -26,6 +26,9 @@ static const double arc_tolerance_factor = 10.0;
  */
 static const double steps_per_tooth = 8.0;
 
+/* Of a tooth: a shorter time with one pair more or less than usual may be passed over. */
+static const double least_share = 1.0 / 512.0;
+
 /*
  * Steps per natural vibration at least, where the response to the noise is not in the state: the state may
  * be at rest while that response lifts the teeth off their mates for a while.
@@ -566,13 +569,27 @@ int model_jacobian(const gear_model *model, double time, const double state[],
  * Steps and tolerances
  * ------------------------------------------------------------------------------------------- */
 
-/* Part of a turn that a step may take: a share of a tooth, which the simple model does not have, and of a ripple. */
-static double step_angle(const gear_model *model) {
-    const double order = highest_order(model);
-    const double wave = order > 0.0 ? two_pi / order : HUGE_VAL;
-    const double tooth = model->mesh == MODEL_3D ? model->gears->pair.pinion.pitch_angle : HUGE_VAL;
+/*
+ * Share of a tooth that a step may take. The force of a spur gear jumps twice in a tooth, where a pair comes and where
+ * one leaves: if both are close together, all steps could pass over what lies between.
+ */
+static double tooth_share(const gm_pair *pair) {
+    const double usual = 1.0 / steps_per_tooth;
+    const double rest = pair->transverse_contact_ratio - floor(pair->transverse_contact_ratio);
+    const double between = fmin(rest, 1.0 - rest);
 
-    return fmin(tooth, wave) / steps_per_tooth;
+    return pair->face_advance == 0.0 ? fmin(usual, fmax(0.5 * between, least_share)) : usual;
+}
+
+/* Part of a turn that a step may take: of a tooth, which the simple model does not have, and of a ripple. */
+static double step_angle(const gear_model *model) {
+    const gm_pair *pair = &model->gears->pair;
+    const double order = highest_order(model);
+    const double wave = order > 0.0 ? two_pi / order / steps_per_tooth : HUGE_VAL;
+    const double tooth =
+        model->mesh == MODEL_3D ? tooth_share(pair) * pair->pinion.pitch_angle : HUGE_VAL;
+
+    return fmin(tooth, wave);
 }
 
 /* Time for it, from the speed at hand and the acceleration without contact; 0 = any. */
