@@ -118,9 +118,24 @@ static gm_mesh *make_mesh(const gm_pair *pair, const gm_flanks *pinion, const gm
     return mesh;
 }
 
+/* The bits of a number, as small C libraries cannot print %a; a NaN has many. */
+static void print_bits(double number) {
+    uint64_t bits;
+    memcpy(&bits, &number, sizeof bits);
+    if (isnan(number)) {
+        printf("nan ");
+    } else {
+        printf("%08lx%08lx ", (unsigned long)(bits >> 32), (unsigned long)(bits & 0xFFFFFFFFu));
+    }
+}
+
 static void print_result(const gm_penetration *r) {
-    printf("%a %a %a %a %a %a %d %d\n", r->penetration, r->rate, r->drive_contact, r->coast_contact,
-           r->d_pinion_angle, r->d_wheel_angle, r->drive_pairs, r->coast_pairs);
+    const double numbers[] = {r->penetration,   r->rate,           r->drive_contact,
+                              r->coast_contact, r->d_pinion_angle, r->d_wheel_angle};
+    for (size_t k = 0; k < sizeof numbers / sizeof numbers[0]; ++k) {
+        print_bits(numbers[k]);
+    }
+    printf("%d %d\n", r->drive_pairs, r->coast_pairs);
 }
 
 static void print_pair(const gm_pair *pair, uint64_t *seed) {
@@ -151,14 +166,16 @@ static void print_pair(const gm_pair *pair, uint64_t *seed) {
         check(gm_mesh_evaluate_at(mesh, &position, GM_WANT_DERIVATIVES, NULL, &result));
         print_result(&result.contact);
         check(gm_mesh_evaluate_at(mesh, &position, GM_WANT_FORCE, NULL, &result));
-        printf("%a %a\n", result.contact.drive, result.contact.coast);
+        print_bits(result.contact.drive);
+        print_bits(result.contact.coast);
         state.wheel_angle = (pair->pinion.base_radius * angle - offset) / pair->wheel.base_radius;
         check(gm_penetration_3d(pair, pinions[pinion], wheels[wheel], &state, &plain));
         print_result(&plain);
         if (k % 16 == 0) {
             const int status = gm_static_equilibrium(mesh, angle, 20.0, (double)NAN, NULL,
                                                      &position.offset, &result);
-            printf("%d %a\n", status, position.offset);
+            print_bits(position.offset);
+            printf("%d\n", status);
         }
     }
     while (block_count > 0) {
