@@ -27,7 +27,7 @@ class Settings:
 
     orders = turns = db = over = max_order = range = ghost = planetary = title = None
     pinion_teeth = wheel_teeth = eigenfrequency = None
-    method, bandwidth, window, amplitude, sidebands = "resampling", 0.2, "hann", "peak", 5
+    method, bandwidth, window, amplitude, sidebands = "resampling", None, "hann", "peak", 5
 
 
 # ----------------------------------------------------------------------------------------------------
@@ -168,28 +168,36 @@ class Analysis:
         if not self.tracked:
             raise runup.RunError(f"{signal.path}: no line stands out of its order spectrum; please give --orders")
 
-        # The map, and the orders.
-        self.frames = frames = tracking.frames_of(run, options.turns or tracking.fitting_turns(run))
+        # The map.
         over_time = run.is_constant if options.over is None else options.over == "time"
-        self.map = tracking.order_map(frames, *tracking.spectra(frames, over_angle, edge, options.window), over_time)
+        self.map_frames = tracking.frames_of(run, options.turns or tracking.fitting_turns(run))
+        spectra = tracking.spectra(self.map_frames, over_angle, edge, options.window)
+        self.map = tracking.order_map(self.map_frames, *spectra, over_time)
+
+        # The orders.
         orders = np.array([float(one) for one in self.tracked])
+        self.frames = frames = (tracking.frames_of(run, options.turns) if options.turns
+                                else tracking.track_frames(run, min(1.0, self.nearest)))
         if options.method == "vold-kalman":
-            found = tracking.vold_kalman(run, orders, options.bandwidth, frames.row)
+            self.bandwidth = options.bandwidth or tracking.fitting_bandwidth(run, self.nearest)
+            found = tracking.vold_kalman(run, orders, self.bandwidth, frames.row)
         else:
-            found = tracking.tracked(frames, over_angle, orders, options.window)
+            found = tracking.tracked(frames, over_angle, orders)
         self.found = self.scale.of_power(found**2)
         self.overall = self.scale.of_rms(tracking.overall(frames))
 
     @property
     def nearest(self):
-        """Distance of the two tracked orders that are nearest to each other."""
-        return min(np.diff(sorted(map(float, self.tracked))), default=math.inf)
+        """Distance of a tracked order from the next one, or from order 0."""
+        return min(np.diff([0.0, *sorted(map(float, self.tracked))]))
 
     @property
     def method_text(self):
         if self.options.method == "vold-kalman":
-            return f"Orders by a Vold-Kalman filter, {self.options.bandwidth:g} orders wide"
-        return f"Orders by resampling over the angle, frames of {self.frames.turns:g} turns"
+            return f"Orders by a Vold-Kalman filter, {self.bandwidth:.2g} orders wide"
+        low, high = np.min(self.frames.turns), np.max(self.frames.turns)
+        turns = f"{low:.3g}" if low == high else f"{low:.3g} to {high:.3g}"
+        return f"Orders by resampling over the angle, frames of {turns} turns"
 
     def nameless(self):
         """Strong lines without a name: [(order, mean power, what it may be)]."""
@@ -258,7 +266,7 @@ def pictures(analysis, folder):
     frequency_Hz = (gears and gears.eigenfrequency_Hz) or options.eigenfrequency or 0.0
     common = {
         "title_text": program.title_of(options.title, signal.path),
-        "subtitle_text": subtitle(signal, gears, frames, edge),
+        "subtitle_text": subtitle(signal, gears, analysis.map_frames, edge),
         "axis_text": scale.text,
         "map_text": scale.text if scale.reference else "log10 " + scale.text,
         "overall_text": "all (mean square)" if scale.kind == "power" else "all (rms)",
@@ -266,7 +274,7 @@ def pictures(analysis, folder):
         "over_time": int(map_.over_time),
         "speed_name": "pinion speed" if gears else "speed",
         "eigenfrequency": frequency_Hz,
-        "eigenfrequency_is_shown": write_eigenfrequency(f"{folder}/eigenfrequency.dat", frequency_Hz, frames, map_),
+        "eigenfrequency_is_shown": write_eigenfrequency(f"{folder}/eigenfrequency.dat", frequency_Hz, analysis.map_frames, map_),
         "edge": edge,
         **lines.rim_values(known, tracked, edge),
     }
@@ -284,8 +292,8 @@ def pictures(analysis, folder):
         "curves": len(tracked),
         "low": levels[0] if scale.reference else 10.0 ** levels[0],
         "high": levels[1] if scale.reference else 10.0 ** levels[1],
-        "row_low": map_.row_range[0],
-        "row_high": map_.row_range[1],
+        "row_low": float(along.min()),
+        "row_high": float(max(along.max(), along.min() + 1e-9)),
     }
     for i, one in enumerate(tracked):
         name = lines.name_of(float(one), known, 1e-6)

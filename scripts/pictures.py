@@ -180,9 +180,10 @@ def spectrum(result, folder, speed_rpm=None, edge_harmonics=HARMONICS):
     tracks, gears = result.tracks(), result.gears
     frame = result.frame_at(speed_rpm)
     row = tracks.frames.row[frame]
-    frames = tracks.frames
-    if tracks.run.angle_rad[-1] - tracks.run.angle_rad[0] > 4.0 * np.pi * SPECTRUM_TURNS:
-        frames = tracking.frames_of(tracks.run, min(SPECTRUM_TURNS, 4 * frames.turns))
+    turns = tracking.fitting_turns(tracks.run)
+    if tracking.whole_turns(tracks.run) > 2 * SPECTRUM_TURNS:
+        turns = min(SPECTRUM_TURNS, 4 * turns)
+    frames = tracking.frames_of(tracks.run, turns)
     nearest = int(np.argmin(np.abs(frames.row - row)))
     one = tracking.Frames(tracks.run, frames.turns, *(values[nearest : nearest + 1] for values in (
         frames.start, frames.row, frames.lowest_rpm, frames.highest_rpm)))
@@ -244,7 +245,7 @@ def difference(found, folder):
         raise program.InputError(f"{first.path}, {second.path}: the runs have no speed in common")
 
     # Both maps over the same orders and speeds.
-    turns = min(track.frames.turns for track in tracks)
+    turns = min(tracking.fitting_turns(track.run) for track in tracks)
     edge = 1.1 * HARMONICS * first.gears.pinion_teeth
     edge = min([edge, *(60.0 * track.run.trusted_Hz / low for track in tracks)])
     maps = []

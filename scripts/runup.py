@@ -29,7 +29,7 @@ PADDING = 8  # of the windows of a map: between two bins a Hann window then lose
 # 1 %. The window is never longer than CUT_WINDOW_S, and holds at least so many teeth as tell tooth orders apart.
 SWEEP_OF_CUT, RESOLVED_DAMPING = 0.035, 0.02
 CUT_WINDOW_S, CUT_LEAST_WINDOW_S, CUT_TEETH = 0.5, 0.25, 4
-CUT_TURNS = 2.5  # tell an order from those beside it
+CUT_TURNS = tracking.TURNS_APART
 CUT_HOP_S, CUT_POINTS = 0.05, 800  # from window to window; at least so many in a run
 
 # Order blocks begin at this share of the highest speed: slower ones last so long that the speed changes.
@@ -196,21 +196,6 @@ def speed_map(run, window="hann", length=STANDARD_LENGTH, hop=STANDARD_HOP, rows
 # ----------------------------------------------------------------------------------------------------
 
 
-def cut_weight(length):
-    """Weights of a window of an order cut: sum 1, and no second moment.
-
-    A plain window takes the peak of a resonance down by half its second moment times the curvature of the amplitude.
-    A Hann window times a + b u^2, u from -1/2 to 1/2, has the sum 1 and the second moment 0 with
-    b = -1 / (m4 / m2 - m2), a = 1 - b m2, where m2 and m4 are the moments of the Hann window.
-    """
-    u = (np.arange(length) + 0.5) / length - 0.5
-    hann = 1.0 + np.cos(2.0 * np.pi * u)
-    hann /= hann.sum()
-    m2, m4 = (hann * u**2).sum(), (hann * u**4).sum()
-    b = -1.0 / (m4 / m2 - m2)
-    return hann * (1.0 - b * m2 + b * u**2)
-
-
 def cut_windows_s(run, speed_rpm, teeth):
     """Length of the window of an order cut at each of some speeds: as long as the sweep allows."""
     sweep_rpm_per_s = max(run.sweep_rpm_per_s(), 1e-9)
@@ -250,7 +235,7 @@ def order_cut(run, order, teeth):
     if not len(middle):
         raise RunError(f"the run has {len(force_N)} rows, too few for an order cut")
 
-    weights = {int(h): cut_weight(2 * int(h)) for h in np.unique(half)}
+    weights = {int(h): tracking.even_weight(2 * int(h)) for h in np.unique(half)}
     amplitude_N = np.array([2.0 * abs(still[m - h : m + h] @ weights[int(h)]) for m, h in zip(middle, half)])
     amplitude_N[order * run.speed_rpm[middle] / 60.0 > run.trusted_Hz] = np.nan
     return middle, amplitude_N

@@ -153,7 +153,7 @@ class Tracks:
 
     def __init__(self, run, orders):
         self.run, self.orders = run, orders
-        self.frames = tracking.frames_of(run, tracking.fitting_turns(run))
+        self.frames = tracking.track_frames(run)
         self.over_angle = tracking.OverAngle(run)
         self.amplitude = tracking.tracked(self.frames, self.over_angle, np.array(orders, dtype=float))
         turn = run.angle_rad / (2.0 * np.pi)
@@ -212,7 +212,9 @@ def resonances(tracks, gears, unit):
             why = f"frames of the run go from {speed_rpm.min():.4g} to {speed_rpm.max():.4g} rpm"
             found.append({**one, **number(None, unit, why)})
         else:
-            found.append({**one, **at_most(values, tracks.frames, unit)})
+            at = int(np.argmin(np.abs(speed_rpm - crossing_rpm)))
+            damping = 100.0 * tracking.least_damping(tracks.run, tracks.frames)[at]
+            found.append({**one, **at_most(values, tracks.frames, unit), "shown_in_full_from": number(damping, "% damping")})
     return found
 
 
@@ -272,6 +274,13 @@ def _at(one):
     return f" at {text_of(one['at'])}" if one.get("at") else ""
 
 
+def _swept(one):
+    """What the sweep takes from a resonance, if it may take something."""
+    damping = one["shown_in_full_from"]["value"]
+    told = damping is not None and damping > 1.05 * 100.0 * tracking.RESOLVED_DAMPING
+    return f" (too low if its damping is less than {damping:.2g} %: the speed changes fast)" if told else ""
+
+
 def _static_words(found):
     for one in found["loads"]:
         values = [one_k for one_k in one["te_harmonics"]]
@@ -295,7 +304,8 @@ def _dynamic_words(found):
         elif one["value"] is None:
             yield f"{_harmonic_words(one)} would cross the resonance at {text_of(one['crosses_at'])}: {text_of(one)}"
         else:
-            yield f"{_harmonic_words(one)} crosses the resonance at {text_of(one['crosses_at'])}: {text_of(one)}{_at(one)}"
+            yield f"{_harmonic_words(one)} crosses the resonance at {text_of(one['crosses_at'])}: {text_of(one)}{_at(one)}" \
+                  + _swept(one)
     force = found["force"]
     yield f"mean force {text_of(force['mean'])}"
     if "largest" in force:

@@ -20,8 +20,11 @@ from results import RunError
 
 SLOWEST_SHARE = 0.02  # of the highest speed: what turns slower has no frames
 STEADY_RATIO = 2.0  # highest to lowest speed of a frame
-SWEEP_OF_FRAME = 0.05  # share of the speed by which it may change in a frame, if nothing is asked for
+SWEEP_OF_FRAME = 0.05  # share of the speed by which it may change in a frame of a map, if nothing is asked for
 FEWEST_TURNS, MOST_TURNS = 5, 40
+# The same for single orders: a resonance of RESOLVED_DAMPING is then shown to 1 %. So many turns tell orders 1 apart.
+SWEEP_OF_TRACK, RESOLVED_DAMPING, TURNS_APART = 0.035, 0.02, 2.5
+BANDWIDTH_TURNS, LEAST_BANDWIDTH = 4.0, 0.1  # of a Vold-Kalman filter, times the turns of such a frame
 POINTS = 600  # frames in a record, at most
 PADDING = 8  # between two bins of a map a Hann window then loses 0.3 % at most
 STEPS_OF_BANDWIDTH = 16  # steps of an envelope of the Vold-Kalman filter in 1 / bandwidth
@@ -53,7 +56,7 @@ class OverAngle:
 
 
 class Frames:
-    """Pieces of some turns: where they begin, the row in their middle, lowest and highest speed of each."""
+    """Pieces of some turns, the same or each its own: where they begin, the row in their middle, lowest and highest speed."""
 
     def __init__(self, run, turns, start, row, lowest_rpm, highest_rpm):
         self.run, self.turns = run, turns
@@ -70,40 +73,76 @@ class Frames:
 
     def pieces(self, over_angle, highest_order):
         """The signal over the angle, frame by frame."""
-        for start, lowest_rpm in zip(self.start, self.lowest_rpm):
-            samples = self.turns * over_angle.samples_per_turn(highest_order, lowest_rpm)
-            yield over_angle.piece(start, self.turns, fft.next_fast_len(math.ceil(samples), real=True))
+        for start, turns, lowest_rpm in zip(self.start, np.broadcast_to(self.turns, self.start.shape), self.lowest_rpm):
+            samples = turns * over_angle.samples_per_turn(highest_order, lowest_rpm)
+            yield over_angle.piece(start, turns, fft.next_fast_len(math.ceil(samples), real=True))
 
     def trusted(self, orders):
         """[frame, order]: whether the frequency of an order is one that the rate of the record holds."""
         return np.outer(self.highest_rpm / 60.0, orders) <= self.run.trusted_Hz
 
 
+def whole_turns(run):
+    return (run.angle_rad[-1] - run.angle_rad[0]) / (2.0 * np.pi)
+
+
 def fitting_turns(run):
-    """Turns in which the speed changes by SWEEP_OF_FRAME, at the mean speed."""
+    """Turns of the frames of a map, in which the speed changes by SWEEP_OF_FRAME at the mean speed."""
     mean_rpm = run.speed_rpm.mean()
     turns = SWEEP_OF_FRAME * mean_rpm**2 / (60.0 * max(run.sweep_rpm_per_s(), 1e-9))
-    whole = (run.angle_rad[-1] - run.angle_rad[0]) / (2.0 * np.pi)
-    return max(1.0, min(max(FEWEST_TURNS, min(MOST_TURNS, round(turns))), math.floor(whole / 4)))
+    return max(1.0, min(max(FEWEST_TURNS, min(MOST_TURNS, round(turns))), math.floor(whole_turns(run) / 4)))
+
+
+def track_frames(run, apart=1.0):
+    """Frames for single orders that are `apart` from what they are to be told from: as long as the sweep allows."""
+    sweep_rpm_per_s = max(run.sweep_rpm_per_s(), 1e-9)
+
+    def turns_at(speed_rpm):
+        longest = min(max(MOST_TURNS, TURNS_APART / apart), max(1.0, whole_turns(run) / 4.0))
+        turns = SWEEP_OF_TRACK * speed_rpm**2 / (60.0 * sweep_rpm_per_s)
+        return np.clip(turns, min(TURNS_APART / apart, longest), longest)
+
+    return frames_of(run, turns_at)
+
+
+def fitting_bandwidth(run, apart):
+    """Bandwidth of a Vold-Kalman filter, in orders, that follows a resonance as frames of track_frames() do.
+
+    It is the same at all speeds, and as wide as those of the lower quarter want it.
+    """
+    turns = SWEEP_OF_TRACK * np.percentile(run.speed_rpm, 25) ** 2 / (60.0 * max(run.sweep_rpm_per_s(), 1e-9))
+    return float(np.clip(BANDWIDTH_TURNS / max(turns, 1e-9), min(LEAST_BANDWIDTH, apart / 2.0), min(1.0, apart / 2.0)))
+
+
+def least_damping(run, frames):
+    """[frame] Damping ratio from which on a resonance that an order passes there is shown to 1 %."""
+    duration_s = 60.0 * frames.turns / frames.speed_rpm
+    return RESOLVED_DAMPING / SWEEP_OF_TRACK * duration_s * run.sweep_rpm_per_s() / frames.speed_rpm
 
 
 def frames_of(run, turns, points=None):
-    """Frames about rows at even distances in time, where the shaft turns fast enough and one way."""
+    """Frames about rows at even distances in time, where the shaft turns fast enough and one way.
+
+    `turns` is a number, or a function of the speeds.
+    """
     turn = run.angle_rad / (2.0 * np.pi)
     row = np.unique(np.linspace(0, len(turn) - 1, points or POINTS).astype(int))
+    own_turns = callable(turns)
+    turns = turns(run.speed_rpm[row]) if own_turns else np.full(len(row), float(turns))
     start = turn[row] - turns / 2.0
     first, last = np.searchsorted(turn, start), np.searchsorted(turn, start + turns)
     slow = np.concatenate([[0], np.cumsum(run.speed_rpm < SLOWEST_SHARE * run.speed_rpm.max())])
     inside = (start >= turn[0]) & (start + turns <= turn[-1]) & (last > first)
     inside[inside] = slow[last[inside]] == slow[first[inside]]
-    row, start, first, last = row[inside], start[inside], first[inside], last[inside]
+    row, start, turns, first, last = (values[inside] for values in (row, start, turns, first, last))
 
     speeds = [run.speed_rpm[a:b] for a, b in zip(first, last)]
     lowest, highest = np.array([(s.min(), s.max()) for s in speeds]).reshape(-1, 2).T
     steady = highest <= STEADY_RATIO * np.maximum(lowest, 1e-300)
     if not steady.any():
-        whole = turn[-1] - turn[0]
-        raise RunError(f"no {turns:g} turns at a speed that is steady enough; the record has {whole:.4g} turns (--turns)")
+        raise RunError(f"no frame of some turns at a speed that is steady enough; the record has {whole_turns(run):.4g} "
+                       "turns (--turns)")
+    turns = turns[steady] if own_turns else float(turns[0])
     return Frames(run, turns, start[steady], row[steady], lowest[steady], highest[steady])
 
 
@@ -133,15 +172,40 @@ def mean_power(power):
     return np.where(count > 0, np.nansum(power, axis=0, dtype=float) / np.maximum(count, 1), np.nan)
 
 
-def tracked(frames, over_angle, orders, window="hann"):
-    """Amplitudes [order, frame] of any orders, whole or not, read at the order itself; NaN: the rate does not hold it."""
+def even_weight(length):
+    """Weights of a window of an order: sum 1, and no second moment.
+
+    A plain window takes the peak of a resonance down by half its second moment times the curvature of the amplitude.
+    A Hann window times a + b u^2, u from -1/2 to 1/2, has the sum 1 and the second moment 0 with
+    b = -1 / (m4 / m2 - m2), a = 1 - b m2, where m2 and m4 are the moments of the Hann window.
+    """
+    u = (np.arange(length) + 0.5) / length - 0.5
+    hann = 1.0 + np.cos(2.0 * np.pi * u)
+    hann /= hann.sum()
+    m2, m4 = (hann * u**2).sum(), (hann * u**4).sum()
+    b = -1.0 / (m4 / m2 - m2)
+    return hann * (1.0 - b * m2 + b * u**2)
+
+
+def _hann_weight(length):
+    weight = signal.get_window("hann", length)
+    return weight / weight.sum()
+
+
+def tracked(frames, over_angle, orders):
+    """Amplitudes [order, frame] of any orders, whole or not, read at the order itself; NaN: the rate does not hold it.
+
+    Under a Hann window if all frames have the same turns, which somebody chose to tell lines apart: those 3 / turns apart
+    are. Frames as long as the sweep allows have a window that follows what an amplitude does in them, see even_weight().
+    """
+    weight_of = even_weight if np.ndim(frames.turns) else _hann_weight
     highest = max(orders)
     found = np.empty((len(orders), len(frames.row)))
-    for i, piece in enumerate(frames.pieces(over_angle, highest)):
-        weight = signal.get_window(window, len(piece))
-        at = np.arange(len(piece)) * (frames.turns / len(piece))
+    all_turns = np.broadcast_to(frames.turns, frames.row.shape)
+    for i, (turns, piece) in enumerate(zip(all_turns, frames.pieces(over_angle, highest))):
+        at = np.arange(len(piece)) * (turns / len(piece))
         waves = np.exp(-2j * np.pi * np.outer(orders, at))
-        found[:, i] = np.abs(waves @ (piece * weight)) * 2.0 / weight.sum()
+        found[:, i] = 2.0 * np.abs(waves @ (piece * weight_of(len(piece))))
     return np.where(frames.trusted(orders).T, found, np.nan)
 
 

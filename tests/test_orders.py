@@ -93,6 +93,22 @@ class Tracking(unittest.TestCase):
             found = tracking.vold_kalman(run, np.array([23.0]), 0.2, rows)
             np.testing.assert_allclose(found, expected, atol=0.01)
 
+    def test_a_resonance_is_shown_where_it_is_said_to_be(self):
+        """Peak of 1 / (1 - r^2 + 2 i D r), 1 / (2 D sqrt(1 - D^2)), to 1 % from the damping on that is told."""
+        for damping in (0.02, 0.05):
+            for start_rpm, end_rpm, duration_s in ((300, 3000, 12.0), (3000, 300, 4.0), (300, 3000, 1.0)):
+                time_s, speed_rpm, angle_rad = turning(start_rpm, end_rpm, duration_s, FILE_HZ)
+                ratio = 23.0 * speed_rpm / 60.0 / 600.0
+                wave = np.exp(23j * angle_rad) / (1.0 - ratio**2 + 2j * damping * ratio)
+                run = runup.Run(time_s, speed_rpm, angle_rad, wave.real)
+                frames = tracking.track_frames(run)
+                found = tracking.tracked(frames, tracking.OverAngle(run), np.array([23.0]))[0]
+                peak = 1.0 / (2.0 * damping * np.sqrt(1.0 - damping**2))
+                if tracking.least_damping(run, frames)[found.argmax()] <= damping * 1.01:
+                    self.assertAlmostEqual(found.max() / peak, 1.0, delta=0.013, msg=f"{damping} {duration_s}")
+                else:
+                    self.assertLess(found.max(), 0.99 * peak)
+
     def test_an_order_above_the_rate_is_no_number(self):
         run = run_of(600, 6000)
         frames = tracking.frames_of(run, 10, 120)
