@@ -74,6 +74,18 @@ static void spur_gears_without_shift_by_hand(void) {
     GM_ASSERT_REL(gm_iso6336_single_stiffness(&pair, 1.0), 1.05 * expected, 1e-12);
 }
 
+/* A ring has infinitely many teeth there: 0.8 / (0.04723 + 0.15551 / 40) = 0.8 / 0.05111775; of x_2 -0.00193 is left. */
+static void a_ring_is_as_stiff_as_a_rack(void) {
+    gm_pair_params params = plain_spur(40, -100);
+    params.center_distance = 0.06;
+    gm_pair pair = pair_of(&params);
+    GM_ASSERT_REL(gm_iso6336_single_stiffness(&pair, 1.0), 0.8 / 0.05111775 * per_mm_um, 1e-12);
+    params.wheel_profile_shift = 0.1;
+    pair = pair_of(&params);
+    const double q = 0.05111775 - 0.000193 + 0.0000182;
+    GM_ASSERT_REL(gm_iso6336_single_stiffness(&pair, 1.0), 0.8 / q * per_mm_um, 1e-12);
+}
+
 /* x = 0.3 / 0.1 adds -0.001905 - 0.034962 / 20 - 0.000193 - 0.024188 / 40 + 0.0004761 + 0.0000182 to q'. */
 static void profile_shifts_by_hand(void) {
     gm_pair_params params = plain_spur(20, 40);
@@ -206,6 +218,7 @@ int main(int argc, char **argv) {
     static const gm_test tests[] = {
         GM_TEST(published_stiffness_comes_out),
         GM_TEST(spur_gears_without_shift_by_hand),
+        GM_TEST(a_ring_is_as_stiff_as_a_rack),
         GM_TEST(profile_shifts_by_hand),
         GM_TEST(stiffness_is_that_of_the_pair),
         GM_TEST(gears_outside_the_fit_are_told),

@@ -291,6 +291,32 @@ static void the_pinion_drives_the_ring_its_own_way(void) {
     GM_ASSERT(r.wrench.wheel_force[2] < 0.0);
 }
 
+/* The cache finds the ends of the lines as the exact sums do: as good as that of an external pair of the same teeth. */
+static void a_cache_of_a_ring_is_as_good(void) {
+    double errors[2];
+    for (int ring = 0; ring < 2; ++ring) {
+        gm_pair_params params = ring_params(31, ring ? 88 : -88, 2e-3, ring ? 58.9e-3 : 122.5e-3,
+                                            (double)NAN, (double)NAN);
+        params.helix_angle = 12.0 * degree;
+        params.backlash = 60e-6;
+        const gm_pair pair = make_pair(&params);
+        plain_mesh room;
+        gm_mesh *mesh;
+        gm_cache *cache;
+        gm_cache_params resolution;
+        gm_cache_errors found;
+        GM_ASSERT_INT(plain_mesh_make(&room, &pair, NULL, NULL, 1e8, 0.0, &mesh), GM_OK);
+        gm_cache_params_default(&resolution);
+        const size_t size = gm_cache_size(&resolution, mesh);
+        void *memory = malloc(size);
+        GM_ASSERT_INT(gm_cache_init(&cache, &resolution, mesh, memory, size), GM_OK);
+        GM_ASSERT_INT(gm_cache_error(cache, 2000, 3, NULL, &found), GM_OK);
+        errors[ring] = found.sum_rms;
+        free(memory);
+    }
+    GM_ASSERT(errors[1] > 0.0 && errors[1] < 3.0 * errors[0] + 1e-10);
+}
+
 /* Poses that take the ring's tip to the pinion's base circle, its teeth off the pinion, and the tips into each other. */
 static void a_ring_out_of_mesh_is_refused(void) {
     const gm_pair_params params = ring_params(60, 80, 2e-3, 20e-3, 0.0, 0.0);
@@ -324,6 +350,7 @@ int main(int argc, char **argv) {
         GM_TEST(wrong_numbers_of_teeth_are_refused),
         GM_TEST(corners_meet_where_pairs_are_refused),
         GM_TEST(the_pinion_drives_the_ring_its_own_way),
+        GM_TEST(a_cache_of_a_ring_is_as_good),
         GM_TEST(a_ring_out_of_mesh_is_refused),
     };
     return gm_test_main("unit.ring", tests, GM_TEST_COUNT(tests), argc, argv);

@@ -710,7 +710,7 @@ enum gm_law {
  *     c' = C_M C_R C_B cos(beta) / q',   C_M = 0.8,   C_B = (1 + 0.5 (1.2 - h_fP)) (1 - 0.02 (20 - alpha_n in degrees))
  *
  * with q' from numbers of teeth of the normal section and profile shifts, and the mean of both h_fP. "1" in the standard
- * is the gear with fewer teeth. The standard gives +5 % to -8 % between 100 and 1600 N per mm of face, for steel; below,
+ * is the gear with fewer teeth; a ring counts as infinitely many. The standard gives +5 % to -8 % between 100 and 1600 N per mm of face, for steel; below,
  * real teeth are softer.
  *
  * @param[in] pair          from gm_pair_init()
