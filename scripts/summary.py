@@ -8,7 +8,6 @@ import math
 
 import numpy as np
 
-import indicators
 import lines
 import program
 import results

@@ -4,6 +4,7 @@
 """scripts/orders and the modules it is made of, with signals whose orders are known."""
 import importlib.util
 import os
+import random
 import subprocess
 import sys
 import tempfile
@@ -23,6 +24,7 @@ import numpy as np  # noqa: E402
 from scipy import io  # noqa: E402
 
 import lines  # noqa: E402
+import ordermap  # noqa: E402
 import records  # noqa: E402
 import results  # noqa: E402
 import runup  # noqa: E402
@@ -52,6 +54,11 @@ def run_of(start_rpm, end_rpm, values=waves, **how):
 
 
 class Tracking(unittest.TestCase):
+    def setUp(self):
+        few = mock.patch.object(tracking, "POINTS", 150)
+        few.start()
+        self.addCleanup(few.stop)
+
     def assert_known(self, run, found, atol_share=0.01):
         for order, values in zip(KNOWN, found):
             good = values[np.isfinite(values)]
@@ -61,7 +68,7 @@ class Tracking(unittest.TestCase):
     def test_resampling_finds_known_amplitudes_whatever_the_speed_does(self):
         for start_rpm, end_rpm in SPEEDS:
             run = run_of(start_rpm, end_rpm)
-            frames = tracking.frames_of(run, 10, 120)
+            frames = tracking.frames_of(run, 10, 80)
             self.assert_known(run, tracking.tracked(frames, tracking.OverAngle(run), np.array(list(KNOWN))))
 
     def test_a_reversing_shaft_has_frames_on_both_sides(self):
@@ -80,7 +87,7 @@ class Tracking(unittest.TestCase):
     def test_vold_kalman_tells_near_orders_apart(self):
         known = {23.0: (3.0, 0.3), 23.1: (0.5, 1.0)}
         run = run_of(600, 3000, lambda angle: waves(angle, known))
-        rows = tracking.frames_of(run, 10, 120).row
+        rows = tracking.frames_of(run, 10, 80).row
         found = tracking.vold_kalman(run, np.array(list(known)), 0.05, rows)
         np.testing.assert_allclose(found[0], 3.0, rtol=0.01)
         np.testing.assert_allclose(found[1], 0.5, rtol=0.01)
@@ -94,16 +101,16 @@ class Tracking(unittest.TestCase):
             np.testing.assert_allclose(found, expected, atol=0.01)
 
     def test_a_resonance_is_shown_where_it_is_said_to_be(self):
-        """Peak of 1 / (1 - r^2 + 2 i D r), 1 / (2 D sqrt(1 - D^2)), to 1 % from the damping on that is told."""
+        """Peak of 1 / (1 - r^2 + 2 i D r) to 1 % from the damping on that is told."""
         for damping in (0.02, 0.05):
-            for start_rpm, end_rpm, duration_s in ((300, 3000, 12.0), (3000, 300, 4.0), (300, 3000, 1.0)):
+            for start_rpm, end_rpm, duration_s in ((300, 3000, 8.0), (3000, 300, 3.0), (300, 3000, 1.0)):
                 time_s, speed_rpm, angle_rad = turning(start_rpm, end_rpm, duration_s, FILE_HZ)
                 ratio = 23.0 * speed_rpm / 60.0 / 600.0
                 wave = np.exp(23j * angle_rad) / (1.0 - ratio**2 + 2j * damping * ratio)
                 run = runup.Run(time_s, speed_rpm, angle_rad, wave.real)
                 frames = tracking.track_frames(run)
                 found = tracking.tracked(frames, tracking.OverAngle(run), np.array([23.0]))[0]
-                peak = 1.0 / (2.0 * damping * np.sqrt(1.0 - damping**2))
+                peak = np.abs(wave)[frames.row].max()  # 1 / (2 D sqrt(1 - D^2)) where a frame is at it
                 if tracking.least_damping(run, frames)[found.argmax()] <= damping * 1.01:
                     self.assertAlmostEqual(found.max() / peak, 1.0, delta=0.013, msg=f"{damping} {duration_s}")
                 else:
@@ -111,7 +118,7 @@ class Tracking(unittest.TestCase):
 
     def test_an_order_above_the_rate_is_no_number(self):
         run = run_of(600, 6000)
-        frames = tracking.frames_of(run, 10, 120)
+        frames = tracking.frames_of(run, 10, 80)
         for found in (tracking.tracked(frames, tracking.OverAngle(run), np.array([46.0])),
                       tracking.vold_kalman(run, np.array([46.0]), 0.1, frames.row)):
             above = 46.0 * frames.speed_rpm / 60.0 > 1.02 * run.trusted_Hz
@@ -195,9 +202,10 @@ class Case(unittest.TestCase):
     def setUp(self):
         folder = tempfile.TemporaryDirectory()
         self.addCleanup(folder.cleanup)
-        few = mock.patch.object(tracking, "POINTS", 100)
-        few.start()
-        self.addCleanup(few.stop)
+        for module, name, count in ((tracking, "POINTS", 100), (ordermap, "SPECTRUM_FRAMES", 60)):
+            few = mock.patch.object(module, name, count)
+            few.start()
+            self.addCleanup(few.stop)
         self.folder = os.path.join(folder.name, "it's a \"folder\"")
         os.mkdir(self.folder)
         self.time_s, self.speed_rpm, self.angle_rad = turning(600, 2400, 1.5, FILE_HZ)
@@ -329,6 +337,29 @@ class Files(Case):
             result = self.orders(name, "--rpm", "60")
             self.assertEqual(result.returncode, 2, (content[:30], result.stderr))
             self.assertRegex(result.stderr, message)
+
+    def test_mutated_files_are_analysed_or_refused(self):
+        """Broken files: a result or a message, never an exception and never a warning of a library."""
+        random_ = random.Random(1)
+        columns = [values[::4] for values in (self.time_s, self.speed_rpm, self.values)]
+        self.write_text("a.csv", "Zeit;n;F\ns;1/min;N\n", columns, ";", comma=True)
+        table = np.column_stack([self.values / 20.0, self.pulses - 0.5])
+        io.wavfile.write(self.path("a.wav"), int(FILE_HZ), np.round(table[:2000] * 32767).astype(np.int16))
+        for name, options in (("a.csv", ["--rate", "1024", "--signal", "F", "--speed", "n"]),
+                              ("a.wav", ["--signal", "1", "--pulses", "2"])):
+            with open(self.path(name), "rb") as file:
+                whole = file.read()
+            for _ in range(10):
+                data = bytearray(whole)
+                for _ in range(random_.randint(1, 4)):
+                    at = random_.randrange(60) if random_.random() < 0.5 else random_.randrange(len(data))
+                    data[at : at + random_.randint(0, 2)] = random_.choice([b"", b";", b"\n", b"-", b"nan", b"1e999", b"\xff\0"])
+                with open(self.path(name), "wb") as file:
+                    file.write(data if random_.random() < 0.8 else data[: random_.randrange(len(data))])
+                result = self.orders(name, *options, "--orders", "23", "--no-pictures")
+                self.assertIn(result.returncode, (0, 2), result.stderr)
+                self.assertNotIn("Traceback", result.stderr)
+                self.assertNotIn("Warning", result.stderr)
 
     def test_near_orders_are_warned_of(self):
         self.write_text("a.csv", "time,n,p\n", (self.time_s, self.speed_rpm, self.values))

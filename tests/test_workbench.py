@@ -264,16 +264,6 @@ class Reports(Case):
         self.assertAlmostEqual(places[-1], 0.20, delta=0.001)
         self.assertTrue((np.diff(places) <= 0).all())
 
-    def test_two_runs_are_compared(self):
-        self.write("a.csv", HEAD, self.run_up())
-        self.write("b.csv", HEAD, self.run_up(dte_um=None))
-        result = script_case.call("report", "a.csv", "b.csv", "--sound", "none", folder=self.folder)
-        self.assertEqual((result.returncode, len(result.stderr.splitlines())), (0, 1))  # of the missing column
-        with open(os.path.join(self.folder, "a.html"), encoding="utf-8") as file:
-            text = file.read()
-        self.assertTrue('id="comparison"' in text and 'href="#run2"' in text)
-        self.assertFalse(Page(text).audio)
-
     def test_a_run_that_cannot_be_drawn_is_told_in_words(self):
         still = self.run_up()
         still["pinion_speed_rpm"], still["pinion_angle_rad"] = 0 * still["time_s"], 0 * still["time_s"]
