@@ -124,6 +124,7 @@ class Runs(Case):
             file.truncate(len(file.read()) - 7)
         self.sweep(*self.LOADS, *counting)
         self.assertEqual((self.runs_made(), self.table()), (5, before))
+        self.assertIn("4 of 4 runs are done already", self.sweep(*self.LOADS, *counting))
 
     def test_another_sweep_is_not_mixed_with_it(self):
         self.sweep(*self.LOADS)

@@ -115,7 +115,7 @@ static char *behind_word(char *text, const char *const *words) {
     return NULL;
 }
 
-static const char *const tooth_words[] = {"zahn-nr", "tooth-n", "tooth n", NULL};
+static const char *const tooth_words[] = {"zahn-nr", "tooth-n", "tooth n", "tooth:", NULL};
 static const char *const left_words[] = {"links", "linke ", "left", NULL};
 static const char *const right_words[] = {"rechts", "rechte ", "right", NULL};
 static const char *const flank_words[] = {"zahnflanke", "flank", NULL};

@@ -188,6 +188,9 @@ static int map_points(const gmi_mapping *map, const gm_trace *trace, gmi_measure
         const int place = to->turned ? trace->count - 1 - i : i;
         if (trace->kind == GM_TRACE_PROFILE) {
             if (!is_on_profile(map, position)) {
+                if (position > map->gear->tip_roll_length) { /* perhaps on a chamfer */
+                    gmi_error_option(map->error, "tip_form_diameter");
+                }
                 return fail_roll(map, trace, i, position, reach);
             }
             to->t[place] = gmi_profile_place(map->gear, position);
