@@ -97,8 +97,9 @@ class Plan:
         if twice:
             raise InputError(f"--vary {twice.pop()}: a key is varied once")
         unknown = [key for key in self.keys if key.startswith("class.") and key not in CLASSES]
-        if unknown or self.keys and "class.seed" in self.keys and not {*CLASSES[:2]} & {*self.keys}:
-            raise InputError(f"--vary {(unknown or ['class.seed'])[0]}: class.pinion and class.wheel are right, class.seed beside them")
+        if unknown or "class.seed" in self.keys and not {*CLASSES[:2]} & {*self.keys}:
+            wrong = (unknown or ["class.seed"])[0]
+            raise InputError(f"--vary {wrong}: class.pinion and class.wheel are right, class.seed beside them")
         self.random = [axis for axis in axes if isinstance(axis, Random)]
         self.grid = [axis for axis in axes if isinstance(axis, Grid)]
         self.method, self.seed = method, seed

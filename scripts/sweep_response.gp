@@ -23,7 +23,7 @@ do for [format in formats] {
     set label 2 sprintf('%d runs', runs) . (spread ? ': mean, and from the lowest to the highest where other keys vary' : '') \
         at screen 0.025, screen 1 - 75.0 / height left font ',12' textcolor rgb grey
     do for [p = 0:panels - 1] {
-        set lmargin at screen 0.11
+        set lmargin at screen 0.125
         set rmargin at screen right
         set tmargin at screen upper - p * step
         set bmargin at screen upper - (p + 1) * step + 55.0 / height

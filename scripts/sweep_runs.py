@@ -80,7 +80,8 @@ class Job:
             quality = values.pop(f"class.{gear}", None)
             if quality is not None:
                 files = [os.path.join(self.folder, f"{index}.{gear}{kind}.csv") for kind in ("", "_pitch")]
-                options = ["--gear", gear, "--class", quality, "--seed", seed, "--flanks", files[0], "--pitch", files[1]]
+                options = ["--gear", gear, "--class", quality, "--seed", seed]
+                options += ["--flanks", files[0], "--pitch", files[1]]
                 gears = {key: value for key, value in values.items() if key.startswith("gears.")}
                 if gears or any(text.startswith("gears.") for text in self.settings):
                     raise InputError("flanks of a class are of the gears in the file: no key of [gears] beside class.*")
@@ -106,11 +107,13 @@ class Job:
         of_disk = "cannot be written" in why or ".part: " in why
         if done.returncode in (1, 2) and not of_disk:
             raise InputError(why)
-        raise RunFailed(why if done.returncode in (1, 2) else f"{os.path.basename(command)} was ended ({done.returncode})")
+        ended = f"{os.path.basename(command)} was ended ({done.returncode})"
+        raise RunFailed(why if done.returncode in (1, 2) else ended)
 
     def forget(self, index):
         """Removes what a run has left."""
-        for name in (f"{index}.csv", *(f"{index}.{gear}{kind}.csv" for gear in ("pinion", "wheel") for kind in ("", "_pitch"))):
+        flanks = [f".{gear}{kind}" for gear in ("pinion", "wheel") for kind in ("", "_pitch")]
+        for name in (f"{index}{kind}.csv" for kind in ("", *flanks)):
             with contextlib.suppress(FileNotFoundError):
                 os.remove(os.path.join(self.folder, name))
 
@@ -267,7 +270,7 @@ def mpi():
     try:
         from mpi4py import MPI  # pylint: disable=import-outside-toplevel
     except ImportError:
-        raise InputError("--mpi needs the Python package mpi4py (Debian: python3-mpi4py), which is not installed") from None
+        raise InputError("--mpi needs Python with mpi4py (Debian: python3-mpi4py), which is not installed") from None
     return MPI
 
 

@@ -6,9 +6,9 @@
 
 load 'style.gp'
 
-width = 260 + 330 * columns
+width = 295 + 330 * columns
 height = 220 + 300 * panels
-edge = 130.0 / width
+edge = 165.0 / width
 upper = 1.0 - 120.0 / height
 bottom = 90.0 / height
 across = (1.0 - edge - 25.0 / width) / columns
