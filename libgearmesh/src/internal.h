@@ -4,7 +4,7 @@
 /*
  * What the sources of the core share and users never see. Dependencies run one way:
  * gear -> meshing -> pair -> iso6336, position -> contact -> flank -> line -> ramp, tilt -> penetration -> law -> wrench
- * -> mesh -> equilibrium, cache, body.
+ * -> mesh -> equilibrium, cache, body, tangent.
  */
 #ifndef GEARMESH_INTERNAL_H
 #define GEARMESH_INTERNAL_H
@@ -41,6 +41,13 @@
 #define SPECIALIZED static inline __attribute__((always_inline))
 #else
 #define SPECIALIZED static inline
+#endif
+
+/* Not inlined: what it has on the stack is not there when its caller calls others. */
+#if defined(__GNUC__)
+#define OWN_STACK __attribute__((noinline))
+#else
+#define OWN_STACK
 #endif
 
 static inline double gmi_nan(void) {
@@ -171,10 +178,11 @@ void gmi_engagement_keep_tables(const gm_pair *pair, int role, gmi_engagement *a
 /* What an evaluation accumulates beside sum, contact and pairs: a mask. */
 enum gmi_wanted {
     GMI_SUM = 0,
-    GMI_DERIVATIVES = 1,        /* of the sum, by the origin of the lines and by delta */
-    GMI_MOMENTS = 2,            /* first moments over t1 and rho_p */
-    GMI_ROLL = 8,               /* what a common roll of all lines does to the energy */
-    GMI_CONTACT_DERIVATIVES = 4 /* of the touching part; only together with GMI_DERIVATIVES */
+    GMI_DERIVATIVES = 1,         /* of the sum, by the origin of the lines and by delta */
+    GMI_MOMENTS = 2,             /* first moments over t1 and rho_p */
+    GMI_ROLL = 8,                /* what a common roll of all lines does to the energy */
+    GMI_CONTACT_DERIVATIVES = 4, /* of the touching part; only together with GMI_DERIVATIVES */
+    GMI_TANGENT = 16             /* all of gmi_side_tangent; only together with GMI_MOMENTS */
 };
 
 /* The sums over all lines of one side. */
@@ -363,6 +371,46 @@ void gmi_grid_init(gmi_grid *grid, const gmi_tables *tables, double climb, doubl
 /* The table of this gear now begins at another place along the common face. */
 void gmi_grid_move(gmi_grid *grid, double face_origin);
 
+/* What moves the lines of one side and what is on them: its coordinates. */
+enum gmi_coordinate {
+    GMI_BY_ORIGIN, /* of the lines (m) */
+    GMI_BY_DELTA,  /* ideal penetration (m) */
+    GMI_BY_LENGTH, /* of the line of action (m) */
+    GMI_BY_ALONG,  /* the tilt along the line of action, gmi_engagement.along (rad) */
+    GMI_BY_ACROSS, /* and across it (rad) */
+    GMI_BY_AXIAL,  /* the wheel's face (m) */
+    GMI_COORDINATES
+};
+
+/*
+ * How f along a line moves with the coordinates of its side, and how fast it approaches: by polynomials in t1, and by
+ * what the tables have at the points looked up. In the result integrals over the touching part.
+ */
+typedef struct gmi_line_tangent {
+    double by[GMI_COORDINATES][3]; /* beside the tables */
+    double speed[2];               /* of approach (m/s) */
+    double arm
+        [2]; /* u of tilt.c: the speed of approach falls by it times that of the tilt across (m) */
+    double pinion_per_rho, wheel_per_rho,
+        face_per_length; /* d v2 / d rho of both, d v1 / d z of the wheel (1/m) */
+
+    /* Times 1 and t1, over all parts of the line: */
+    double contact[4];                 /* of 1, t1, t1^2, t1^3 */
+    double sum_by[GMI_COORDINATES][2]; /* of d f / d coordinate */
+    double flow_by[GMI_COORDINATES]
+                  [2]; /* over the roots of f: speed times how the touching part moves there */
+
+    /* Of the part at hand. */
+    int wheel_leads;
+    double t1_zero, per_place; /* t1 = t1_zero + per_place times the place in line.c */
+    double direction[2];       /* of both tables in the order of line.c */
+    double face
+        [2]
+        [2]; /* of the wheel's table where the walk is: slope across the face, and its rate; of the other */
+    double part_contact[4];
+    double part_slopes[3][2]; /* of the pinion's table by v2, the wheel's, the wheel's by v1 */
+} gmi_line_tangent;
+
 /*
  * One line: t1 from `from` to `to`, with f = overlap + 2 half_slope s + curvature s^2 + tables of both flanks, s = t1 - from.
  */
@@ -375,6 +423,7 @@ typedef struct gmi_line {
     const double *wheel;
     double pinion_profile; /* v2 of the pinion's table at t1 = 0 */
     double wheel_profile;
+    gmi_line_tangent *tangent; /* GMI_TANGENT */
 } gmi_line;
 
 /* Integrals over the part of a line where f > 0. */
@@ -393,7 +442,19 @@ typedef struct gmi_line_sum {
 
     double at_from; /* f itself at both ends (m) */
     double at_to;
+    gmi_line_tangent *tangent; /* that of the line */
 } gmi_line_sum;
+
+/* What the tables add to d f / d coordinate, from the slopes of the pinion, of the wheel and of the wheel's face. */
+static inline void gmi_line_add_slopes(const gmi_line_tangent *tangent, double pinion, double wheel,
+                                       double face, double by[GMI_COORDINATES]) {
+    const double by_pinion = tangent->pinion_per_rho * pinion;
+    const double by_wheel = tangent->wheel_per_rho * wheel;
+    by[GMI_BY_ORIGIN] += by_pinion - by_wheel;
+    by[GMI_BY_DELTA] += by_wheel;
+    by[GMI_BY_LENGTH] += by_wheel;
+    by[GMI_BY_AXIAL] -= tangent->face_per_length * face;
+}
 
 void gmi_line_integrate(const gmi_line *line, const gmi_grid *pinion, const gmi_grid *wheel,
                         int wanted, gmi_line_sum *result);
@@ -404,17 +465,6 @@ void gmi_ramps_integrate(const gmi_line *line, const gmi_grid *pinion, const gmi
                          int wanted, gmi_line_sum *result);
 
 /* tilt.c: lines of contact between tilted axes. */
-
-/* What moves the lines of one side and what is on them: its coordinates. */
-enum gmi_coordinate {
-    GMI_BY_ORIGIN, /* of the lines (m) */
-    GMI_BY_DELTA,  /* ideal penetration (m) */
-    GMI_BY_LENGTH, /* of the line of action (m) */
-    GMI_BY_ALONG,  /* the tilt along the line of action, gmi_engagement.along (rad) */
-    GMI_BY_ACROSS, /* and across it (rad) */
-    GMI_BY_AXIAL,  /* the wheel's face (m) */
-    GMI_COORDINATES
-};
 
 /* The part of a line on both flanks, none where not from < to, and how its ends move. */
 typedef struct gmi_line_part {
@@ -439,6 +489,10 @@ typedef struct gmi_tilted_line {
 
 void gmi_tilt_line(const gm_pair *pair, const gmi_engagement *at, int side, double rho_origin,
                    gmi_tilted_line *line);
+
+/* What the polynomials of a tangent are. */
+void gmi_tilt_tangent(const gm_pair *pair, const gmi_engagement *at, int side, double rho_origin,
+                      double delta, const gmi_rates *rates, gmi_line_tangent *tangent);
 
 /* d f / d delta of a side (1). */
 double gmi_tilt_gain(const gm_pair *pair, const gmi_engagement *at, int side);
@@ -471,6 +525,20 @@ void gmi_side_sum_tables(const gm_pair *pair, const gmi_engagement *at, const gm
                          int side, const gm_position *position, int wanted, gmi_side_sum *total);
 void gmi_side_sum_simple(const gm_pair *pair, const gmi_engagement *at, int side, double offset,
                          gmi_side_sum *total);
+
+/* Weights of integrals over the touching part. */
+enum gmi_weight { GMI_WHOLE, GMI_BY_T1, GMI_BY_RHO, GMI_WEIGHTS };
+
+/* How the sums of a side move with its coordinates; flow: the integral of the speed of approach. */
+typedef struct gmi_side_tangent {
+    gmi_rates rates; /* given */
+    double sum_by[GMI_COORDINATES][GMI_WEIGHTS];
+    double flow[GMI_WEIGHTS];
+    double flow_by[GMI_COORDINATES][GMI_WEIGHTS];
+    double contact[GMI_WEIGHTS]; /* d flow / d rates.delta */
+    double arm[GMI_WEIGHTS];     /* - d flow / d rates.across */
+    gmi_line_tangent line;       /* at hand */
+} gmi_side_tangent;
 
 gm_penetration gmi_penetration_nan(void);
 
@@ -555,12 +623,41 @@ static inline void gmi_law_force(const gmi_law *law, const gmi_side_sum *sum, do
     }
 }
 
+/* The same where the speed of approach is not the same all over the side: with moments, and derivatives of the force. */
+static inline void gmi_law_force_of_flow(const gmi_law *law, const gmi_side_sum *sum,
+                                         const gmi_side_tangent *tangent, gmi_side_force *result) {
+    const double k = law->stiffness;
+    const double d = law->damping;
+    const gmi_side_force none = {0.0, 0.0, 0.0, 0.0, 0.0, 0.0};
+    *result = none;
+    const double force = k * sum->sum + d * tangent->flow[GMI_WHOLE];
+    if (!(force > 0.0)) {
+        return;
+    }
+    result->force = force;
+    result->by_origin = k * tangent->sum_by[GMI_BY_ORIGIN][GMI_WHOLE] +
+                        d * tangent->flow_by[GMI_BY_ORIGIN][GMI_WHOLE];
+    result->by_delta = k * tangent->sum_by[GMI_BY_DELTA][GMI_WHOLE] +
+                       d * tangent->flow_by[GMI_BY_DELTA][GMI_WHOLE];
+    result->by_speed = d * tangent->contact[GMI_WHOLE];
+    result->force_t1 = k * sum->sum_t1 + d * tangent->flow[GMI_BY_T1];
+    result->force_rho = k * sum->sum_rho + d * tangent->flow[GMI_BY_RHO];
+}
+
 /* Net sum of overlaps that carries a torque at rest (m). */
 double gmi_law_sum_of_torque(const gmi_law *law, double torque, double base_radius);
 
 /* wrench.c: adds the forces of one side. */
 void gmi_wrench_add_side(const gm_pair *pair, const gmi_engagement *at, const gmi_side_force *force,
                          int side, gm_wrench *wrench);
+
+/* Its derivative where alpha_wt and the centre distance move, the forces being what they are. */
+void gmi_wrench_add_by_direction(const gm_pair *pair, const gmi_engagement *at,
+                                 const gmi_side_force *side, int side_of_teeth, double angle_by,
+                                 double distance_by, gm_wrench *wrench);
+
+/* And where all of it turns about z. */
+void gmi_wrench_add_by_turn(const gm_wrench *wrench, double turn_by, gm_wrench *by);
 
 /* From the frame in which the posed wheel's axis is on +x to that of the drawing. */
 void gmi_wrench_turn(gm_wrench *wrench, double angle);
@@ -586,13 +683,19 @@ struct gm_mesh {
     gm_cache *cache;           /* NULL = exact */
 };
 
+/* Sum of a side with first moments and its tangent, of rates that are set in it. */
+void gmi_side_sum_tangent(const gm_mesh *mesh, int side, const gm_position *position,
+                          gmi_side_sum *total, gmi_side_tangent *tangent);
+
 /* As gm_mesh_evaluate_at() without the cache, of a position that has been checked and posed. GM_OK or GM_NO_CONVERGENCE. */
 int gmi_mesh_evaluate_exact(const gm_mesh *mesh, const gm_position *position, int wanted,
                             gm_workspace *workspace, gm_mesh_result *result);
 void gmi_mesh_result_set_nan(gm_mesh_result *result);
 
-/* The same mesh with its wheel in another pose, in addition to that of the mesh; without a cache. */
-int gmi_mesh_move(const gm_mesh *mesh, const gm_pose *pose, gm_mesh *moved);
+/* The same mesh with its wheel in the pose of a motion too and without a cache, where it is then, and how fast the flanks
+ * approach each other. Returns GM_OK, or a status of what is wrong with the motion. */
+int gmi_mesh_follow(const gm_mesh *mesh, const gm_motion *motion, gm_mesh *moved,
+                    gm_position *position, gmi_rates rates[2]);
 
 /* The position in the coordinates of the posed pair. */
 static inline gm_position gmi_mesh_posed(const gm_mesh *mesh, const gm_position *position) {

@@ -141,8 +141,19 @@ SPECIALIZED double begin(trace *path, const gmi_grid *grid, const double *table,
     return s + larger(grid->profile_cells - u, LEAST_DISTANCE) * grid->profile_spacing;
 }
 
+/* The slope across the face, from where begin() has left the trace. */
+static void begin_face_slope(const trace *path, const gmi_grid *grid, double s, double *face) {
+    const double *behind = path->ahead - grid->step;
+    const double along_face = behind[grid->row] - behind[0];
+    const double mixed = (path->ahead[grid->row] - path->ahead[0]) - along_face;
+    const double q = 1.0 - (path->next_profile - s) * grid->rate;
+    face[0] = along_face + mixed * q;
+    face[1] = mixed * grid->rate;
+}
+
 /* Across the face line ahead, at `s`; `ahead` is already that of the new cell. */
-SPECIALIZED void cross_face(trace *path, const gmi_grid *grid, double s, int wanted, quadratic *f) {
+SPECIALIZED void cross_face(trace *path, const gmi_grid *grid, double s, int wanted, quadratic *f,
+                            double *face) {
     path->ahead += grid->row;
     const double ahead = path->ahead[GMI_NODE_FACE];
     const double back = path->ahead[GMI_NODE_FACE - grid->step] - ahead;
@@ -151,22 +162,29 @@ SPECIALIZED void cross_face(trace *path, const gmi_grid *grid, double s, int wan
     const double distance = (path->next_profile - s) * grid->rate;
     f->half_slope += grid->face_kick * (ahead + distance * back);
     f->curvature -= grid->bend * back;
-    if (wanted & GMI_DERIVATIVES) {
+    if (wanted & (GMI_DERIVATIVES | GMI_TANGENT)) {
         path->slope_rate -= grid->face_ratio * back;
+    }
+    if (wanted & GMI_TANGENT) {
+        face[0] += ahead + distance * back;
+        face[1] -= grid->rate * back;
     }
 }
 
 /* Across the profile line ahead, at the place p between its nodes on the face lines behind and ahead. */
 SPECIALIZED void cross_profile(trace *path, const gmi_grid *grid, double p, int wanted,
-                               quadratic *f) {
+                               quadratic *f, double *face) {
     const double behind = path->ahead[GMI_NODE_PROFILE];
     const double change = path->ahead[grid->row + GMI_NODE_PROFILE] - behind;
     const double kink = behind + p * change;
     f->half_slope += grid->profile_kick * kink;
     f->curvature += grid->bend * change;
-    if (wanted & GMI_DERIVATIVES) {
+    if (wanted & (GMI_DERIVATIVES | GMI_TANGENT)) {
         path->slope += kink;
         path->slope_rate += grid->face_ratio * change;
+    }
+    if (wanted & GMI_TANGENT) {
+        face[1] += grid->rate * change;
     }
     path->ahead += grid->step;
     path->next_profile += grid->profile_spacing;
@@ -197,6 +215,95 @@ static inline void add_moments(const piece *part, double begin, double end, gmi_
     total->sum_t1 += s * integral_of(&part->f, length, middle) +
                      length * (length * length * (1.0 / 12.0)) * slope_at_middle;
     total->contact_t1 += s * length;
+}
+
+/* Moments of the part up to the third, and of the slopes of the tables there. */
+static void add_tangent(const piece *part, double begin, double end, gmi_line_tangent *tangent) {
+    const double length = (end - begin) * tangent->per_place;
+    const double middle = 0.5 * (begin + end);
+    const double t1 = tangent->t1_zero + (part->s + middle) * tangent->per_place;
+    const double spread = length * length * (1.0 / 12.0);
+    tangent->part_contact[0] += length;
+    tangent->part_contact[1] += length * t1;
+    tangent->part_contact[2] += length * (t1 * t1 + spread);
+    tangent->part_contact[3] += length * t1 * (t1 * t1 + 3.0 * spread);
+
+    const double *face = tangent->face[0]; /* where the piece begins */
+    const double slopes[3] = {part->first_slope + middle * part->first_rate,
+                              part->second_slope + middle * part->second_rate,
+                              face[0] + middle * face[1]};
+    const double rates[3] = {part->first_rate, part->second_rate, face[1]};
+    const double per_rate = spread / tangent->per_place;
+    for (int k = 0; k < 3; ++k) {
+        tangent->part_slopes[k][0] += length * slopes[k];
+        tangent->part_slopes[k][1] += length * (t1 * slopes[k] + per_rate * rates[k]);
+    }
+}
+
+/* Slopes in the order of line.c become those of pinion and wheel. */
+static void add_ordered_slopes(const gmi_line_tangent *tangent, double first, double second,
+                               double face, double by[GMI_COORDINATES]) {
+    first *= tangent->direction[0];
+    second *= tangent->direction[1];
+    gmi_line_add_slopes(tangent, tangent->wheel_leads ? second : first,
+                        tangent->wheel_leads ? first : second, face, by);
+}
+
+/* Where f passes zero the touching part moves by d f / |d f / d t1|, and takes its speed of approach along. */
+static void add_tangent_root(const piece *part, double root, double per_slope,
+                             gmi_line_tangent *tangent) {
+    if (!(root > 0.0 && root < part->length)) {
+        return;
+    }
+    const double t1 = tangent->t1_zero + (part->s + root) * tangent->per_place;
+    const double flow =
+        (tangent->speed[0] + tangent->speed[1] * t1) * per_slope * tangent->per_place;
+    double by[GMI_COORDINATES];
+    for (int k = 0; k < GMI_COORDINATES; ++k) {
+        const double *powers = tangent->by[k];
+        by[k] = powers[0] + t1 * (powers[1] + t1 * powers[2]);
+    }
+    add_ordered_slopes(tangent, part->first_slope + root * part->first_rate,
+                       part->second_slope + root * part->second_rate,
+                       tangent->face[0][0] + root * tangent->face[0][1], by);
+    for (int k = 0; k < GMI_COORDINATES; ++k) {
+        tangent->flow_by[k][0] += flow * by[k];
+        tangent->flow_by[k][1] += flow * by[k] * t1;
+    }
+}
+
+/* The integrals of a part become those of d f / d coordinate. */
+static void finish_tangent(gmi_line_tangent *tangent) {
+    for (int weight = 0; weight < 2; ++weight) {
+        const double *contact = &tangent->part_contact[weight];
+        double by[GMI_COORDINATES];
+        for (int k = 0; k < GMI_COORDINATES; ++k) {
+            const double *powers = tangent->by[k];
+            by[k] = powers[0] * contact[0] + powers[1] * contact[1] + powers[2] * contact[2];
+        }
+        add_ordered_slopes(tangent, tangent->part_slopes[0][weight],
+                           tangent->part_slopes[1][weight], tangent->part_slopes[2][weight], by);
+        for (int k = 0; k < GMI_COORDINATES; ++k) {
+            tangent->sum_by[k][weight] += by[k];
+        }
+    }
+    for (int power = 0; power < 4; ++power) {
+        tangent->contact[power] += tangent->part_contact[power];
+        tangent->part_contact[power] = 0.0;
+    }
+    for (int k = 0; k < 3; ++k) {
+        tangent->part_slopes[k][0] = tangent->part_slopes[k][1] = 0.0;
+    }
+}
+
+/* The place in the terms of the table that leads. */
+static void lead_tangent(gmi_line_tangent *tangent, int wheel_leads, double per_place,
+                         double t1_zero, double first, double second) {
+    tangent->wheel_leads = wheel_leads;
+    tangent->per_place = per_place;
+    tangent->t1_zero = t1_zero;
+    tangent->direction[0] = first;
+    tangent->direction[1] = second;
 }
 
 /* Adds the part [begin, end] (from the start of the piece), in which f > 0. */
@@ -230,7 +337,7 @@ static inline void add_root(const piece *part, double root, double per_slope, gm
 }
 
 /* A piece in which f may change its sign: split at the roots of the quadratic. */
-static void add_split(const piece *part, int wanted, gmi_line_sum *total) {
+SPECIALIZED void split_piece(const piece *part, int wanted, int has_tangent, gmi_line_sum *total) {
     const quadratic f = part->f;
     if (!(part->length > 0.0)) { /* two crossings at the same t1, up to rounding */
         return;
@@ -253,6 +360,11 @@ static void add_split(const piece *part, int wanted, gmi_line_sum *total) {
             add_root(part, cuts[1], per_slope, total);
             add_root(part, cuts[2], per_slope, total);
         }
+        if (has_tangent) {
+            const double per_slope = 0.5 / half_slope_at_root;
+            add_tangent_root(part, cuts[1], per_slope, total->tangent);
+            add_tangent_root(part, cuts[2], per_slope, total->tangent);
+        }
     }
 
     /* In each part f has one sign, which it shows in the middle. */
@@ -261,8 +373,19 @@ static void add_split(const piece *part, int wanted, gmi_line_sum *total) {
         const double at_middle = f.value + middle * (2.0 * f.half_slope + middle * f.curvature);
         if (cuts[k + 1] > cuts[k] && at_middle > 0.0) {
             add_touching(part, cuts[k], cuts[k + 1], wanted, total);
+            if (has_tangent) {
+                add_tangent(part, cuts[k], cuts[k + 1], total->tangent);
+            }
         }
     }
+}
+
+static void add_split(const piece *part, int wanted, gmi_line_sum *total) {
+    split_piece(part, wanted, 0, total);
+}
+
+static void add_split_tangent(const piece *part, int wanted, gmi_line_sum *total) {
+    split_piece(part, wanted, 1, total);
 }
 
 /* A walk along a line: where it is, f there, and the sums over whole pieces so far. */
@@ -311,20 +434,35 @@ SPECIALIZED void advance(walk_state *at, double end, int wanted, gmi_line_sum *s
         if (wanted & GMI_MOMENTS) {
             const piece part = piece_ahead(at, length, wanted);
             add_moments(&part, 0.0, length, split);
+            if (wanted & GMI_TANGENT) {
+                add_tangent(&part, 0.0, length, split->tangent);
+            }
         }
     } else if (larger(larger(value, control), end_value) > 0.0) {
         const piece part = piece_ahead(at, length, wanted);
-        add_split(&part, wanted, split);
+        if (wanted & GMI_TANGENT) {
+            add_split_tangent(&part, wanted, split);
+        } else {
+            add_split(&part, wanted, split);
+        }
     }
 
     /* Go there. */
     at->s = end;
     at->f.value = end_value;
     at->f.half_slope = end_half_slope;
-    if (wanted & GMI_DERIVATIVES) {
+    if (wanted & (GMI_DERIVATIVES | GMI_TANGENT)) {
         at->first.slope = first_slope;
         at->second.slope = second_slope;
     }
+    if (wanted & GMI_TANGENT) {
+        split->tangent->face[0][0] += length * split->tangent->face[0][1];
+    }
+}
+
+/* Slope across the face and its rate in the first table of the walk or in the second; that of the wheel counts. */
+SPECIALIZED double *face_of(int table, int wanted, gmi_line_sum *split) {
+    return wanted & GMI_TANGENT ? split->tangent->face[split->tangent->wheel_leads == table] : NULL;
 }
 
 /*
@@ -344,7 +482,7 @@ SPECIALIZED void walk_cell(walk_state *at, const gmi_grid *first, const gmi_grid
                     break;
                 }
                 advance(at, at->first.next_profile, wanted, split);
-                cross_profile(&at->first, first, at->s, wanted, &at->f);
+                cross_profile(&at->first, first, at->s, wanted, &at->f, face_of(0, wanted, split));
             } else {
                 if (!(at->second.next_profile < face_line)) {
                     break;
@@ -352,7 +490,7 @@ SPECIALIZED void walk_cell(walk_state *at, const gmi_grid *first, const gmi_grid
                 advance(at, at->second.next_profile, wanted, split);
                 const double p =
                     same_faces ? at->s : 1.0 - (at->second.next_face - at->s) * second->face_ratio;
-                cross_profile(&at->second, second, p, wanted, &at->f);
+                cross_profile(&at->second, second, p, wanted, &at->f, face_of(1, wanted, split));
             }
         }
 
@@ -361,7 +499,7 @@ SPECIALIZED void walk_cell(walk_state *at, const gmi_grid *first, const gmi_grid
         if (same_faces || !(face_line < end)) {
             return;
         }
-        cross_face(&at->second, second, face_line, wanted, &at->f);
+        cross_face(&at->second, second, face_line, wanted, &at->f, face_of(1, wanted, split));
         at->second.faces -= 1;
         at->second.next_face += 1.0 / second->face_ratio;
     }
@@ -369,7 +507,7 @@ SPECIALIZED void walk_cell(walk_state *at, const gmi_grid *first, const gmi_grid
 
 /* Across the face line of the leading table, where s begins again. */
 SPECIALIZED void enter_next_cell(walk_state *at, const gmi_grid *first, const gmi_grid *second,
-                                 int wanted, int same_faces) {
+                                 int wanted, int same_faces, gmi_line_sum *split) {
     at->s = 0.0;
     if (wanted & GMI_MOMENTS) {
         at->faces += 1.0;
@@ -383,9 +521,9 @@ SPECIALIZED void enter_next_cell(walk_state *at, const gmi_grid *first, const gm
         at->second.next_face -= 1.0;
     }
 
-    cross_face(&at->first, first, 0.0, wanted, &at->f);
+    cross_face(&at->first, first, 0.0, wanted, &at->f, face_of(0, wanted, split));
     if (same_faces) {
-        cross_face(&at->second, second, 0.0, wanted, &at->f);
+        cross_face(&at->second, second, 0.0, wanted, &at->f, face_of(1, wanted, split));
     }
 }
 
@@ -402,7 +540,7 @@ SPECIALIZED void walk(walk_state at, const gmi_grid *first, const gmi_grid *seco
         if (is_last) {
             break;
         }
-        enter_next_cell(&at, first, second, wanted, same_faces);
+        enter_next_cell(&at, first, second, wanted, same_faces, result);
     }
 
     const double per_rate = 1.0 / first->face_rate; /* from s to t1 */
@@ -433,20 +571,57 @@ static void integrate_ideal(const gmi_line *line, int wanted, gmi_line_sum *resu
     if (line->half_slope != 0.0 || line->curvature != 0.0) {
         const quadratic f = {line->overlap, line->half_slope, line->curvature};
         const piece part = {line->from, length, f, 0.0, 0.0, 0.0, 0.0};
-        add_split(&part, wanted, result);
+        if (wanted & GMI_TANGENT) {
+            add_split_tangent(&part, wanted, result);
+        } else {
+            add_split(&part, wanted, result);
+        }
     } else if (line->overlap > 0.0) {
         result->sum = line->overlap * length;
         result->contact = length;
         result->contact_t1 = 0.5 * length * (line->from + line->to);
         result->sum_t1 = line->overlap * result->contact_t1;
+        if (wanted & GMI_TANGENT) {
+            const quadratic f = {line->overlap, 0.0, 0.0};
+            const piece part = {line->from, length, f, 0.0, 0.0, 0.0, 0.0};
+            add_tangent(&part, 0.0, length, result->tangent);
+        }
+    }
+}
+
+/* Face lines of both tables for themselves: as of two gears that have moved against each other. */
+static OWN_STACK void walk_apart(walk_state at, const gmi_grid *first, const gmi_grid *second,
+                                 double end, int wanted, gmi_line_sum *result) {
+    if (wanted == GMI_SUM) {
+        walk(at, first, second, end, GMI_SUM, 0, result);
+    } else {
+        walk(at, first, second, end, wanted & ~GMI_TANGENT, 0, result);
+    }
+}
+
+/* The walk of a tangent, apart from the others, which gcc then compiles as if it were not there. */
+static OWN_STACK void walk_tangent(walk_state at, const gmi_grid *first, const gmi_grid *second,
+                                   double end, int has_second, int same_faces,
+                                   gmi_line_sum *result) {
+    enum { TANGENT = GMI_TANGENT | GMI_MOMENTS };
+    begin_face_slope(&at.first, first, at.s, face_of(0, TANGENT, result));
+    if (has_second) {
+        begin_face_slope(&at.second, second, at.s, face_of(1, TANGENT, result));
+    }
+    lead_tangent(result->tangent, result->tangent->wheel_leads, 1.0 / first->face_rate,
+                 -first->face_base / first->face_rate, first->direction, second->direction);
+    if (same_faces) {
+        walk(at, first, second, end, TANGENT, 1, result);
+    } else {
+        walk(at, first, second, end, TANGENT, 0, result);
     }
 }
 
 /* `first` has a table, `second` may have one. */
-static void integrate_tables(const gmi_line *line, const gmi_grid *first, const double *first_table,
+SPECIALIZED void walk_tables(const gmi_line *line, const gmi_grid *first, const double *first_table,
                              double first_profile, const gmi_grid *second,
                              const double *second_table, double second_profile, int wanted,
-                             gmi_line_sum *result) {
+                             int has_tangent, gmi_line_sum *result) {
     const double v1 = line->from * first->face_rate + first->face_base;
     const double to = line->to * first->face_rate + first->face_base;
     const int face = cell_of(v1, first->last_face);
@@ -492,8 +667,10 @@ static void integrate_tables(const gmi_line *line, const gmi_grid *first, const 
 
     /* A walk of its own for each mask that solvers use: what is not wanted costs nothing in it. */
     enum { DAMPED = GMI_DERIVATIVES | GMI_CONTACT_DERIVATIVES };
-    if (!same_faces) {
-        walk(at, first, second, end, wanted, 0, result);
+    if (has_tangent) {
+        walk_tangent(at, first, second, end, second_table != NULL, same_faces, result);
+    } else if (!same_faces) {
+        walk_apart(at, first, second, end, wanted, result);
     } else if (wanted == GMI_SUM) {
         walk(at, first, second, end, GMI_SUM, 1, result);
     } else if (wanted == GMI_DERIVATIVES) {
@@ -503,8 +680,36 @@ static void integrate_tables(const gmi_line *line, const gmi_grid *first, const 
     } else if (wanted == GMI_MOMENTS) {
         walk(at, first, second, end, GMI_MOMENTS, 1, result);
     } else {
-        walk(at, first, second, end, wanted, 1, result);
+        walk(at, first, second, end, wanted & ~GMI_TANGENT, 1, result);
     }
+}
+
+static void integrate_tables(const gmi_line *line, const gmi_grid *first, const double *first_table,
+                             double first_profile, const gmi_grid *second,
+                             const double *second_table, double second_profile, int wanted,
+                             gmi_line_sum *result) {
+    walk_tables(line, first, first_table, first_profile, second, second_table, second_profile,
+                wanted, 0, result);
+}
+
+/* Apart, so that gcc compiles the other one as if this one were not there. */
+static OWN_STACK void integrate_tangent(const gmi_line *line, const gmi_grid *pinion,
+                                        const gmi_grid *wheel, int wanted, gmi_line_sum *result) {
+    gmi_line_tangent *tangent = line->tangent;
+    const int wheel_leads = line->pinion == NULL && line->wheel != NULL;
+    result->tangent = tangent;
+    tangent->face[0][0] = tangent->face[0][1] = 0.0; /* without a table */
+    lead_tangent(tangent, wheel_leads, 1.0, 0.0, 0.0, 0.0);
+    if (wheel_leads) {
+        walk_tables(line, wheel, line->wheel, line->wheel_profile, &ideal_grid, NULL, 0.0, wanted,
+                    1, result);
+    } else if (line->pinion != NULL) {
+        walk_tables(line, pinion, line->pinion, line->pinion_profile, wheel, line->wheel,
+                    line->wheel_profile, wanted, 1, result);
+    } else {
+        integrate_ideal(line, wanted, result);
+    }
+    finish_tangent(tangent);
 }
 
 void gmi_line_integrate(const gmi_line *line, const gmi_grid *pinion, const gmi_grid *wheel,
@@ -513,6 +718,11 @@ void gmi_line_integrate(const gmi_line *line, const gmi_grid *pinion, const gmi_
     result->sum_t1 = result->contact_t1 = 0.0;
     if (wanted & GMI_CONTACT_DERIVATIVES) {
         result->roots = result->roots_pinion = result->roots_wheel = 0.0;
+    }
+
+    if (wanted & GMI_TANGENT) {
+        integrate_tangent(line, pinion, wheel, wanted, result);
+        return;
     }
 
     /* The flank with a table leads; if both have one, the pinion. */

@@ -352,6 +352,32 @@ static inline void set_force_derivatives(const gm_pair *pair, const gmi_side_for
 static const gmi_side_sum no_contact = {.sum = 0.0};
 static const gmi_side_force no_force = {.force = 0.0};
 
+/* What a user sees of the forces of both sides; NaN in place of what was not asked for. */
+SPECIALIZED void set_forces(const gm_mesh *mesh, const gmi_side_force *drive_force,
+                            const gmi_side_force *coast_force, int wanted, gm_mesh_result *result) {
+    result->drive_force = drive_force->force;
+    result->coast_force = coast_force->force;
+    result->force = drive_force->force - coast_force->force;
+    result->pinion_torque = result->force * mesh->pair->pinion.base_radius;
+    result->wheel_torque = result->force * mesh->pair->wheel.base_radius;
+
+    if (wanted & GM_WANT_DERIVATIVES) {
+        set_force_derivatives(mesh->pair, drive_force, coast_force, result);
+    } else {
+        set_gradients_nan(result);
+    }
+    if (wanted & GM_WANT_WRENCH) {
+        gmi_wrench_set(&result->wrench, 0.0);
+        gmi_wrench_add_side(mesh->pair, &mesh->engagement, drive_force, GM_DRIVE, &result->wrench);
+        gmi_wrench_add_side(mesh->pair, &mesh->engagement, coast_force, GM_COAST, &result->wrench);
+        if (mesh->engagement.axis_direction != 0.0) {
+            gmi_wrench_turn(&result->wrench, mesh->engagement.axis_direction);
+        }
+    } else {
+        gmi_wrench_set(&result->wrench, gmi_nan());
+    }
+}
+
 /* All that a user sees, from the sums of both sides. */
 SPECIALIZED void set_result(const gm_mesh *mesh, const gmi_side_sum *drive,
                             const gmi_side_sum *coast, const double approach[2], int wanted,
@@ -371,28 +397,7 @@ SPECIALIZED void set_result(const gm_mesh *mesh, const gmi_side_sum *drive,
         coast_force = &forces[GM_COAST];
     }
 
-    result->drive_force = drive_force->force;
-    result->coast_force = coast_force->force;
-    result->force = drive_force->force - coast_force->force;
-    result->pinion_torque = result->force * mesh->pair->pinion.base_radius;
-    result->wheel_torque = result->force * mesh->pair->wheel.base_radius;
-
-    /* What was asked for; NaN in place of the rest. */
-    if (wanted & GM_WANT_DERIVATIVES) {
-        set_force_derivatives(mesh->pair, drive_force, coast_force, result);
-    } else {
-        set_gradients_nan(result);
-    }
-    if (wanted & GM_WANT_WRENCH) {
-        gmi_wrench_set(&result->wrench, 0.0);
-        gmi_wrench_add_side(mesh->pair, &mesh->engagement, drive_force, GM_DRIVE, &result->wrench);
-        gmi_wrench_add_side(mesh->pair, &mesh->engagement, coast_force, GM_COAST, &result->wrench);
-        if (mesh->engagement.axis_direction != 0.0) {
-            gmi_wrench_turn(&result->wrench, mesh->engagement.axis_direction);
-        }
-    } else {
-        gmi_wrench_set(&result->wrench, gmi_nan());
-    }
+    set_forces(mesh, drive_force, coast_force, wanted, result);
 }
 
 /* The sum of a side, by a mask of enum gmi_wanted: written to `memory`, or that of no contact. */
@@ -575,7 +580,7 @@ static int is_at_rest(const gm_pose *pose) {
            pose->skew == 0.0 && pose->inclination == 0.0;
 }
 
-int gmi_mesh_move(const gm_mesh *mesh, const gm_pose *pose, gm_mesh *moved) {
+static int move_mesh(const gm_mesh *mesh, const gm_pose *pose, gm_mesh *moved) {
     const gm_pose both = both_poses(&mesh->pose, pose);
     *moved = *mesh;
     moved->cache = NULL;
@@ -624,6 +629,28 @@ static int evaluate_moving(const gm_mesh *mesh, const gm_position *position,
     return GM_OK;
 }
 
+/* The speed of approach is another at each point, which the tangent of a side knows. */
+static OWN_STACK void evaluate_tilting(const gm_mesh *mesh, const gm_position *position,
+                                       const gmi_rates rates[2], int wanted,
+                                       gm_mesh_result *result) {
+    gmi_side_tangent tangent;
+    gmi_side_sum sums[2];
+    gmi_side_force forces[2];
+    double approach[2];
+    for (int side = GM_DRIVE; side <= GM_COAST; ++side) {
+        gmi_side_sum *sum = &sums[side];
+        tangent.rates = rates[side];
+        gmi_side_sum_tangent(mesh, side, position, sum, &tangent);
+        gmi_law_force_of_flow(&mesh->law, sum, &tangent, &forces[side]);
+        approach[side] = sum->contact > 0.0 ? tangent.flow[GMI_WHOLE] / sum->contact : 0.0;
+        sum->by_origin = tangent.sum_by[GMI_BY_ORIGIN][GMI_WHOLE];
+        sum->by_delta = tangent.sum_by[GMI_BY_DELTA][GMI_WHOLE];
+    }
+    gmi_penetration_set(mesh->pair, &sums[GM_DRIVE], &sums[GM_COAST], approach,
+                        accumulated(mesh, 1, wanted), &result->contact);
+    set_forces(mesh, &forces[GM_DRIVE], &forces[GM_COAST], wanted, result);
+}
+
 static int is_finite_pose(const gm_pose *pose) {
     return gmi_is_finite(pose->center_distance_change + pose->offset + pose->axial_shift) &&
            gmi_is_finite(pose->skew + pose->inclination);
@@ -640,35 +667,47 @@ static int check_rate(const gm_pose *rate) {
     return largest <= GMI_LARGEST_SPEED ? GM_OK : GM_STATE_OUT_OF_RANGE;
 }
 
-/* Not inlined: what it has on the stack is not there when its caller calls others. */
-#if defined(__GNUC__)
-#define OWN_STACK __attribute__((noinline))
-#else
-#define OWN_STACK
-#endif
+int gmi_mesh_follow(const gm_mesh *mesh, const gm_motion *motion, gm_mesh *moved,
+                    gm_position *position, gmi_rates rates[2]) {
+    int status = check_rate(&motion->pose_rate);
+    if (status == GM_OK) {
+        status = move_mesh(mesh, &motion->pose, moved);
+    }
+    if (status != GM_OK) {
+        return status;
+    }
+    *position = gmi_mesh_posed(moved, &motion->position);
+    gmi_rates_find(mesh->pair, &moved->engagement, position->offset_rate, &motion->pose_rate,
+                   rates);
+    if (moved->model == GM_MODEL_SIMPLE) {
+        rates[GM_DRIVE].along = rates[GM_DRIVE].across = 0.0; /* it knows no tilts */
+        rates[GM_COAST].along = rates[GM_COAST].across = 0.0;
+        return gmi_check_offset(position->offset, position->offset_rate);
+    }
+    return gmi_check_position(moved->pair, position);
+}
 
 /* The mesh as posed is no small thing. */
 static OWN_STACK int evaluate_posed(const gm_mesh *mesh, const gm_motion *motion, int wanted,
                                     gm_workspace *workspace, gm_mesh_result *result) {
     gm_mesh moved;
-    int status = check_rate(&motion->pose_rate);
+    gm_position position;
+    gmi_rates rates[2];
+    int status = gmi_mesh_follow(mesh, motion, &moved, &position, rates);
     if (status == GM_OK) {
-        status = gmi_mesh_move(mesh, &motion->pose, &moved);
+        status = check_evaluation(&moved, &position, wanted, workspace);
     }
-    if (status != GM_OK) {
-        return status;
-    }
-    const gm_position position = gmi_mesh_posed(&moved, &motion->position);
-    status = check_evaluation(&moved, &position, wanted, workspace);
     if (status != GM_OK) {
         return status;
     }
     if (is_at_rest(&motion->pose_rate)) {
         return gmi_mesh_evaluate_exact(&moved, &position, wanted, workspace, result);
     }
-
-    gmi_rates rates[2];
-    gmi_rates_find(mesh->pair, &moved.engagement, position.offset_rate, &motion->pose_rate, rates);
+    const int is_tilting = rates[GM_DRIVE].along != 0.0 || rates[GM_DRIVE].across != 0.0;
+    if (is_tilting && !is_elastic(mesh)) {
+        evaluate_tilting(&moved, &position, rates, wanted, result);
+        return GM_OK;
+    }
     return evaluate_moving(&moved, &position, rates, wanted, workspace, result);
 }
 

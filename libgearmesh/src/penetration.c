@@ -12,6 +12,7 @@
 #include "internal.h"
 
 #include <math.h>
+#include <string.h>
 
 /* ---------------------------------------------------------------------------------------------
  * One side, prepared
@@ -78,7 +79,8 @@ typedef struct side_view {
     gmi_line_ends ends;
     gmi_line_part tilted_part; /* of the line at hand, if the axes are tilted */
     gmi_tilted_line tilted;
-    double wheel_reach; /* rho_w - start of the wheel's flank = wheel_reach - rho_p (m) */
+    double wheel_reach;        /* rho_w - start of the wheel's flank = wheel_reach - rho_p (m) */
+    gmi_side_tangent *tangent; /* GMI_TANGENT */
 } side_view;
 
 /*
@@ -192,6 +194,101 @@ static int tilt_line(side_view *view, double rho_origin, gmi_line *line) {
     return 1;
 }
 
+/* ---------------------------------------------------------------------------------------------
+ * How a side moves with all its coordinates
+ * ------------------------------------------------------------------------------------------- */
+
+/* What is known of a line's tangent before it is followed. */
+static void begin_tangent(const side_view *view, double rho_origin) {
+    const gmi_side *prepared = view->prepared;
+    gmi_line_tangent *line = &view->tangent->line;
+    memset(line, 0, sizeof *line);
+    gmi_tilt_tangent(view->pair, view->at, view->side, rho_origin, view->lines.delta,
+                     &view->tangent->rates, line);
+    line->pinion_per_rho = prepared->pinion_grid.per_rho;
+    line->wheel_per_rho = prepared->wheel_grid.per_rho;
+    line->face_per_length = prepared->wheel_grid.face_rate / view->pair->face_width;
+}
+
+/* An end at t1 that moves takes f there into the sum or out of it, and the speed of approach likewise. */
+static void add_end(gmi_line_tangent *line, double sign, double t1, double f,
+                    const double end_by[GMI_COORDINATES]) {
+    if (!(f > 0.0)) {
+        return;
+    }
+    const double speed = line->speed[0] + line->speed[1] * t1;
+    for (int k = 0; k < GMI_COORDINATES; ++k) {
+        const double moved = sign * end_by[k];
+        line->sum_by[k][0] += f * moved;
+        line->sum_by[k][1] += f * moved * t1;
+        line->flow_by[k][0] += speed * moved;
+        line->flow_by[k][1] += speed * moved * t1;
+    }
+}
+
+/* What a line adds for one weight that is 1 or t1, and with rho = rho_origin + advance t1 for the third. */
+static void add_weighted(double *total, double by_one, double by_t1, double rho_origin,
+                         double advance) {
+    total[GMI_WHOLE] += by_one;
+    total[GMI_BY_T1] += by_t1;
+    total[GMI_BY_RHO] += rho_origin * by_one + advance * by_t1;
+}
+
+static void add_tangent(const side_view *view, double rho_origin, const gmi_interval *part,
+                        const gmi_line_sum *sum) {
+    gmi_side_tangent *side = view->tangent;
+    gmi_line_tangent *line = &side->line;
+    const gmi_line_part *ends = &view->tilted_part;
+    add_end(line, 1.0, part->to, sum->at_to, ends->to_by);
+    add_end(line, -1.0, part->from, sum->at_from, ends->from_by);
+
+    /* The speed of approach itself, and how it moves where the line is. */
+    const double *c = line->contact;
+    const double tau =
+        gmi_side_sign(view->side) * view->pair->face_advance / view->pair->face_width;
+    const double across = side->rates.across;
+    const double flow[2] = {line->speed[0] * c[0] + line->speed[1] * c[1],
+                            line->speed[0] * c[1] + line->speed[1] * c[2]};
+    for (int weight = 0; weight < 2; ++weight) {
+        line->flow_by[GMI_BY_ORIGIN][weight] -= across * tau * c[weight];
+        line->flow_by[GMI_BY_LENGTH][weight] += across * tau * c[weight];
+        line->flow_by[GMI_BY_AXIAL][weight] += across * c[weight];
+    }
+
+    /* To the sums of the side; rho moves with the origin. */
+    const double advance = view->lines.advance;
+    for (int k = 0; k < GMI_COORDINATES; ++k) {
+        add_weighted(side->sum_by[k], line->sum_by[k][0], line->sum_by[k][1], rho_origin, advance);
+        add_weighted(side->flow_by[k], line->flow_by[k][0], line->flow_by[k][1], rho_origin,
+                     advance);
+    }
+    side->sum_by[GMI_BY_ORIGIN][GMI_BY_RHO] += sum->sum;
+    side->flow_by[GMI_BY_ORIGIN][GMI_BY_RHO] += flow[0];
+    add_weighted(side->flow, flow[0], flow[1], rho_origin, advance);
+    add_weighted(side->contact, c[0], c[1], rho_origin, advance);
+    add_weighted(side->arm, line->arm[0] * c[0] + line->arm[1] * c[1],
+                 line->arm[0] * c[1] + line->arm[1] * c[2], rho_origin, advance);
+}
+
+/* The simple model's pair touches in the pitch point, which follows the line of action, at mid-face. */
+static void set_simple_tangent(const gm_pair *pair, const gmi_engagement *at,
+                               const gmi_side_sum *sum, gmi_side_tangent *tangent) {
+    if (!(sum->sum > 0.0)) {
+        return;
+    }
+    const double where[GMI_WEIGHTS] = {1.0, sum->contact_t1, sum->contact_rho};
+    const double speed = tangent->rates.delta;
+    for (int weight = 0; weight < GMI_WEIGHTS; ++weight) {
+        tangent->sum_by[GMI_BY_DELTA][weight] = where[weight];
+        tangent->contact[weight] = where[weight];
+        tangent->flow[weight] = speed * where[weight];
+    }
+    const double by_length =
+        pair->pinion.base_radius / (pair->pinion.base_radius + at->wheel_base_radius);
+    tangent->sum_by[GMI_BY_LENGTH][GMI_BY_RHO] = sum->sum * by_length;
+    tangent->flow_by[GMI_BY_LENGTH][GMI_BY_RHO] = speed * by_length;
+}
+
 static void add_line(side_view *view, const gmi_flank *pinion, const gmi_flank *wheel, int k,
                      int wanted, gmi_side_sum *side) {
     const gmi_interval part = gmi_line_clip(&view->ends, k);
@@ -214,9 +311,15 @@ static void add_line(side_view *view, const gmi_flank *pinion, const gmi_flank *
         wheel->values,
         (rho_origin - pair->pinion.start_roll_length) * prepared->pinion_grid.per_rho,
         (view->wheel_reach - rho_origin) * prepared->wheel_grid.per_rho,
+        NULL,
     };
     if (is_tilted && !tilt_line(view, rho_origin, &line)) {
         return;
+    }
+
+    if (wanted & GMI_TANGENT) {
+        begin_tangent(view, rho_origin);
+        line.tangent = &view->tangent->line;
     }
 
     gmi_line_sum sum;
@@ -248,6 +351,14 @@ static void add_line(side_view *view, const gmi_flank *pinion, const gmi_flank *
     if (is_tilted && wanted & GMI_CONTACT_DERIVATIVES) {
         add_tilt_contact_derivatives(&view->tilted, &view->tilted_part, &sum, side);
     }
+    if (wanted & GMI_TANGENT) {
+        const gmi_interval whole = {line.from, line.to};
+        if (!is_tilted) {
+            gmi_tilt_clip(pair, view->at, view->side, rho_origin, view->lines.delta, 0,
+                          &view->tilted_part);
+        }
+        add_tangent(view, rho_origin, &whole, &sum);
+    }
 }
 
 static int next_tooth(int tooth, int step, int teeth) {
@@ -255,9 +366,11 @@ static int next_tooth(int tooth, int step, int teeth) {
     return next < 0 ? teeth - 1 : next == teeth ? 0 : next;
 }
 
-void gmi_side_sum_tables(const gm_pair *pair, const gmi_engagement *at, const gmi_side *prepared,
-                         int side, const gm_position *position, int wanted, gmi_side_sum *total) {
+static void sum_lines(const gm_pair *pair, const gmi_engagement *at, const gmi_side *prepared,
+                      int side, const gm_position *position, int wanted, gmi_side_sum *total,
+                      gmi_side_tangent *tangent) {
     side_view view;
+    view.tangent = tangent;
     view.pair = pair;
     view.at = at;
     view.side = side;
@@ -283,6 +396,28 @@ void gmi_side_sum_tables(const gm_pair *pair, const gmi_engagement *at, const gm
         }
         teeth.pinion = next_tooth(teeth.pinion, teeth.step, pair->pinion.teeth);
         teeth.wheel = next_tooth(teeth.wheel, teeth.step, pair->wheel.teeth);
+    }
+}
+
+void gmi_side_sum_tables(const gm_pair *pair, const gmi_engagement *at, const gmi_side *prepared,
+                         int side, const gm_position *position, int wanted, gmi_side_sum *total) {
+    sum_lines(pair, at, prepared, side, position, wanted, total, NULL);
+}
+
+void gmi_side_sum_tangent(const gm_mesh *mesh, int side, const gm_position *position,
+                          gmi_side_sum *total, gmi_side_tangent *tangent) {
+    const gmi_rates rates = tangent->rates;
+    memset(tangent, 0, sizeof *tangent);
+    tangent->rates = rates;
+    if (mesh->model == GM_MODEL_SIMPLE) {
+        gmi_side_sum_simple(mesh->pair, &mesh->engagement, side, position->offset, total);
+        set_simple_tangent(mesh->pair, &mesh->engagement, total, tangent);
+        return;
+    }
+    *total = gmi_no_contact();
+    if (!gmi_side_is_clear(&mesh->engagement, &mesh->side[side], side, position->offset)) {
+        sum_lines(mesh->pair, &mesh->engagement, &mesh->side[side], side, position,
+                  GMI_TANGENT | GMI_MOMENTS, total, tangent);
     }
 }
 

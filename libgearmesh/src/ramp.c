@@ -71,12 +71,14 @@ static double next_edge(const traces *ramps, double from, double to) {
 
 /*
  * Takes ramps first .. last - 1, those of one flank, off a part of the line that no edge cuts: what a ramp does in its
- * middle it does all along. Returns their sum by v2 of the flank (m), if wanted.
+ * middle it does all along. Returns their sum by v2 of the flank (m), and *per_face by v1, if wanted.
  */
 static double take_off(gmi_line *part, const traces *ramps, int first, int last,
-                       const gmi_tables *tables, const gmi_grid *grid, int wanted) {
+                       const gmi_tables *tables, const gmi_grid *grid, int wanted,
+                       double *per_face) {
     const double middle = 0.5 * (part->from + part->to);
     double per_profile = 0.0;
+    *per_face = 0.0;
     for (int k = first; k < last; ++k) {
         const trace *ramp = &ramps->list[k];
         if (!(height(ramp, middle) > 0.0)) {
@@ -84,11 +86,22 @@ static double take_off(gmi_line *part, const traces *ramps, int first, int last,
         }
         part->overlap -= height(ramp, part->from);
         part->half_slope -= 0.5 * ramp->per_t1;
-        if (wanted & GMI_DERIVATIVES) {
-            per_profile += per_profile_of(&tables->ramps[ramps->of[k]], grid);
+        if (wanted & (GMI_DERIVATIVES | GMI_TANGENT)) {
+            const gm_flank_ramp *taken = &tables->ramps[ramps->of[k]];
+            per_profile += per_profile_of(taken, grid);
+            *per_face += taken->per_t1 * (grid->face_scale / grid->face_rate);
         }
     }
     return per_profile;
+}
+
+/* The slopes of the ramps, the same all along a part, as those of tables. */
+static void add_ramp_slopes(gmi_line_tangent *tangent, double pinion, double wheel, double face) {
+    double by[GMI_COORDINATES] = {0.0};
+    gmi_line_add_slopes(tangent, pinion, wheel, face, by);
+    for (int k = 0; k < GMI_COORDINATES; ++k) {
+        tangent->by[k][0] += by[k];
+    }
 }
 
 static void add_part(const gmi_line_sum *part, int wanted, gmi_line_sum *result) {
@@ -125,13 +138,20 @@ void gmi_ramps_integrate(const gmi_line *line, const gmi_grid *pinion, const gmi
         part.overlap += gone * (2.0 * line->half_slope + gone * line->curvature);
         part.half_slope += gone * line->curvature;
         part.to = next_edge(&ramps, from, line->to);
+        double pinion_face, wheel_face;
         const double by_pinion =
-            take_off(&part, &ramps, 0, ramps.pinion, pinion_tables, pinion, wanted);
-        const double by_wheel =
-            take_off(&part, &ramps, ramps.pinion, ramps.all, wheel_tables, wheel, wanted);
+            take_off(&part, &ramps, 0, ramps.pinion, pinion_tables, pinion, wanted, &pinion_face);
+        const double by_wheel = take_off(&part, &ramps, ramps.pinion, ramps.all, wheel_tables,
+                                         wheel, wanted, &wheel_face);
 
         /* Tables and straight line as one; the slope of the ramps counts where the flanks touch. */
+        if (wanted & GMI_TANGENT) {
+            add_ramp_slopes(line->tangent, -by_pinion, -by_wheel, -wheel_face);
+        }
         gmi_line_integrate(&part, pinion, wheel, wanted, &sum);
+        if (wanted & GMI_TANGENT) {
+            add_ramp_slopes(line->tangent, by_pinion, by_wheel, wheel_face);
+        }
         sum.pinion -= by_pinion * sum.contact;
         sum.wheel -= by_wheel * sum.contact;
         if (wanted & GMI_CONTACT_DERIVATIVES) {

@@ -237,6 +237,46 @@ void gmi_tilt_line(const gm_pair *pair, const gmi_engagement *at, int side, doub
     result->by_origin[1] = tau * 2.0 * square * u.per_t1;
 }
 
+void gmi_tilt_tangent(const gm_pair *pair, const gmi_engagement *at, int side, double rho_origin,
+                      double delta, const gmi_rates *rates, gmi_line_tangent *tangent) {
+    const tilted line = tilted_of(pair, at, side, rho_origin);
+    const double a = line.a, g = line.g, tau = line.tau, r_bw = line.r_bw;
+    const double gain = 1.0 + tau * g;
+    const double u = line.u.at_zero, u1 = line.u.per_t1;
+    const double linear = -gain * g - 0.5 * a * a * tau;
+    const double square = -0.5 * a * a / line.length;
+    const straight second = combined(line.rho_w, tau, line.zeta, 0.0);
+
+    /* Of the overlap: by u, which the origin raises by tau, the length and the wheel's face lower by tau and by 1. */
+    const double by_u[2] = {linear + 2.0 * square * u, 2.0 * square * u1};
+    const double squares[3] = {u * u, 2.0 * u * u1, u1 * u1};
+    const double all[GMI_COORDINATES][3] = {
+        [GMI_BY_ORIGIN] = {tau * by_u[0] - 0.5 * g * g, tau * by_u[1], 0.0},
+        [GMI_BY_DELTA] = {gain, 0.0, 0.0},
+        [GMI_BY_LENGTH] = {0.5 * g * g - tau * by_u[0] - square * squares[0] / line.length,
+                           -tau * by_u[1] - square * squares[1] / line.length,
+                           -square * squares[2] / line.length},
+        [GMI_BY_ALONG] = {-gain * tau * r_bw - 0.5 * g * r_bw -
+                              a * (tau * u + squares[0] / line.length),
+                          -a * (tau * u1 + squares[1] / line.length),
+                          -a * squares[2] / line.length},
+        [GMI_BY_ACROSS] = {tau * delta - tau * (g * u + tau * a * r_bw) - gain * u +
+                               g * second.at_zero - 0.5 * a * r_bw,
+                           -tau * g * u1 - gain * u1 + g * second.per_t1, 0.0},
+        [GMI_BY_AXIAL] = {-by_u[0] - 0.5 * g * g * tau, -by_u[1], 0.0},
+    };
+    for (int k = 0; k < GMI_COORDINATES; ++k) {
+        for (int power = 0; power < 3; ++power) {
+            tangent->by[k][power] = all[k][power];
+        }
+    }
+
+    tangent->arm[0] = u;
+    tangent->arm[1] = u1;
+    tangent->speed[0] = rates->delta - rates->across * u - tau * r_bw * rates->along;
+    tangent->speed[1] = -rates->across * u1;
+}
+
 /* Of each term of the shift its largest on flanks and face, but for the term that is the same everywhere. */
 double gmi_tilt_bound(const gm_pair *pair, const gmi_engagement *at, int side) {
     const tilted line = tilted_of(pair, at, side, 0.0);

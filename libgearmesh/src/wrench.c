@@ -15,16 +15,15 @@
  * wheel acts force * (sin(alpha), sign cos(alpha), -sign tan(beta_b)) at
  *     (r_bp cos(alpha) + rho sin(alpha), sign (rho cos(alpha) - r_bp sin(alpha)), z_0 + b t1).
  */
-void gmi_wrench_add_side(const gm_pair *pair, const gmi_engagement *at, const gmi_side_force *side,
-                         int side_of_teeth, gm_wrench *wrench) {
+SPECIALIZED void add_side(const gm_pair *pair, const gmi_engagement *at, const gmi_side_force *side,
+                          int side_of_teeth, double sin_alpha, double cos_alpha, int is_derivative,
+                          gm_wrench *wrench) {
     const double sign = gmi_side_sign(side_of_teeth);
-    const double sin_alpha = sin(at->working_pressure_angle);
-    const double cos_alpha = cos(at->working_pressure_angle);
     const double force = side->force;
     const double f_x = force * sin_alpha;
     const double f_y = force * sign * cos_alpha;
     const double axial_share = -sign * pair->face_advance / pair->face_width;
-    const double f_z = force * axial_share;
+    const double f_z = is_derivative ? 0.0 : force * axial_share;
 
     /* Moments of position times force, about the pinion axis at z = 0. */
     const double r_b = pair->pinion.base_radius;
@@ -33,13 +32,14 @@ void gmi_wrench_add_side(const gm_pair *pair, const gmi_engagement *at, const gm
     const double z_force = pair->face_start * force + pair->face_width * side->force_t1;
     const double m_x = y_force * axial_share - z_force * sign * cos_alpha;
     const double m_y = z_force * sin_alpha - x_force * axial_share;
-    const double m_z = force * sign * r_b;
+    const double m_z = is_derivative ? 0.0 : force * sign * r_b;
 
     /* About the wheel axis: less d e_x cross force. */
     const double d = at->center_distance;
     const double on_wheel_force[3] = {f_x, f_y, f_z};
     const double about_pinion[3] = {m_x, m_y, m_z};
-    const double about_wheel[3] = {m_x, m_y + d * f_z, -force * sign * at->wheel_base_radius};
+    const double about_wheel[3] = {m_x, m_y + d * f_z,
+                                   is_derivative ? 0.0 : -force * sign * at->wheel_base_radius};
 
     /* What acts on the wheel acts on the pinion the other way. */
     for (int k = 0; k < 3; ++k) {
@@ -47,6 +47,35 @@ void gmi_wrench_add_side(const gm_pair *pair, const gmi_engagement *at, const gm
         wrench->wheel_moment[k] += about_wheel[k];
         wrench->pinion_force[k] -= on_wheel_force[k];
         wrench->pinion_moment[k] -= about_pinion[k];
+    }
+}
+
+void gmi_wrench_add_side(const gm_pair *pair, const gmi_engagement *at, const gmi_side_force *side,
+                         int side_of_teeth, gm_wrench *wrench) {
+    add_side(pair, at, side, side_of_teeth, sin(at->working_pressure_angle),
+             cos(at->working_pressure_angle), 0, wrench);
+}
+
+void gmi_wrench_add_by_direction(const gm_pair *pair, const gmi_engagement *at,
+                                 const gmi_side_force *side, int side_of_teeth, double angle_by,
+                                 double distance_by, gm_wrench *wrench) {
+    const double alpha = at->working_pressure_angle;
+    add_side(pair, at, side, side_of_teeth, angle_by * cos(alpha), -angle_by * sin(alpha), 1,
+             wrench);
+
+    /* The wheel's axis moves along x under the axial force. */
+    const double axial =
+        -gmi_side_sign(side_of_teeth) * pair->face_advance / pair->face_width * side->force;
+    wrench->wheel_moment[1] += distance_by * axial;
+}
+
+void gmi_wrench_add_by_turn(const gm_wrench *wrench, double turn_by, gm_wrench *by) {
+    const double *of[4] = {wrench->pinion_force, wrench->pinion_moment, wrench->wheel_force,
+                           wrench->wheel_moment};
+    double *to[4] = {by->pinion_force, by->pinion_moment, by->wheel_force, by->wheel_moment};
+    for (int k = 0; k < 4; ++k) {
+        to[k][0] -= turn_by * of[k][1];
+        to[k][1] += turn_by * of[k][0];
     }
 }
 

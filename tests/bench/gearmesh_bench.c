@@ -56,6 +56,39 @@ static void run_wrench(const bench *b, long count) {
     run_positions(b, count, GM_WANT_WRENCH);
 }
 
+/* As a solver with shafts that bend asks: another pose at every call. */
+static gm_motion bench_motion(const bench_gears *g, long k) {
+    const double part = (double)(k % BENCH_STATES) / BENCH_STATES;
+    const gm_motion motion = {
+        g->positions[k % BENCH_STATES],
+        {1e-6 * part, 1e-7 * part, 2e-6 * part, 1e-5 * part, -1e-5 * part},
+        {0.0, 0.0, 0.0, 0.0, 0.0},
+    };
+    return motion;
+}
+
+static void run_posed(const bench *b, long count) {
+    gm_mesh_result result;
+    double sum = 0.0;
+    for (long k = 0; k < count; ++k) {
+        const gm_motion motion = bench_motion(b->gears, k);
+        (void)gm_mesh_evaluate_posed(b->gears->mesh, &motion, GM_WANT_FORCE, NULL, &result);
+        sum += result.force;
+    }
+    sink = sum;
+}
+
+static void run_tangent(const bench *b, long count) {
+    gm_tangent tangent;
+    double sum = 0.0;
+    for (long k = 0; k < count; ++k) {
+        const gm_motion motion = bench_motion(b->gears, k);
+        (void)gm_mesh_tangent(b->gears->mesh, &motion, &tangent);
+        sum += tangent.force_by[GM_SKEW];
+    }
+    sink = sum;
+}
+
 static void run_angles(const bench *b, long count) {
     const bench_gears *g = b->gears;
     gm_mesh_result result;
@@ -137,6 +170,8 @@ static const bench_case cases[] = {
     {"tables.derivatives", "   with exact derivatives", TABLES, run_derivatives},
     {"tables.angles", "   from angles, with derivatives", TABLES, run_angles},
     {"tables.wrench", "   wrench", TABLES, run_wrench},
+    {"tables.posed", "   force, in a pose of each call", TABLES, run_posed},
+    {"tables.tangent", "   all derivatives of force and wrench there", TABLES, run_tangent},
     {"tables.equilibrium", "   equilibrium", TABLES, run_equilibrium},
     {"tables.curve", "   static curve, 1000 positions", TABLES, run_curve},
     {"ramps.force", "linear reliefs, force", RAMPS, run_force},

@@ -998,15 +998,53 @@ typedef struct gm_motion {
  * As gm_mesh_evaluate_at(), with the wheel in a pose of its own at every call: for shafts that bend, bodies that float.
  * Without pose and rate it is gm_mesh_evaluate_at(), to the last bit; with one a cache does not answer.
  *
- * The damping force of a side is D times its touching part times the speed of approach on average over it: dx/dt, less the
- * velocity of the wheel's axis along the surface normal, less what a changing tilt does at each point, in first order.
+ * The damping force of a side is D times the integral of the speed of approach over its touching part: dx/dt, less the
+ * velocity of the wheel's axis along the surface normal, less what a changing tilt does at each point, in first order. With
+ * elastic teeth the mean over the touching part is taken.
  *
  * @return as gm_mesh_evaluate_at(), and GM_POSE_OUT_OF_MESH; GM_STATE_OUT_OF_RANGE for rates too
  *
- * Cost: some 1000 instructions more for a pose; docs/performance.md.
+ * Cost: up to twice an evaluation with tables; docs/performance.md.
  */
 GM_API int gm_mesh_evaluate_posed(const gm_mesh *mesh, const gm_motion *motion, int wanted,
                                   gm_workspace *workspace, gm_mesh_result *result);
+
+/** How many coordinates a mesh has: both angles and the five of the pose. */
+#define GM_COORDINATES 7
+
+/** These coordinates, in the order of the tangent. */
+enum gm_coordinate {
+    GM_PINION_ANGLE = 0,           /**< phi_p (rad) */
+    GM_WHEEL_ANGLE = 1,            /**< phi_w (rad) */
+    GM_CENTER_DISTANCE_CHANGE = 2, /**< of gm_pose (m) */
+    GM_OFFSET = 3,                 /**< of gm_pose (m) */
+    GM_AXIAL_SHIFT = 4,            /**< of gm_pose (m) */
+    GM_SKEW = 5,                   /**< of gm_pose (rad) */
+    GM_INCLINATION = 6             /**< of gm_pose (rad) */
+};
+
+/** Derivatives of force and wrench by the coordinates of enum gm_coordinate, all else fixed (N, N m per m, rad), and by
+ *  their rates (per m/s, rad/s). */
+typedef struct gm_tangent {
+    double force_by[GM_COORDINATES];          /**< of gm_mesh_result.force */
+    double force_by_rate[GM_COORDINATES];     /**< likewise */
+    gm_wrench wrench_by[GM_COORDINATES];      /**< of each component of gm_mesh_result.wrench */
+    gm_wrench wrench_by_rate[GM_COORDINATES]; /**< likewise */
+} gm_tangent;
+
+/**
+ * The exact tangent of gm_mesh_evaluate_posed(), for implicit integrators: one-sided at the countable kinks, where a line
+ * begins or ends to touch a limit, such as equal faces that are not shifted.
+ *
+ * @param[in]  mesh     the mesh; of constant stiffness, or that of ISO 6336-1
+ * @param[in]  motion   where the gears are and how they move
+ * @param[out] tangent  all of it; NaN on an error
+ * @return as gm_mesh_evaluate_posed(); GM_ERR_PARAMETER for elastic teeth, whose derivatives by both angles
+ *         gm_mesh_evaluate() has
+ *
+ * Accuracy: roundings. Cost: some six evaluations with tables; docs/performance.md. Source: docs/equations.md.
+ */
+GM_API int gm_mesh_tangent(const gm_mesh *mesh, const gm_motion *motion, gm_tangent *tangent);
 
 /**
  * A gear as a rigid body, in any right-handed frame common to both gears. The reference point is the middle of the gear's
