@@ -50,7 +50,8 @@ static int try_gearsim(const command_line *line) {
     }
 
     FUZZ_CLAIM(args.request.override_count < line->count);
-    const int needs_file = args.task != TASK_HELP && args.task != TASK_VERSION;
+    const int needs_file =
+        args.task != TASK_HELP && args.task != TASK_VERSION && args.task != TASK_TEMPLATE;
     FUZZ_CLAIM(!needs_file || (args.request.path != NULL && *args.request.path != '\0'));
     arguments_free(&args);
     return 10 + (int)args.task;
@@ -82,6 +83,7 @@ static int try_gearflanks(const command_line *line) {
         FUZZ_CLAIM(options.traces != NULL || options.measured_pitch != NULL);
         FUZZ_CLAIM(isfinite(options.from_traces.held_limit));
         FUZZ_CLAIM(!isinf(options.measurement.pitch_diameter)); /* NaN: not given */
+        FUZZ_CLAIM(!isinf(options.from_traces.tip_form_diameter));
     }
     return 10 + (int)options.task;
 }
