@@ -173,14 +173,6 @@ typedef struct front_state {
     double fall;    /* product of the right-hand side with its solution, so far */
 } front_state;
 
-#define ELASTIC_NAME(name) usual_##name
-#if defined(__GNUC__)
-#define UNROLLED _Pragma("GCC unroll 16")
-#else
-#define UNROLLED
-#endif
-#include "elastic_step.h"
-
 #define ELASTIC_NAME(name) any_##name
 #define UNROLLED
 #include "elastic_step.h"
@@ -189,7 +181,15 @@ typedef struct front_state {
  * The usual elements, and any
  * ------------------------------------------------------------------------------------------- */
 
-/* Ending, through, beginning. */
+/*
+ * Ending, through, beginning. The copies for them are large and take clang, and sanitizers, minutes to compile: those, and
+ * builds for size, go without, to the same bits.
+ */
+#if defined(__GNUC__) && !defined(__clang__) && !defined(__SANITIZE_ADDRESS__) &&                  \
+    !defined(__OPTIMIZE_SIZE__)
+#define ELASTIC_NAME(name) usual_##name
+#define UNROLLED           _Pragma("GCC unroll 16")
+#include "elastic_step.h"
 #define USUAL_TRAFFIC(X)                                                                           \
     X(0, 0, 0)                                                                                     \
     X(0, 0, 1)                                                                                     \
@@ -201,6 +201,9 @@ typedef struct front_state {
     X(1, 0, 1)                                                                                     \
     X(0, 1, 0)                                                                                     \
     X(0, 1, 1) X(1, 1, 0) X(1, 1, 1) X(0, 2, 0) X(0, 2, 1) X(1, 2, 0) X(1, 2, 1) X(0, 3, 0)
+#else
+#define USUAL_TRAFFIC(X)
+#endif
 
 /* From element to element, as long as they are alike. Fronts of usual size are on the stack. */
 #define SPECIAL_FUNCTIONS(e, g, b)                                                                 \

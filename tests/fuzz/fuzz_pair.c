@@ -18,7 +18,8 @@ enum raw_numbers {
     RAW_TEETH = 8,
     EXTREME = 16,
     POSED = 32,
-    RING = 64
+    RING = 64,
+    ELASTIC = 128
 };
 
 static void take_params(fuzz_bytes *bytes, int how, gm_pair_params *params) {
@@ -230,6 +231,50 @@ static void claim_result(int status, const gm_mesh_result *result) {
     }
 }
 
+/* Elastic teeth of any material: refused, or every answer is a number or has a status. */
+static void claim_elastic(fuzz_bytes *bytes, int how, const gm_pair *pair, const gm_flanks *pinion,
+                          const gm_flanks *wheel, const gm_state *state) {
+    gm_mesh_params law;
+    gm_mesh_params_default(&law);
+    law.law = GM_LAW_ELASTIC;
+    law.damping = 1e3;
+    law.stations = 2 + fuzz_byte(bytes) % 20;
+    if (how & RAW_STATE) {
+        law.pinion_youngs_modulus = fuzz_any(bytes);
+        law.wheel_poisson_ratio = fuzz_any(bytes);
+        law.reference_torque = fuzz_any(bytes);
+        law.wheel_bore_radius = fuzz_any(bytes);
+    }
+    const size_t size = gm_mesh_size(&law, pair);
+    void *memory = malloc(size + 1);
+    gm_mesh *mesh = NULL;
+    const int made = gm_mesh_init(&mesh, &law, pair, pinion, wheel, memory, size);
+    FUZZ_CLAIM((made == GM_OK) == (mesh != NULL));
+    if (made == GM_OK) {
+        const size_t room = gm_workspace_size(mesh);
+        void *workspace_memory = malloc(room + 1);
+        gm_workspace *workspace = NULL;
+        gm_mesh_result result;
+        FUZZ_CLAIM(gm_workspace_init(&workspace, mesh, workspace_memory, room) == GM_OK);
+        const int all = GM_WANT_DERIVATIVES | GM_WANT_WRENCH | GM_WANT_PAIRS;
+        const int evaluated = gm_mesh_evaluate(mesh, state, all, workspace, &result);
+        claim_result(evaluated, &result);
+
+        gm_position position;
+        gm_line_loads loads;
+        if (evaluated == GM_OK && gm_position_from_state(pair, state, &position) == GM_OK) {
+            const int loaded = gm_mesh_line_loads(mesh, &position, workspace, NULL, 0, &loads);
+            FUZZ_CLAIM(loaded != GM_OK || loads.points >= 0);
+        }
+        double offset;
+        const int found = gm_static_equilibrium(mesh, state->pinion_angle, fuzz_any(bytes),
+                                                (double)NAN, workspace, &offset, &result);
+        claim_numbers(found, &offset, 1);
+        free(workspace_memory);
+    }
+    free(memory);
+}
+
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size) {
     fuzz_bytes bytes = {data, size};
     const int how = fuzz_byte(&bytes);
@@ -323,6 +368,9 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size) {
             FUZZ_CLAIM(again == found);
         }
         free(mesh_memory);
+        if (how & ELASTIC) {
+            claim_elastic(&bytes, how, &pair, pinion, wheel, &state);
+        }
     }
     free(pinion); /* they begin at their memory */
     free(wheel);
