@@ -117,6 +117,30 @@ def add_arguments(parser):
     add("--no-pictures", action="store_true", help="numbers only, gnuplot is not called")
 
 
+def call(gearsim, path, values, *options):
+    """Call gearsim with {section.key: value}; returns what it prints."""
+    path = os.path.join(".", path) if path.startswith("-") else path  # or it were an option
+    command = [gearsim, path, "--quiet", *options]
+    for key, value in values.items():
+        command += ["--set", f"{key}={value:.12g}" if isinstance(value, float) else f"{key}={value}"]
+    result = subprocess.run(command, capture_output=True, text=True, check=False, stdin=subprocess.DEVNULL)
+    if result.returncode == 130:
+        raise KeyboardInterrupt
+    if result.returncode == 2:
+        raise InputError(result.stderr.strip())
+    if result.returncode != 0 and "no equilibrium" in result.stderr:
+        raise NoEquilibrium(result.stderr.strip())
+    if result.returncode != 0:
+        raise RunFailed(result.stderr.strip() or f"gearsim ended with {result.returncode}")
+    return result.stdout
+
+
+def listing(text):
+    """{name: first number} of what `gearsim --geometry` prints."""
+    lines = (line.partition(" = ") for line in text.splitlines())
+    return {key: float(value.partition(",")[0]) for key, _, value in lines}
+
+
 class Gears:
     """A gear pair of a parameter file. Runs go to all cores; close() ends them."""
 
@@ -154,9 +178,7 @@ class Gears:
 
     def _read(self):
         """What the file says, with all defaults, and what follows from its gears."""
-        text = self._call({}, "--geometry")
-        self.geometry = {
-            key: float(value.partition(",")[0]) for key, _, value in (line.partition(" = ") for line in text.splitlines())}
+        self.geometry = listing(self._call({}, "--geometry"))
         names = "pinion_angle_rad,te_um"
         self.parameters, table = self._run({"output.columns": names, "analysis.loads": 1})
         self.mean_Nm = float(self.parameters["load.mean_Nm"])
@@ -173,20 +195,7 @@ class Gears:
     # ------------------------------------------------------------------------------------------------
 
     def _call(self, values, *options):
-        path = os.path.join(".", self.path) if self.path.startswith("-") else self.path  # or it were an option
-        command = [self.gearsim, path, "--quiet", *options]
-        for key, value in {**self.settings, **values}.items():
-            command += ["--set", f"{key}={value:.12g}" if isinstance(value, float) else f"{key}={value}"]
-        result = subprocess.run(command, capture_output=True, text=True, check=False, stdin=subprocess.DEVNULL)
-        if result.returncode == 130:
-            raise KeyboardInterrupt
-        if result.returncode == 2:
-            raise InputError(result.stderr.strip())
-        if result.returncode != 0 and "no equilibrium" in result.stderr:
-            raise NoEquilibrium(result.stderr.strip())
-        if result.returncode != 0:
-            raise RunFailed(result.stderr.strip() or f"gearsim ended with {result.returncode}")
-        return result.stdout
+        return call(self.gearsim, self.path, {**self.settings, **values}, *options)
 
     def _run(self, values):
         """Head lines and rows of a static run."""
@@ -197,6 +206,12 @@ class Gears:
         self._call({**forced, **values}, "--output", path)
         head, _, head_lines = results.read_head(path)
         return head, np.loadtxt(path, delimiter=",", skiprows=head_lines, ndmin=2)
+
+    def load_distribution(self):
+        """The CSV with the loads along the lines of contact at mean_Nm; it goes with close()."""
+        path = os.path.join(self.folder.name, "load.csv")
+        self._run({"analysis.loads": 1, "output.load_distribution": path})
+        return path
 
     def te_um(self, torques_Nm, values):
         """Transmission error [torque, position] with {key: value} in place of the file's; the torques are even."""

@@ -79,7 +79,7 @@ def run_text(rows=None):
     return HEAD + ",".join(COLUMNS) + "\n" + file.getvalue()
 
 
-NAMES = ("campbell", "flanks", "harris", "orders", "plot", "relief")  # those that draw
+NAMES = ("campbell", "flanks", "harris", "orders", "pattern", "plot", "relief")  # those that draw
 
 
 class Case(unittest.TestCase):
@@ -133,6 +133,7 @@ class ForeignNames(Case):
             ("flanks", "flanks.csv", title),
             ("flanks", "traces.csv", title),
             ("harris", SPUR, [*quick, *title, "--vary", "pinion_tip_relief_um=0:20:2"]),
+            ("pattern", SPUR, ["--gearsim", GEARSIM, *title, "--set", "analysis.positions=5", "--positions", "0"]),
             ("relief", SPUR, [*quick, *title, "--vary", "pinion_tip_relief_um=0:20", "--starts", "1", "--tolerance", "0"]),
         ]
 
