@@ -95,7 +95,7 @@ static fmu_integrator *start(const fmu_instance *instance) {
     integrator->workspace = instance->workspace;
     integrator->end = instance->values.time;
 
-    const SUNContext context = integrator->context;
+    SUNContext context = integrator->context;
     integrator->state = N_VNew_Serial(model.states, context);
     integrator->matrix = SUNDenseMatrix(model.states, model.states, context);
     integrator->cvode = CVodeCreate(CV_BDF, context);

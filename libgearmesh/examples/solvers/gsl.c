@@ -18,18 +18,23 @@ static int motion(double time, const double *state, double *derivative, void *me
 
 static int jacobian(double time, const double *state, double *by_state, double *by_time,
                     void *mesh) {
-    const int status = oscillator_jacobian(mesh, time, state, by_state);
+    int status = oscillator_jacobian(mesh, time, state, by_state);
 
     /* At a given x, the wheel turns with the pinion: dphi_w = r_bp / r_bw dphi_p. */
     gm_mesh_result result;
-    oscillator_evaluate(mesh, time, state, GM_WANT_DERIVATIVES, &result);
+    if (status == GM_OK) {
+        status = oscillator_evaluate(mesh, time, state, GM_WANT_DERIVATIVES, &result);
+    }
+    if (status != GM_OK) {
+        return gsl_status(status);
+    }
     const gm_pair *pair = gm_mesh_pair(mesh);
     const gm_gradient *by = &result.wheel_torque_by;
     by_time[0] = 0.0;
     by_time[1] =
         -(by->pinion_angle * pair->wheel.base_radius + by->wheel_angle * pair->pinion.base_radius) *
         speed / inertia;
-    return gsl_status(status);
+    return GSL_SUCCESS;
 }
 
 int main(void) {

@@ -10,6 +10,7 @@
 #define OSCILLATOR_H
 
 #include <gearmesh/gearmesh.h>
+#include <math.h>
 #include <stdio.h>
 
 static const double inertia = 2.1e-3, load = 20; /* of the wheel (kg m2, N m) */
@@ -60,9 +61,14 @@ static inline int oscillator_motion(const gm_mesh *mesh, double time, const doub
                                     double derivative[2]) {
     gm_mesh_result result;
     const int status = oscillator_evaluate(mesh, time, state, GM_WANT_FORCE, &result);
+    if (status != GM_OK) {
+        derivative[0] = NAN;
+        derivative[1] = NAN;
+        return status;
+    }
     derivative[0] = state[1];
     derivative[1] = (load - result.wheel_torque) * gm_mesh_pair(mesh)->wheel.base_radius / inertia;
-    return status;
+    return GM_OK;
 }
 
 /* Their exact derivatives by the state, row by row: at a given pinion angle dx = -r_bw dphi_w. */
@@ -70,11 +76,15 @@ static inline int oscillator_jacobian(const gm_mesh *mesh, double time, const do
                                       double rows[4]) {
     gm_mesh_result result;
     const int status = oscillator_evaluate(mesh, time, state, GM_WANT_DERIVATIVES, &result);
+    if (status != GM_OK) {
+        rows[0] = rows[1] = rows[2] = rows[3] = NAN;
+        return status;
+    }
     rows[0] = 0.0;
     rows[1] = 1.0;
     rows[2] = result.wheel_torque_by.wheel_angle / inertia;
     rows[3] = result.wheel_torque_by.wheel_speed / inertia;
-    return status;
+    return GM_OK;
 }
 
 static inline void oscillator_print(const double state[2]) {
