@@ -18,7 +18,7 @@
 #include <sunlinsol/sunlinsol_dense.h>
 #include <sunmatrix/sunmatrix_dense.h>
 
-enum { SUN = 27, PLANET = 36, RING = 99, PLANETS = 3, TURNS = 2 + PLANETS };
+enum { SUN = 28, PLANET = 35, RING = 98, PLANETS = 3, TURNS = 2 + PLANETS };
 enum { IN = 2 * TURNS, OUT, LOSS, STATES }; /* behind angles and speeds: energies */
 
 static const double pi = 3.14159265358979323846;
