@@ -81,17 +81,45 @@ static void set_row(double *row, const gm_gradient *gradient) {
     row[WHEEL_SPEED] = gradient->wheel_speed;
 }
 
-/* The error is that of the angles; all else by the pose, and the wrench, is left to differences. */
-static void differentiate(const gm_pair *pair, const gm_mesh_result *result,
-                          fmu_jacobian *jacobian) {
+/* Force and wrench by all coordinates and their rates, exactly, where the law has its tangent. */
+static void set_tangent(const gm_mesh *mesh, const gm_motion *motion, fmu_jacobian *jacobian) {
+    gm_tangent tangent;
+    if (gm_mesh_tangent(mesh, motion, &tangent) != GM_OK) {
+        return;
+    }
+    for (int coordinate = 0; coordinate < GM_COORDINATES; ++coordinate) {
+        const int is_angle = coordinate <= GM_WHEEL_ANGLE;
+        const int pose = coordinate - GM_CENTER_DISTANCE_CHANGE;
+        const int column = is_angle ? PINION_ANGLE + coordinate : POSE + pose;
+        const int rate_column = is_angle ? PINION_SPEED + coordinate : POSE_RATE + pose;
+        jacobian->by[FORCE][column] = tangent.force_by[coordinate];
+        jacobian->by[FORCE][rate_column] = tangent.force_by_rate[coordinate];
+
+        /* A wrench is its twelve numbers, in the order of the outputs. */
+        double parts[12];
+        double rate_parts[12];
+        memcpy(parts, &tangent.wrench_by[coordinate], sizeof parts);
+        memcpy(rate_parts, &tangent.wrench_by_rate[coordinate], sizeof rate_parts);
+        for (int part = 0; part < 12; ++part) {
+            jacobian->by[WRENCH + part][column] = parts[part];
+            jacobian->by[WRENCH + part][rate_column] = rate_parts[part];
+        }
+    }
+}
+
+/* The error is that of the angles; what is not known exactly is left to differences. */
+static void differentiate(const gm_mesh *mesh, const gm_motion *motion,
+                          const gm_mesh_result *result, fmu_jacobian *jacobian) {
     for (int row = 0; row < OUTPUTS; ++row) {
         for (int column = 0; column < INPUTS; ++column) {
             jacobian->by[row][column] = row == TRANSMISSION_ERROR ? 0.0 : NAN;
         }
     }
+    set_tangent(mesh, motion, jacobian);
     set_row(jacobian->by[PINION_TORQUE], &result->pinion_torque_by);
     set_row(jacobian->by[WHEEL_TORQUE], &result->wheel_torque_by);
     set_row(jacobian->by[FORCE], &result->force_by);
+    const gm_pair *pair = gm_mesh_pair(mesh);
     jacobian->by[TRANSMISSION_ERROR][PINION_ANGLE] = -pair->pinion.base_radius;
     jacobian->by[TRANSMISSION_ERROR][WHEEL_ANGLE] = pair->wheel.base_radius;
 }
@@ -128,7 +156,7 @@ static int evaluate(fmu_values *values, const gm_mesh *mesh, gm_workspace *works
     values->indicator[GM_DRIVE] = motion.position.offset - gm_mesh_clearance(mesh, GM_DRIVE);
     values->indicator[GM_COAST] = -motion.position.offset - gm_mesh_clearance(mesh, GM_COAST);
     if (jacobian != NULL) {
-        differentiate(pair, &result, jacobian);
+        differentiate(mesh, &motion, &result, jacobian);
     }
     return GM_OK;
 }

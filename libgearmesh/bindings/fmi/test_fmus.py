@@ -212,7 +212,7 @@ def test_a_mesh_follows_the_motion_of_the_wheel(fmu, version, tmp_path):
                              ("pinion_force", "pinion_moment", "wheel_force", "wheel_moment")])
     assert instance.get("force", *parts) == pytest.approx([expected.force, *wrench], rel=1e-9, abs=1e-9)
 
-    # By the pose there are differences inside, which one-sided ones of other steps confirm.
+    # By the pose and its rate, against one-sided differences.
     for known, more in (("motion.skew", ({**pose, "skew": 3e-8}, rate)),
                         ("motion_rate.offset", (pose, {**rate, "offset": -1e-4 + 1e-5}))):
         ahead, size = evaluate(*more), 3e-8 if "skew" in known else 1e-5
