@@ -696,31 +696,103 @@ static void bad_input_is_refused(void) {
     GM_ASSERT_INT(gm_mesh_params_check(&law, &field, NULL), GM_ERR_PARAMETER);
     GM_ASSERT_STRING(field, "stations");
 
+    /* What belongs to elastic teeth is refused to other laws, and without memory. */
+    gm_pair pair;
+    gm_mesh_stiffness stiffness;
+    law = elastic_law();
+    GM_ASSERT_INT(gm_pair_init(&pair, &gears), GM_OK);
+    const size_t size = gm_mesh_size(&law, &pair);
+    double *const memory = malloc(size);
+    gm_mesh *mesh;
+    GM_ASSERT_INT(gm_mesh_check_teeth(&law, &pair, NULL, NULL, memory, size), GM_OK);
+    GM_ASSERT_INT(gm_mesh_check_teeth(&law, &pair, &field, NULL, NULL, size), GM_ERR_NULL);
+    GM_ASSERT_INT(gm_mesh_check_teeth(NULL, &pair, &field, NULL, memory, size), GM_ERR_NULL);
+    GM_ASSERT_INT(gm_mesh_check_teeth(&law, &pair, &field, NULL, memory, size - 1), GM_ERR_MEMORY);
+    GM_ASSERT_INT(gm_mesh_init(&mesh, &law, &pair, NULL, NULL, memory, size - 1), GM_ERR_MEMORY);
+    law.law = GM_LAW_CONSTANT;
+    law.stiffness = 1e8;
+    GM_ASSERT_INT(gm_mesh_check_teeth(&law, &pair, &field, NULL, memory, size), GM_ERR_PARAMETER);
+    GM_ASSERT_INT(gm_mesh_init(&mesh, &law, &pair, NULL, NULL, memory, size), GM_OK);
+    GM_ASSERT(gm_workspace_size(mesh) == 0 && gm_workspace_size(NULL) == 0);
+    GM_ASSERT_INT(gm_workspace_init(&workspace, mesh, NULL, 0), GM_OK);
+    GM_ASSERT(workspace == NULL);
+    GM_ASSERT_INT(gm_workspace_init(NULL, mesh, NULL, 0), GM_ERR_NULL);
+    GM_ASSERT_INT(gm_mesh_elastic_stiffness(mesh, &stiffness), GM_ERR_PARAMETER);
+    GM_ASSERT_NAN(stiffness.mesh_mean);
+    GM_ASSERT_INT(gm_mesh_elastic_stiffness(NULL, &stiffness), GM_ERR_NULL);
+    GM_ASSERT_INT(gm_mesh_elastic_stiffness(mesh, NULL), GM_ERR_NULL);
+
+    /* The simple model has the mean stiffness of elastic teeth, and neither lines nor a workspace. */
+    law = elastic_law();
+    law.model = GM_MODEL_SIMPLE;
+    GM_ASSERT_INT(gm_mesh_init(&mesh, &law, &pair, NULL, NULL, memory, size), GM_OK);
+    GM_ASSERT_INT(gm_mesh_elastic_stiffness(mesh, &stiffness), GM_OK);
+    GM_ASSERT_REL(gm_mesh_mean_stiffness(mesh), stiffness.mesh_mean, 1e-12);
+    GM_ASSERT(gm_workspace_size(mesh) == 0);
+    GM_ASSERT_INT(gm_mesh_evaluate(mesh, &state, GM_WANT_FORCE, NULL, &r), GM_OK);
+    const gm_position somewhere = {0, 0, 0.0, 1e-6, 0.0};
+    gm_line_loads loads;
+    law.model = GM_MODEL_3D;
+    GM_ASSERT_INT(gm_mesh_line_loads(mesh, &somewhere, NULL, NULL, 0, &loads), GM_ERR_NULL);
+    GM_ASSERT_INT(gm_mesh_line_loads(mesh, NULL, NULL, NULL, 0, &loads), GM_ERR_NULL);
+    GM_ASSERT_INT(gm_mesh_line_loads(mesh, &somewhere, NULL, NULL, 0, NULL), GM_ERR_NULL);
+    GM_ASSERT_INT(gm_mesh_line_load_points(NULL), 0);
+
+    /* Factors of teeth, a posed pair out of mesh, and more lines than there is room for. */
+    double factors[62];
+    for (int k = 0; k < 62; ++k) {
+        factors[k] = k == 61 ? 101.0 : 1.0;
+    }
+    law.wheel_tooth_stiffness = factors;
+    GM_ASSERT_INT(gm_mesh_check_teeth(&law, &pair, &field, NULL, memory, size), GM_ERR_GEOMETRY);
+    GM_ASSERT_STRING(field, "wheel_tooth_stiffness");
+    law.wheel_tooth_stiffness = NULL;
+    law.pose.axial_shift = 1.0;
+    GM_ASSERT_INT(gm_mesh_check_teeth(&law, &pair, &field, NULL, memory, size),
+                  GM_POSE_OUT_OF_MESH);
+    GM_ASSERT_INT(gm_mesh_init(&mesh, &law, &pair, NULL, NULL, memory, size), GM_POSE_OUT_OF_MESH);
+    free(memory);
+    gm_pair_params wide = paper();
+    wide.face_width = 0.2;
+    law = elastic_law();
+    GM_ASSERT_INT(gm_pair_init(&pair, &wide), GM_OK);
+    GM_ASSERT(gm_mesh_size(&law, &pair) == 0);
+    double little[8];
+    GM_ASSERT_INT(gm_mesh_init(&mesh, &law, &pair, NULL, NULL, little, sizeof little),
+                  GM_ERR_GEOMETRY);
+
     /* Teeth that have no fillet, a bore in the rim, and few teeth that are undercut. */
     gm_pair_params deep = spur62();
-    gm_pair_params few = spur62();
+    gm_pair_params few = spur62(), ring = spur62();
     deep.wheel_rack_dedendum = 1.75;
     few.pinion_teeth = 12;
     few.center_distance = 74e-3;
-    const gm_pair_params cases[3] = {deep, gears, few};
-    const char *const fields[3] = {"wheel_rack_fillet_radius", "pinion_bore_radius",
-                                   "pinion_profile_shift"};
-    for (int k = 0; k < 3; ++k) {
-        gm_pair pair;
+    ring.pinion_teeth = 36;
+    ring.wheel_teeth = -93;
+    ring.normal_module = 21e-3;
+    ring.center_distance = 584e-3;
+    ring.pinion_profile_shift = 0.5039;
+    ring.wheel_profile_shift = 0.1171;
+    ring.pinion_tip_alteration = -0.08338;
+    const gm_pair_params cases[4] = {deep, gears, few, ring};
+    const char *const fields[4] = {"wheel_rack_fillet_radius", "pinion_bore_radius",
+                                   "pinion_profile_shift", "wheel_teeth"};
+    for (int k = 0; k < 4; ++k) {
         const char *requirement;
         law = elastic_law();
         law.pinion_bore_radius = k == 1 ? 61e-3 : (double)NAN;
         GM_ASSERT_INT(gm_pair_init(&pair, &cases[k]), GM_OK);
-        const size_t size = gm_mesh_size(&law, &pair);
-        void *const memory = malloc(size);
-        gm_mesh *mesh;
-        GM_ASSERT_INT(gm_mesh_init(&mesh, &law, &pair, NULL, NULL, memory, size), GM_ERR_GEOMETRY);
-        GM_ASSERT(mesh == NULL);
-        GM_ASSERT_INT(gm_mesh_check_teeth(&law, &pair, &field, &requirement, memory, size),
+        const size_t room_of_case = gm_mesh_size(&law, &pair);
+        void *const memory_of_case = malloc(room_of_case);
+        GM_ASSERT_INT(gm_mesh_init(&mesh, &law, &pair, NULL, NULL, memory_of_case, room_of_case),
                       GM_ERR_GEOMETRY);
+        GM_ASSERT(mesh == NULL);
+        GM_ASSERT_INT(
+            gm_mesh_check_teeth(&law, &pair, &field, &requirement, memory_of_case, room_of_case),
+            GM_ERR_GEOMETRY);
         GM_ASSERT_STRING(field, fields[k]);
         GM_ASSERT(requirement != NULL);
-        free(memory);
+        free(memory_of_case);
     }
 }
 
