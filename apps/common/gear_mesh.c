@@ -277,7 +277,7 @@ int gear_mesh_open(gear_mesh *mesh, const config *conf) {
     if (conf->model == MODEL_3D && conf->purpose == CONFIG_FOR_RUN) {
         status = load_flanks(mesh, conf);
     }
-    if (status == 0 && conf->purpose != CONFIG_FOR_FLANKS) {
+    if (status == 0 && !(conf->purpose == CONFIG_FOR_FLANKS && conf->law == LAW_ELASTIC)) {
         status = prepare(mesh, conf);
     }
     if (status != 0) {
