@@ -247,12 +247,14 @@ static double entry(const gmi_elastic_gradient *g, int parameter) {
 /* Force, energy, and a moment that depends on both places, by all parameters. */
 static void derivatives_are_those_of_differences(void) {
     uint64_t seed = 23;
-    for (int k = 0; k < 60; ++k) {
+    for (int k = 0; k < 66; ++k) {
         elastic_case c;
         make(&c, k % 3, k % 2 == 0 ? 17 : 9);
         const double size = 2e-3 * c.gear.normal_module;
         const elastic_deviation d = random_deviation(&seed, &c.gear, size);
-        const double x = size * gm_test_uniform(&seed, 0.5, 3.0);
+
+        /* The last ones on the straight part of the contact law, under loads that no gear bears. */
+        const double x = size * (k < 60 ? gm_test_uniform(&seed, 0.5, 3.0) : 300.0);
         const double o = c.gear.path_start + gm_test_uniform(&seed, 0.0, 1.0) * c.gear.pitch;
         const double none[PARAMETERS] = {0.0};
         const probe here = probe_at(&c, &d, o, x, none);
@@ -673,6 +675,48 @@ static void sizes_out_of_range_are_refused(void) {
 }
 
 /* Many lines at once: a wide face with a large helix angle, more than the specialised eliminations know. */
+static void parameters_out_of_range_are_refused(void) {
+    elastic_gear gear = gear_of(2);
+    gear.stations = 9;
+    elastic_gear_derive(&gear);
+    const gmi_elastic_params good = elastic_params_of(&gear, 6);
+    const double contact[2] = {good.gear[0].start_roll_length, good.gear[1].start_roll_length};
+    const struct {
+        size_t place;
+        double value;
+        int status;
+    } wrong[] = {
+        {offsetof(gmi_elastic_params, line_of_action), 0.0, GM_ERR_PARAMETER},
+        {offsetof(gmi_elastic_params, gear[0].youngs_modulus), 0.0, GM_ERR_PARAMETER},
+        {offsetof(gmi_elastic_params, gear[1].youngs_modulus), 1e16, GM_ERR_PARAMETER},
+        {offsetof(gmi_elastic_params, gear[0].poisson_ratio), -0.1, GM_ERR_PARAMETER},
+        {offsetof(gmi_elastic_params, gear[1].poisson_ratio), 0.5, GM_ERR_PARAMETER},
+        {offsetof(gmi_elastic_params, gear[0].rack_dedendum), 0.0, GM_ERR_PARAMETER},
+        {offsetof(gmi_elastic_params, gear[1].rack_fillet_radius), -0.1, GM_ERR_PARAMETER},
+        {offsetof(gmi_elastic_params, gear[1].rack_fillet_radius), 1.3, GM_ERR_PARAMETER},
+        {offsetof(gmi_elastic_params, gear[0].start_roll_length), -1e-3, GM_ERR_PARAMETER},
+        {offsetof(gmi_elastic_params, gear[1].tip_roll_length), 0.0, GM_ERR_PARAMETER},
+        {offsetof(gmi_elastic_params, gear[0].rack_fillet_radius), 1.0, GM_ERR_GEOMETRY},
+        {offsetof(gmi_elastic_params, gear[0].tip_roll_length), 0.5, GM_ERR_GEOMETRY},
+    };
+    gmi_elastic law;
+    int fault, wheel;
+    GM_ASSERT_INT(gmi_elastic_init(&law, &good, contact, &fault, &wheel), GM_OK);
+    for (size_t k = 0; k < sizeof wrong / sizeof wrong[0]; ++k) {
+        gm_test_context("case %zu", k);
+        gmi_elastic_params params = good;
+        memcpy((char *)&params + wrong[k].place, &wrong[k].value, sizeof wrong[k].value);
+        GM_ASSERT_INT(gmi_elastic_init(&law, &params, contact, &fault, &wheel), wrong[k].status);
+        GM_ASSERT((fault == GMI_TOOTH_FINE) == (wrong[k].status == GM_ERR_PARAMETER));
+    }
+
+    /* Contact below the end of the fillet. */
+    const double low[2] = {contact[0], 0.2 * contact[1]};
+    GM_ASSERT_INT(gmi_elastic_init(&law, &good, low, &fault, &wheel), GM_ERR_GEOMETRY);
+    GM_ASSERT_INT(fault, GMI_TOOTH_CONTACT);
+    GM_ASSERT_INT(wheel, 1);
+}
+
 static void many_lines_are_no_other_case(void) {
     elastic_gear gear = gear_of(1);
     gear.face_width = 60e-3;
@@ -731,6 +775,7 @@ int main(int argc, char **argv) {
                                     GM_TEST(soft_tooth_gives_its_load_away),
                                     GM_TEST(table_of_the_pair_is_that_of_both_gears),
                                     GM_TEST(sizes_out_of_range_are_refused),
+                                    GM_TEST(parameters_out_of_range_are_refused),
                                     GM_TEST(many_lines_are_no_other_case),
                                     GM_TEST(stations_converge)};
     return gm_test_main("unit.elastic", tests, GM_TEST_COUNT(tests), argc, argv);
