@@ -19,6 +19,7 @@ do for [format in formats] {
     set tmargin at screen 0.86
     set bmargin at screen 0.52
     set yrange [force_low:force_high]
+    unset xlabel
     set ylabel 'contact force / N'
     set label 1 title_text at screen 0.025, screen 0.962 left font ',17' noenhanced
     set label 2 subtitle_text at screen 0.025, screen 0.917 left font ',12' textcolor rgb grey noenhanced

@@ -7,6 +7,8 @@ import html.parser
 import io
 import json
 import os
+import re
+import subprocess
 import sys
 import tempfile
 import unittest
@@ -292,6 +294,25 @@ class Reports(Case):
             self.assertEqual(result.returncode, 2, arguments)
             self.assertIn(message, result.stderr)
         self.assertEqual(os.listdir(self.folder), ["a.csv"])
+
+
+@unittest.skipUnless("GEARMESH_WORKBENCH" in os.environ, "mosqito: see check_workbench")
+class Loudness(Case):
+    def test_a_tone_of_40_dB_at_1_kHz_has_1_sone(self):
+        """By definition; order 23 at 2609 rpm, 50 N as 2.83 mPa."""
+        columns = self.run_up()
+        speed_rpm = 60.0 * 1000.0 / 23.0
+        columns["pinion_speed_rpm"] = np.full_like(columns["time_s"], speed_rpm)
+        columns["pinion_angle_rad"] = columns["time_s"] * speed_rpm * np.pi / 30.0
+        columns["contact_force_N"] = 300.0 + 50.0 * np.sin(23 * columns["pinion_angle_rad"])
+        self.write("a.csv", HEAD, columns)
+        scale = np.sqrt(2.0) * 2e-5 * 10 ** (40 / 20) / 50.0
+        command = [os.path.join(script_case.SCRIPTS, "report"), "a.csv", "--pascal-per-newton", f"{scale:.9g}"]
+        result = subprocess.run(command, cwd=self.folder, capture_output=True, text=True, check=False)
+        self.assertEqual((result.returncode, result.stderr), (0, ""))
+        with open(os.path.join(self.folder, "a.html"), encoding="utf-8") as file:
+            found = re.search(r"Loudness at most ([0-9.]+) sone", file.read())
+        self.assertAlmostEqual(float(found[1]), 1.0, delta=0.05)  # ISO 532-1 allows 5 %
 
 
 if __name__ == "__main__":
