@@ -37,7 +37,7 @@ class Case(unittest.TestCase):
 
     def geometry(self, settings=()):
         lines = self.call(settings, "--geometry").stdout.splitlines()
-        return {name: float(value) for name, value in (line.split(" = ") for line in lines)}
+        return {name: float(value.partition(",")[0]) for name, value in (line.split(" = ") for line in lines)}
 
     def run_columns(self, settings=()):
         self.call(settings, "--output", "run.csv")
@@ -172,6 +172,69 @@ class Misaligned(Case):
         self.assertLess(self.te(1.25 * clear, 0)[2], parallel[2] - 5)
 
 
+class Cracked(Case):
+    NAME = "cracked"
+    WHOLE = "flanks.pinion_tooth_stiffness="
+    TEETH, ROWS = 25, 1024  # rows per turn of the pinion: 25600 rows per second at 1500 rpm
+
+    def static(self, *settings):
+        return self.run_columns(["analysis.type=static", "analysis.period=pinion",
+                                 f"analysis.positions={40 * self.TEETH}", "output.digits=12", *settings])
+
+    def factor(self, factor):
+        with open(os.path.join(self.folder, "soft.csv"), "w") as file:
+            file.write(f"tooth,factor\n7,{factor}\n")
+        return "flanks.pinion_tooth_stiffness=soft.csv"
+
+    @staticmethod
+    def amplitude(values, cycles):
+        """Of so many cycles in all values."""
+        wave = [2 * math.pi * cycles * i / len(values) for i in range(len(values))]
+        parts = (sum(v * turn(w) for v, w in zip(values, wave)) for turn in (math.cos, math.sin))
+        return 2 * math.hypot(*parts) / len(values)
+
+    def test_one_pair_gives_way_more_as_its_tooth_gets_softer(self):
+        """Where it carries alone, by F c (1 / factor - 1); as long as the tooth touches, and no longer."""
+        whole, found = self.static(self.WHOLE), {}
+        length = 40 * self.geometry()["transverse_contact_ratio"]
+        for factor in (0.9, 0.7):
+            soft = self.static(self.factor(factor))
+            more = [(a - b) / (1 / factor - 1) for a, b in zip(whole["te_um"], soft["te_um"])]
+            alone = [1 == a == b for a, b in zip(whole["pairs_in_contact"], soft["pairs_in_contact"])]
+            found[factor] = more, alone
+            touched = [i for i, value in enumerate(more) if abs(value) > 1e-4]
+            self.assertLessEqual(touched[-1] - touched[0], length)
+            self.assertGreater(len(touched), 40)
+            self.assertGreater(min(more), -1e-6)
+        both = [(a, b) for a, b, one, other in zip(found[0.9][0], found[0.7][0], found[0.9][1], found[0.7][1])
+                if one and other and a > 1e-3]
+        self.assertGreater(len(both), 15)
+        for a, b in both:
+            self.assertAlmostEqual(a / b, 1, delta=1e-4)  # of the solver of the mesh
+
+    def test_sidebands_follow_from_the_error_below_the_resonance(self):
+        """Only with the crack; as large as the wheel's inertia makes them of the error that the tooth adds."""
+        spectra, g = {}, self.geometry()
+        near = [k for k in range(20, 75) if k % self.TEETH]
+        for name, settings in (("cracked", []), ("whole", [self.WHOLE])):
+            rows = self.run_columns([*settings, "analysis.duration_s=0.2"])["contact_force_N"][-2 * self.ROWS:]
+            spectra[name] = {k: self.amplitude(rows, 2 * k) for k in near + [123]}
+        more = [1e-6 * (a - b) for a, b in zip(self.static(self.WHOLE)["te_um"], self.static()["te_um"])]
+        expected = 0
+        for k in near:
+            frequency = 25 * k
+            grown = 1 / (1 - (frequency / g["eigenfrequency_Hz"])**2)
+            inertia = 1e-3 / (g["wheel_base_radius_mm"] * 1e-3)**2
+            expected += (inertia * (2 * math.pi * frequency)**2 * self.amplitude(more, k) * grown)**2
+        # A constant mean stiffness and no damping stand behind this; the stiffness of the mesh changes by a quarter.
+        found = math.sqrt(sum(spectra["cracked"][k]**2 for k in near))
+        self.assertAlmostEqual(found / math.sqrt(expected), 1, delta=0.15)
+        self.assertLess(max(spectra["whole"].values()), 0.05 * max(spectra["cracked"][k] for k in near))
+
+        self.assertIn(f"by up to {1e6 * max(more):.2f} um more", self.page())
+        self.assertIn(f"{spectra['cracked'][123]:.0f} N at order 123", self.page())
+
+
 class Jumps(Case):
     """
     A single degree of freedom with backlash under a displacement that shakes it, amplitude e = half the static deflection,
@@ -247,7 +310,7 @@ class Script(unittest.TestCase):
     def test_wrong_use_is_refused(self):
         result = self.cases("clank")
         self.assertEqual(result.returncode, 2)
-        self.assertIn("clank: there is no such case, but rattle, clunk, nrel5mw, misaligned", result.stderr)
+        self.assertIn("clank: there is no such case, but rattle, clunk, nrel5mw, misaligned, cracked", result.stderr)
         self.assertEqual(self.cases("--help").returncode, 0)
 
 
