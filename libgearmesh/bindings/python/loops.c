@@ -34,6 +34,20 @@ static int evaluate_states(const gm_mesh *mesh, size_t count, const gm_state *st
     return status < GM_OK ? status : GM_OK;
 }
 
+/* poses: [count][2] as above, here not NULL. */
+static int evaluate_tangents(const gm_mesh *mesh, size_t count, const gm_state *states,
+                             const gm_pose *poses, gm_tangent *tangents) {
+    int status = GM_OK;
+    for (size_t k = 0; k < count && status >= GM_OK; ++k) {
+        gm_motion motion = {.pose = poses[2 * k], .pose_rate = poses[2 * k + 1]};
+        status = gm_position_from_state(gm_mesh_pair(mesh), &states[k], &motion.position);
+        if (status >= GM_OK) {
+            status = gm_mesh_tangent(mesh, &motion, &tangents[k]);
+        }
+    }
+    return status < GM_OK ? status : GM_OK;
+}
+
 /* coordinates: [count][3] pinion angle (rad), x (m), dx/dt (m/s). */
 static int evaluate_offsets(const gm_mesh *mesh, size_t count, const double *coordinates,
                             const gm_pose *poses, int wanted, gm_workspace *workspace,

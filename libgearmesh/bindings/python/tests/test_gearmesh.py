@@ -183,6 +183,21 @@ def test_pose_of_a_call_is_that_of_a_mesh(pair, mesh):
         mesh.evaluate(*states, pose={"tilt": 1.0})
 
 
+def test_tangent_is_that_of_differences(mesh):
+    angle, pose = np.array([1.30e-3, 1.35e-3]), {"center_distance_change": 1e-6, "skew": 2e-5}
+    tangent = mesh.tangent(angle, 0.0, 0.01, pose=pose)
+    assert tangent.force_by.shape == (2, 7)
+
+    def at(more):
+        return mesh.evaluate(angle, 0.0, 0.01, want="wrench", pose={**pose, "skew": 2e-5 + more})
+
+    ahead, behind, skew = at(1e-8), at(-1e-8), gearmesh.lib.GM_SKEW
+    assert tangent.force_by[:, skew] == pytest.approx((ahead.force - behind.force) / 2e-8, rel=1e-4)
+    moments = (ahead.wrench.wheel_moment - behind.wrench.wheel_moment) / 2e-8
+    assert tangent.wrench_by["wheel_moment"][:, skew] == pytest.approx(moments, rel=1e-3, abs=1e-4 * np.abs(moments).max())
+    assert np.isnan(mesh.tangent(np.nan, 0.0).force_by).all()
+
+
 def test_bodies_get_the_torques_of_the_angles_and_balance_each_other(pair, mesh):
     pinion_angle, wheel_angle, pinion_speed, wheel_speed = states_about_contact(pair, 30)
 

@@ -93,6 +93,7 @@ def dtype_of(kind: Any) -> np.dtype:
 
 
 STATE, POSE, BODY, LOAD = (dtype_of(ffi.typeof(name)) for name in ("gm_state", "gm_pose", "gm_body", "gm_load"))
+TANGENT = np.dtype((np.record, dtype_of(ffi.typeof("gm_tangent"))))
 RESULT = np.dtype((np.record, dtype_of(ffi.typeof("gm_mesh_result"))))
 
 

@@ -12,8 +12,8 @@ from numpy.typing import ArrayLike, NDArray
 
 from . import _records
 from ._gearmesh import ffi, lib
-from ._memory import BODY, LOAD, POSE, RESULT, STATE, Error, doubles, enum_value, fill, filled, refusal, status_text
-from ._records import Body, MeshResult
+from ._memory import BODY, LOAD, POSE, RESULT, STATE, TANGENT, Error, doubles, enum_value, fill, filled, refusal, status_text
+from ._records import Body, MeshResult, Tangent
 from .flanks import Flanks
 from .pair import Pair
 
@@ -119,6 +119,24 @@ class Mesh:
                                                      (pinion_angle, offset, offset_rate))), axis=-1)
         return self._evaluate(lib.evaluate_offsets, "double *", coordinates, coordinates.shape[:-1], want, pose, pose_rate)
 
+    def tangent(self, pinion_angle: ArrayLike, wheel_angle: ArrayLike, pinion_speed: ArrayLike = 0.0,
+                wheel_speed: ArrayLike = 0.0, *, pose: Mapping[str, ArrayLike] | None = None,
+                pose_rate: Mapping[str, ArrayLike] | None = None) -> Tangent:
+        """
+        Exact derivatives of force and wrench by both angles and the pose, and by their rates, where evaluate() has the same
+        arguments: `force_by` [..., 7], `wrench_by.wheel_moment` [..., 7, 3] ..., in the order of gm_coordinate.
+
+        Not for elastic teeth (Error).
+        """
+        states = filled(STATE, {"pinion_angle": pinion_angle, "wheel_angle": wheel_angle, "pinion_speed": pinion_speed,
+                                "wheel_speed": wheel_speed})
+        tangents: Any = np.empty(states.shape, TANGENT)
+        _check(lib.evaluate_tangents(self._struct, tangents.size, _pointer("gm_state *", states),
+                                     _pointer("gm_pose *", _poses(states.shape, pose, pose_rate)),
+                                     _pointer("gm_tangent *", tangents)))
+        shown: Tangent = tangents.view(Tangent) if tangents.shape else tangents[()]
+        return shown
+
     def evaluate_bodies(self, pinion: Body, wheel: Body, *, want: str | Iterable[str] = ()) -> BodiesResult:
         """
         Force and moment on two rigid bodies in any common frame, as a multibody code has them.
@@ -186,13 +204,20 @@ class Mesh:
                   pose_rate: Mapping[str, ArrayLike] | None) -> MeshResult:
         poses = None
         if pose is not None or pose_rate is not None:
-            poses = np.empty((*shape, 2), POSE)
-            poses[..., 0], poses[..., 1] = filled(POSE, pose or {}), filled(POSE, pose_rate or {})
+            poses = _poses(shape, pose, pose_rate)
         results = np.empty(shape, RESULT)
         _check(loop(self._struct, results.size, _pointer(kind, given),
                     ffi.NULL if poses is None else _pointer("gm_pose *", poses), _wanted(want), self._workspace(),
                     _pointer("gm_mesh_result *", results)))
         return _shown(results)
+
+
+def _poses(shape: tuple[int, ...], pose: Mapping[str, ArrayLike] | None,
+           rate: Mapping[str, ArrayLike] | None) -> NDArray[Any]:
+    """[..., 2] pose and its rate at each state."""
+    poses = np.empty((*shape, 2), POSE)
+    poses[..., 0], poses[..., 1] = filled(POSE, pose or {}), filled(POSE, rate or {})
+    return poses
 
 
 def _wanted(want: Union[str, Iterable[str]]) -> int:
