@@ -475,6 +475,71 @@ static void a_pose_of_the_call_is_one_of_the_mesh(void) {
     GM_ASSERT(compared > POSES / 4);
 }
 
+/*
+ * Elastic teeth in a pose of the call and in one of the mesh: the same but for the compliance, which is prepared where the
+ * mesh is. Loads on bodies balance, and teeth do not bend in a way that a workspace would not allow.
+ */
+static void elastic_teeth_follow_a_pose_too(void) {
+    const gm_pair pair = reference_pair(REFERENCE_FACE_WIDTH);
+    const gm_pose pose = {10e-6, 0.0, 20e-6, 1e-4, -1e-4};
+    double forces[2];
+    for (int of_mesh = 0; of_mesh < 2; ++of_mesh) {
+        gm_mesh_params law;
+        gm_mesh *mesh;
+        gm_workspace *workspace;
+        gm_mesh_result r;
+        gm_motion motion;
+        gm_mesh_params_default(&law);
+        law.law = GM_LAW_ELASTIC;
+        memset(&motion, 0, sizeof motion);
+        *(of_mesh ? &law.pose : &motion.pose) = pose;
+        const size_t size = gm_mesh_size(&law, &pair);
+        void *memory = malloc(size);
+        GM_ASSERT_INT(gm_mesh_init(&mesh, &law, &pair, NULL, NULL, memory, size), GM_OK);
+        const size_t room = gm_workspace_size(mesh);
+        void *work = malloc(room);
+        GM_ASSERT_INT(gm_workspace_init(&workspace, mesh, work, room), GM_OK);
+        GM_ASSERT_INT(gm_position_from_pinion_angle(&pair, 0.02, 0.5 * pair.backlash + 12e-6, 0.0,
+                                                    &motion.position),
+                      GM_OK);
+        GM_ASSERT_INT(gm_mesh_evaluate_posed(mesh, &motion, GM_WANT_FORCE, workspace, &r), GM_OK);
+        GM_ASSERT_INT(gm_mesh_evaluate_posed(mesh, &motion, GM_WANT_FORCE, NULL, &r), GM_ERR_NULL);
+        GM_ASSERT_INT(gm_mesh_evaluate_posed(mesh, &motion, GM_WANT_FORCE, workspace, &r), GM_OK);
+        forces[of_mesh] = r.force;
+
+        /* And moving, between bodies. */
+        if (!of_mesh) {
+            uint64_t seed = UINT64_C(208);
+            gm_body bodies[2];
+            gm_load loads[2];
+            gm_tangent tangent;
+            motion_plan plan = random_plan(&pair, &seed, 0.0);
+            plan.pose = pose;
+            plan.angle[1] =
+                (pair.pinion.base_radius * plan.angle[0] - 0.5 * pair.backlash - 12e-6) /
+                pair.wheel.base_radius;
+            moving_bodies(&pair, &plan, bodies);
+            GM_ASSERT_INT(gm_mesh_evaluate_bodies(mesh, &bodies[0], &bodies[1], GM_WANT_FORCE,
+                                                  workspace, &r, &loads[0], &loads[1]),
+                          GM_OK);
+            double moment[3] = {0.0, 0.0, 0.0};
+            add_moment(&loads[0], bodies[0].position, moment);
+            add_moment(&loads[1], bodies[1].position, moment);
+            for (int k = 0; k < 3; ++k) {
+                GM_ASSERT_ABS(loads[0].force[k] + loads[1].force[k], 0.0, 1e-13 * fabs(r.force));
+                GM_ASSERT_ABS(moment[k], 0.0, 1e-12 * fabs(r.force));
+            }
+            GM_ASSERT(r.force > 0.0);
+            GM_ASSERT_INT(gm_mesh_tangent(mesh, &motion, &tangent), GM_ERR_PARAMETER);
+            GM_ASSERT_NAN(tangent.force_by[0]);
+        }
+        free(work);
+        free(memory);
+    }
+    GM_ASSERT(forces[0] > 0.0);
+    GM_ASSERT_REL(forces[0], forces[1], 0.01);
+}
+
 static void what_cannot_be_is_refused(void) {
     uint64_t seed = UINT64_C(207);
     const gm_pair pair = reference_pair(REFERENCE_FACE_WIDTH);
@@ -575,6 +640,7 @@ int main(int argc, char **argv) {
         GM_TEST(power_is_force_times_speed_of_approach),
         GM_TEST(no_pose_is_the_plain_evaluation_to_the_last_bit),
         GM_TEST(a_pose_of_the_call_is_one_of_the_mesh),
+        GM_TEST(elastic_teeth_follow_a_pose_too),
         GM_TEST(what_cannot_be_is_refused),
     };
     return gm_test_main("unit.body", tests, GM_TEST_COUNT(tests), argc, argv);
