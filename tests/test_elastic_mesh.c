@@ -495,12 +495,24 @@ static void damping_follows_the_stiffness(void) {
     GM_ASSERT_INT(make(&m, &gears, &law, NULL, NULL), GM_OK);
     gm_state state = pressed_state(&m, 0.03, 4e-6);
     const gm_mesh_result still = evaluate(&m, &state, GM_WANT_DERIVATIVES);
-    state.pinion_speed = 0.02;
+    state.pinion_speed = 0.5;
     const gm_mesh_result moving = evaluate(&m, &state, GM_WANT_DERIVATIVES);
-    const double speed = 0.02 * m.pair.pinion.base_radius;
+    const double speed = 0.5 * m.pair.pinion.base_radius;
     const double stiffness = -still.force_by.wheel_angle / m.pair.wheel.base_radius;
     const double relaxation = gm_mesh_mean_damping(m.mesh) / gm_mesh_mean_stiffness(m.mesh);
     GM_ASSERT_REL(moving.force - still.force, relaxation * stiffness * speed, 1e-6);
+
+    /* It grows with the stiffness as the flanks press harder. */
+    const double step = 2e-9 / m.pair.wheel.base_radius;
+    gm_state pressed = state, eased = state;
+    pressed.wheel_angle -= step;
+    eased.wheel_angle += step;
+    GM_ASSERT_REL(
+        moving.force_by.wheel_angle - still.force_by.wheel_angle,
+        ((evaluate(&m, &eased, GM_WANT_FORCE).force - evaluate(&m, &pressed, GM_WANT_FORCE).force) /
+             (2.0 * step) -
+         still.force_by.wheel_angle),
+        2e-3);
     state.pinion_speed = -1e3;
     GM_ASSERT(evaluate(&m, &state, GM_WANT_FORCE).force == 0.0);
     release(&m);

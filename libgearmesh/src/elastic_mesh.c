@@ -480,6 +480,24 @@ static int is_loaded(const gmi_elastic_work *work, const gmi_elastic_line *line)
     return load > 0.0;
 }
 
+/*
+ * d2F/dx2. The balance is a minimum of the energy, and only the contact law is not quadratic in it: so the third derivative
+ * of the energy is the sum of W q'' (d gamma / dx)^3, with q'' = q'^3 B / q of the law q (L - ln q) = delta / B.
+ */
+static double stiffness_by_approach(const gmi_elastic *law, const gmi_elastic_work *work) {
+    double sum = 0.0;
+    for (int p = 0; p < 2 * work->slots; ++p) {
+        const int is_curved = work->load[p] > 0.0 && work->slope[p] < 1.0 && work->weight[p] > 0.0;
+        if (is_curved) {
+            const double slope = work->stiffness[p] / work->weight[p];
+            const double moved = work->pull[p];
+            sum += work->stiffness[p] * slope * slope * law->hertz_compliance / work->load[p] *
+                   moved * moved * moved;
+        }
+    }
+    return sum;
+}
+
 /* First moments of the loads, and of the stiffness at the points, over t1 and rho_p. */
 static void add_moments(const side_view *view, const gmi_elastic_work *work, double per_stiffness,
                         gmi_side_sum *total) {
@@ -528,6 +546,10 @@ static int elastic_sum(const gm_mesh *mesh, int side, const gm_position *positio
         gmi_elastic_differentiate(&view.elastic->law, work, &force, &energy);
         total->by_origin = share * force.by_roll * per_stiffness;
         total->roll = energy.by_roll * per_stiffness;
+    }
+    if (wanted & GMI_CONTACT_DERIVATIVES) {
+        total->contact_by_delta = view.gain * view.gain * share * share * share *
+                                  stiffness_by_approach(&view.elastic->law, work) * per_stiffness;
     }
     if (wanted & GMI_MOMENTS) {
         add_moments(&view, work, per_stiffness, total);
