@@ -23,9 +23,6 @@ enum {
 /* Force and wind-up of the bodies agree to this part of the force, where steps stop. */
 static const double force_accuracy = 1e-12;
 
-/* Lines of contact that there are, and some beside them that may touch. */
-enum { NUMBERS_MAX = GMI_ELASTIC_LINES_MAX + 4 };
-
 /* ---------------------------------------------------------------------------------------------
  * Preparing
  * ------------------------------------------------------------------------------------------- */
@@ -344,11 +341,11 @@ typedef struct side_view {
     const gm_mesh *mesh;
     const gmi_elastic_mesh *elastic;
     int side;
-    double approach;                 /* x of the rigid flanks (m) */
-    gmi_lines lines;                 /* between flanks that just touch */
-    gmi_teeth teeth;                 /* of line lines.first */
-    double gain;                     /* of x between tilted axes (1) */
-    double softness[2][NUMBERS_MAX]; /* [enum gm_role], by lines from lines.first on */
+    double approach;                             /* x of the rigid flanks (m) */
+    gmi_lines lines;                             /* between flanks that just touch */
+    gmi_teeth teeth;                             /* of line lines.first */
+    double gain;                                 /* of x between tilted axes (1) */
+    double (*softness)[GMI_ELASTIC_NUMBERS_MAX]; /* [enum gm_role] of the workspace */
 } side_view;
 
 static int next_tooth(int tooth, int step, int teeth) {
@@ -383,7 +380,7 @@ static int place(side_view *view, const gm_position *position, int wanted, gmi_e
     view->gain = at->is_tilted ? gmi_tilt_gain(pair, at, view->side) : 1.0;
 
     const int count = view->lines.last - view->lines.first + 1;
-    if (count > NUMBERS_MAX) {
+    if (count > GMI_ELASTIC_NUMBERS_MAX) {
         return GM_STATE_OUT_OF_RANGE;
     }
     const int is_even = view->elastic->tooth_stiffness[GM_PINION] == NULL &&
@@ -515,7 +512,10 @@ static void add_moments(const side_view *view, const gmi_elastic_work *work, dou
 
 static int elastic_sum(const gm_mesh *mesh, int side, const gm_position *position, int wanted,
                        gm_workspace *workspace, gmi_side_sum *total) {
-    side_view view = {.mesh = mesh, .elastic = mesh->elastic, .side = side};
+    side_view view = {.mesh = mesh,
+                      .elastic = mesh->elastic,
+                      .side = side,
+                      .softness = workspace->softness[side]};
     gmi_elastic_work *work = &workspace->side[side];
     gmi_elastic_result result;
     int status = place(&view, position, wanted, work);

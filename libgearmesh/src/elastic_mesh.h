@@ -19,8 +19,14 @@ typedef struct gmi_elastic_mesh {
     gm_mesh_stiffness stiffness; /* at the reference torque, between ideal flanks */
 } gmi_elastic_mesh;
 
+/* Lines of contact that there are, and some beside them that may touch. */
+enum { GMI_ELASTIC_NUMBERS_MAX = GMI_ELASTIC_LINES_MAX + 4 };
+
 struct gm_workspace {
     gmi_elastic_work side[2]; /* GM_DRIVE, GM_COAST */
+
+    /* [side][enum gm_role] of the teeth of the lines last placed, from the first number on; 1 = whole */
+    double softness[2][2][GMI_ELASTIC_NUMBERS_MAX];
 };
 
 /* The first field of elastic teeth at fault; NULL if all is well. */

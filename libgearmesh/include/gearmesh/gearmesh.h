@@ -852,8 +852,8 @@ GM_API size_t gm_workspace_size(const gm_mesh *mesh);
 
 /**
  * Prepares a workspace in memory of the caller. An evaluation begins from the last one; what it gives does not depend on that
- * beyond the accuracy of docs/elastic.md, and a workspace as it comes from here is always valid. No pointer of it leads
- * outside the memory. For one mesh at a time.
+ * beyond the accuracy of docs/elastic.md, and a workspace as it comes from here is always valid. It must not
+ * move. For one mesh at a time.
  *
  * @param[out] workspace    the workspace, which begins at `memory`; NULL on an error, and where the law needs none
  * @param[in]  mesh         the mesh
