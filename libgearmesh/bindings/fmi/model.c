@@ -358,16 +358,6 @@ int fmu_save(const fmu_values *values, void **copy) {
     return 0;
 }
 
-void fmu_nominals(double *nominals) {
-    for (int k = 0; k < model.variable_count; ++k) {
-        const fmu_variable *variable = &model.variables[k];
-        if (variable->role == ROLE_STATE || variable->role == ROLE_STATE_OUTPUT) {
-            nominals[(variable->offset - offsetof(fmu_values, state)) / sizeof(double)] =
-                variable->nominal;
-        }
-    }
-}
-
 void fmu_restore(fmu_instance *instance, const fmu_values *values) {
     /* The mesh stays if the parameters, which stand first, are the same. */
     if (memcmp(values, &instance->values, offsetof(fmu_values, time)) != 0) {

@@ -131,7 +131,15 @@ int fmu_directional(fmu_instance *instance, const unsigned *unknown, size_t unkn
                     double *sensitivity);
 
 /* [model.states] amounts that matter. */
-void fmu_nominals(double *nominals);
+static inline void fmu_nominals(double *nominals) {
+    for (int k = 0; k < model.variable_count; ++k) {
+        const fmu_variable *variable = &model.variables[k];
+        if (variable->role == ROLE_STATE || variable->role == ROLE_STATE_OUTPUT) {
+            nominals[(variable->offset - offsetof(fmu_values, state)) / sizeof(double)] =
+                variable->nominal;
+        }
+    }
+}
 
 /* A copy of the values in memory that is taken unless there is some (-1: there is none), and the way back. */
 int fmu_save(const fmu_values *values, void **copy);
