@@ -25,7 +25,7 @@ MADE = ("gears", "flanks", "modifications", "mesh")  # sections that act on the 
 NO_LOAD = 1e-3  # of the mean load: gearsim needs a load, as without one the gears may stand anywhere in the backlash
 SHAPE_SHARE = 0.1  # of the scale: what is flatter shows no shape
 NO_SHAPE_UM = 1e-3  # what is flatter has none
-FLANK_FILES = ("pinion", "wheel", "pinion_pitch", "wheel_pitch")
+FLANK_FILES = ("pinion", "wheel", "pinion_pitch", "wheel_pitch", "pinion_tooth_stiffness", "wheel_tooth_stiffness")
 
 
 class NoEquilibrium(InputError):
@@ -185,7 +185,7 @@ class Gears:
         self.flank, self.other_flank = ("drive", "coast") if self.mean_Nm > 0 else ("coast", "drive")
         if self.differs_by_tooth() and self.parameters["analysis.period"] == "mesh":
             program.warn(
-                f"{self.path}: flanks of files, but one mesh cycle only; all teeth of the pinion "
+                f"{self.path}: teeth differ by files, but one mesh cycle only; all teeth of the pinion "
                 "take --set analysis.period=pinion --set analysis.positions=N, N some 50 for each"
             )
         self.mesh_cycles = table[:, 0] * int(self.parameters["gears.pinion_teeth"]) / (2 * math.pi)
@@ -200,7 +200,8 @@ class Gears:
     def _run(self, values):
         """Head lines and rows of a static run."""
         path = os.path.join(self.folder.name, f"{threading.get_ident()}.csv")
-        forced = {"analysis.type": "static", "output.columns": "te_um", "output.digits": 12}
+        forced = {"analysis.type": "static", "output.columns": "te_um", "output.digits": 12,
+                  "output.load_distribution": ""}  # one file for runs that go side by side
         if self.positions is not None:
             forced["analysis.positions"] = self.positions
         self._call({**forced, **values}, "--output", path)

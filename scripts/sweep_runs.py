@@ -65,7 +65,8 @@ class Job:
             settings = self._set({**self._flanks(index, values), **values}) if not os.path.exists(path) else []
             while not os.path.exists(path):
                 try:
-                    self._call(self.gearsim, "--quiet", "--output", path, *settings)
+                    # Without the one file of line loads that all runs would write.
+                    self._call(self.gearsim, "--quiet", "--output", path, "--set=output.load_distribution=", *settings)
                 except Busy:  # a run that has outlived the sweep that began it: it will be done
                     time.sleep(POLL_S)
             return numbers_of({k: v for k, v in summary.of_file(path).items() if k != "gears"})

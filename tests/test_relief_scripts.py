@@ -592,6 +592,54 @@ class Parts(unittest.TestCase):
         self.assertEqual(loaded_te.round_step(0.12, 12), 0.01)
 
 
+class ElasticTeeth(Case):
+    """A file without a stiffness: what the scripts say is what gearsim does, of one soft tooth and its line loads too."""
+
+    def setUp(self):
+        super().setUp()
+        with open(SPUR, encoding="utf-8") as file:
+            text = loaded_te.with_values(file.read(), {"analysis.positions": "60"})
+        text = text.replace("stiffness_N_per_m = 1.05e8", "stations = 5")
+        os.mkdir(self.path("in"))
+        self.write("in/params.ini", text + "[flanks]\npinion_tooth_stiffness = soft.csv\n"
+                                           "[output]\nload_distribution = load.csv\n")
+        self.write("in/soft.csv", "tooth,factor\n0,0.8\n")
+
+    def peak_um(self, params, torque_Nm, *settings):
+        """Of gearsim itself."""
+        words = [word for text in (f"load.mean_Nm={torque_Nm}", "output.columns=te_um", "output.load_distribution=", *settings)
+                 for word in ("--set", text)]
+        subprocess.run([GEARSIM, params, "--quiet", "--output", "te.csv", *words], cwd=self.folder, check=True)
+        te_um = [row["te_um"] for row in self.table("te.csv")]
+        return max(te_um) - min(te_um)
+
+    def test_harris_map_is_that_of_gearsim(self):
+        result = self.accepted("harris", "in/params.ini", "--vary", f"{BOTH_RELIEFS}=0:16:3", "--torques", "40:80:2",
+                               "--output", "h", "--no-pictures")
+        self.assertIn("teeth differ by files", result.stderr)
+        rows = self.table("h_harris.csv")
+        self.assertEqual(len(rows), 6)
+        for row in rows:
+            amount_um = row["pinion_tip_relief_um"]
+            settings = [f"modifications.{key}={amount_um}" for key in BOTH_RELIEFS.split(",")]
+            self.assertAlmostEqual(row["te_peak_to_peak_um"], self.peak_um("in/params.ini", row["torque_Nm"], *settings),
+                                   delta=1e-5)
+        self.assertFalse(os.path.exists(self.path("in/load.csv")))
+
+    def test_relief_found_is_better_where_it_is_written(self):
+        os.mkdir(self.path("out"))
+        amounts = [word for key in BOTH_RELIEFS.split(",") for word in ("--vary", f"{key}=0:16")]
+        none = [word for key in BOTH_RELIEFS.split(",") for word in ("--set", f"modifications.{key}=0")]
+        result = self.accepted("relief", "in/params.ini", *none, *amounts, "--torques", f"{DESIGN_NM}", "--starts", "1",
+                               "--tolerance", "0", "--output", "out/r", "--no-pictures")
+        told = re.search(r"worst peak-to-peak transmission error ([\d.]+) um before, ([\d.]+) um after", result.stdout)
+        before_um, after_um = map(float, told.groups())
+        self.assertAlmostEqual(self.peak_um("out/r_relief.ini", DESIGN_NM), after_um, delta=1e-3)
+        ideal = [f"modifications.{key}=0" for key in BOTH_RELIEFS.split(",")]
+        self.assertAlmostEqual(self.peak_um("out/r_relief.ini", DESIGN_NM, *ideal), before_um, delta=1e-3)
+        self.assertLess(after_um, 0.5 * before_um)
+
+
 if __name__ == "__main__":
     if len(sys.argv) > 1 and not sys.argv[1].startswith("-"):
         GEARSIM = os.path.abspath(sys.argv.pop(1))
