@@ -29,6 +29,7 @@ static inline config case_config(enum mesh_model model, enum drive_kind drive) {
         .iso_blank_factor = 1.0,
         .damping = REFERENCE_DAMPING,
         .damping_ratio = (double)NAN,
+        .friction_speed = 0.01,
         .pinion_inertia = case_pinion_inertia,
         .wheel_inertia = case_wheel_inertia,
         .drive = drive,

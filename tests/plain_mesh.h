@@ -70,7 +70,7 @@ GM_TEST_UNUSED static int penetration_3d_sum_at(const gm_pair *pair, const gm_fl
 /** The simple model at x. */
 GM_TEST_UNUSED static int penetration_simple_at(const gm_pair *pair, double offset,
                                                 double offset_rate, gm_penetration *penetration) {
-    const gm_position position = {0, 0, 0.0, offset, offset_rate};
+    const gm_position position = {.offset = offset, .offset_rate = offset_rate};
     plain_mesh room;
     gm_mesh *mesh;
     gm_mesh_params params;

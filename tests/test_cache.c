@@ -442,7 +442,7 @@ static void bad_states_are_refused_as_without_a_cache(void) {
     fixture f;
     make_paper(&f, &params);
     const double p_bt = f.pair.transverse_base_pitch;
-    const gm_position good = {44, 40, 1e-3, 55e-6, 0.25};
+    const gm_position good = {44, 40, 1e-3, 55e-6, 0.25, 0.0};
     gm_position wrong[16];
     int count = 0;
     static const double bad[] = {(double)NAN, HUGE_VAL, -HUGE_VAL};
@@ -506,7 +506,7 @@ static void a_cache_serves_its_own_mesh_alone(void) {
     GM_ASSERT_INT(gm_mesh_use_cache(NULL, f.cache), GM_ERR_NULL);
     GM_ASSERT_INT(gm_mesh_use_cache(other.mesh, f.cache), GM_ERR_PARAMETER);
 
-    const gm_position position = {44, 40, 1e-3, 55e-6, 0.25};
+    const gm_position position = {44, 40, 1e-3, 55e-6, 0.25, 0.0};
     const gm_penetration held = looked_up_at(&f, &position);
     GM_ASSERT(was_looked_up(&f, &held));
     GM_ASSERT_INT(gm_mesh_use_cache(f.mesh, NULL), GM_OK);
@@ -656,7 +656,8 @@ static void strangers_are_evaluated_exactly(void) {
     make_cache(&f, &params);
     for (int pinion = 0; pinion < 40; ++pinion) {
         for (int wheel = 0; wheel < 30; ++wheel) {
-            const gm_position position = {pinion, wheel, 1e-3, 0.5 * f.pair.backlash + 5e-6, 0.0};
+            const gm_position position = {pinion, wheel, 1e-3, 0.5 * f.pair.backlash + 5e-6,
+                                          0.0,    0.0};
             const gm_penetration exact = exact_at(&f, &position);
             const gm_penetration r = looked_up_at(&f, &position);
             GM_ASSERT_INT(was_looked_up(&f, &r), (pinion - wheel) % 10 == 0);
@@ -737,7 +738,7 @@ static void only_what_is_met_is_filled(void) {
     fixture f;
     make_paper(&f, &params);
     for (int pass = 0; pass < 10; ++pass) {
-        const gm_position position = {pass, pass, 1e-3, 0.5 * f.pair.backlash, 0.0};
+        const gm_position position = {pass, pass, 1e-3, 0.5 * f.pair.backlash, 0.0, 0.0};
         (void)looked_up_at(&f, &position);
         (void)looked_up_at(&f, &position);
     }

@@ -742,7 +742,7 @@ static void bad_input_is_refused(void) {
     GM_ASSERT_REL(gm_mesh_mean_stiffness(mesh), stiffness.mesh_mean, 1e-12);
     GM_ASSERT(gm_workspace_size(mesh) == 0);
     GM_ASSERT_INT(gm_mesh_evaluate(mesh, &state, GM_WANT_FORCE, NULL, &r), GM_OK);
-    const gm_position somewhere = {0, 0, 0.0, 1e-6, 0.0};
+    const gm_position somewhere = {0, 0, 0.0, 1e-6, 0.0, 0.0};
     gm_line_loads loads;
     law.model = GM_MODEL_3D;
     GM_ASSERT_INT(gm_mesh_line_loads(mesh, &somewhere, NULL, NULL, 0, &loads), GM_ERR_NULL);

@@ -1023,6 +1023,77 @@ class Ring(Case):
         self.assert_close(force, self.TORQUE / self.R_BW, 2e-2)
 
 
+class Friction(Case):
+    MU, SPEED = 0.08, 2 * math.pi / 60 * 1000
+    RUBBING = [f"mesh.friction_coefficient={MU}", "mesh.friction_speed_m_per_s=1e-6"]
+
+    def closed_form(self, settings, depth):
+        """Force, and loss in W, of lines of contact that cover the path evenly: overlap ratio an integer."""
+        g = self.geometry(settings)
+        r_bp, r_bw = g["pinion_base_radius_mm"] * 1e-3, g["wheel_base_radius_mm"] * 1e-3
+        length = g["line_of_action_mm"] * 1e-3
+        pitch_point = length * r_bp / (r_bp + r_bw)
+        below = pitch_point - (g["path_start_mm"] * 1e-3 + depth)  # the wheel's tip moves with the overlap
+        above = g["path_end_mm"] * 1e-3 - pitch_point
+        path = below + above
+        per_force = self.MU / math.cos(math.radians(g["base_helix_angle_deg"])) / path
+        # Friction times rho_w on both sides of the pitch point, where it turns round.
+        beyond = length - pitch_point
+        arm = per_force * (above * (beyond - above / 2) - below * (beyond + below / 2))
+        force = LOAD / (r_bw + arm)
+        speed = self.SPEED * (1 + r_bp / r_bw)
+        return force, force * per_force * speed * (above**2 + below**2) / 2
+
+    def test_loss_and_te_are_the_closed_form(self):
+        width = f"gears.face_width_mm={17.5 * 2 / self.geometry()['overlap_ratio']!r}"
+        c = self.run_columns([*STATIC, *self.RUBBING, width])
+        for te, stiffness, loss in zip(c["te_um"], c["mesh_stiffness_N_per_um"], c["loss_W"]):
+            depth = -te * 1e-6 - GAP / 2
+            force, expected = self.closed_form([width], depth)
+            # The part of v0 = 1e-6 m/s against some m/s.
+            self.assert_close(depth * stiffness * 1e6, force, relative=1e-6)
+            self.assert_close(loss, expected, relative=1e-5)
+
+    def test_without_speed_there_is_no_friction(self):
+        still = self.run_columns([*STATIC, *self.RUBBING, "drive.start_rpm=0"])
+        self.assertEqual(set(still.pop("loss_W")), {0.0})
+        without = self.run_columns(STATIC)
+        self.assert_all_close(still["te_um"], without["te_um"], absolute=1e-9)
+        self.assertEqual(list(still), list(without))
+
+    def test_loss_is_the_last_column(self):
+        c = self.run_columns([*STATIC, *self.RUBBING, "analysis.loads=2", "load.end_Nm=5"])
+        self.assertEqual(list(c)[-2:], ["load_torque_Nm", "loss_W"])
+        self.assertGreater(min(c["loss_W"][:60]), max(c["loss_W"][60:]))
+
+    def test_slow_turning_follows_the_static_transmission_error(self):
+        slow = [*self.RUBBING, "drive.start_rpm=1", "drive.end_rpm=1"]
+        static = self.run_columns([*STATIC, *slow[:-1]])
+        dynamic = self.run_columns([*PLAIN, *slow, "output.rate_Hz=45", "analysis.duration_s=1.32", *TIGHT])
+        # Spring and damper as without friction (Dynamic); friction moves the curve by some 0.01 um.
+        self.assert_all_close(dynamic["dte_um"][:60], static["te_um"], absolute=2e-5)
+        self.assertGreater(largest_difference(static["te_um"], self.run_columns(STATIC)["te_um"]), 2e-3)
+
+    def test_kinetic_energy_misses_what_is_lost(self):
+        """Both bodies free: what friction takes off their energy is its power, known from static positions."""
+        runs = [self.run_columns([*PLAIN, *TORQUE, *TIGHT, *settings]) for settings in ([], self.RUBBING)]
+        energy = [sum(0.5 * inertia * (c[f"{gear}_speed_rpm"][-1] * 2 * math.pi / 60)**2
+                      for gear, inertia in (("pinion", I_P), ("wheel", I_W))) for c in runs]
+        work = [22 * c["pinion_angle_rad"][-1] - LOAD * c["wheel_angle_rad"][-1] for c in runs]
+        lost = (work[1] - energy[1]) - (work[0] - energy[0])
+        loss = statistics.fmean(self.run_columns([*STATIC, *self.RUBBING])["loss_W"])
+        # 15 teeth pass, the last one in part, and what vibrates holds some of it.
+        self.assert_close(lost, loss * 0.02, relative=0.03)
+
+    def test_force_is_filtered_from_values(self):
+        """Momentum tells the torques, in which friction has its share."""
+        c = self.run_columns([*self.RUBBING, "output.columns=contact_force_N,penetration_um,penetration_rate_um_per_s"])
+        # Away from the ends, where the filter sees the start.
+        for force, depth, rate in list(zip(*c.values()))[100:-100]:
+            self.assert_close(force, K * depth * 1e-6 + D * rate * 1e-6, relative=1e-9)
+        self.assertIn("low-pass filtered, load_torque_Nm from means", self.text("run.csv"))
+
+
 class Ends(Case):
     ENDLESS = ["analysis.duration_s=30000", "load.noise_amplitude_Nm=10"]
 

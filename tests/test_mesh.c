@@ -444,15 +444,15 @@ static void states_out_of_range_leave_nan(void) {
             gm_position position;
             int status_3d, status_simple;
         } cases[] = {
-            {{0, 0, 1e-3, NAN, 0.0}, GM_STATE_NOT_FINITE, GM_STATE_NOT_FINITE},
-            {{0, 0, 1e-3, 0.0, HUGE_VAL}, GM_STATE_NOT_FINITE, GM_STATE_NOT_FINITE},
-            {{0, 0, 1e-3, 0.0, 1.01e9}, GM_STATE_OUT_OF_RANGE, GM_STATE_OUT_OF_RANGE},
-            {{0, 0, 1e-3, half_pitch, 0.0}, GM_STATE_OUT_OF_RANGE, GM_OK},
-            {{0, 0, 1e-3, -1e18, 0.0}, GM_STATE_OUT_OF_RANGE, GM_OK},
-            {{0, 0, 1e-3, -1.01e18, 0.0}, GM_STATE_OUT_OF_RANGE, GM_STATE_OUT_OF_RANGE},
-            {{45, 0, 1e-3, 0.0, 0.0}, GM_ERR_TOOTH, GM_OK},
-            {{0, -1, 1e-3, 0.0, 0.0}, GM_ERR_TOOTH, GM_OK},
-            {{44, 40, 1e-3, 0.0, -1e9}, GM_OK, GM_OK},
+            {{0, 0, 1e-3, NAN, 0.0, 0.0}, GM_STATE_NOT_FINITE, GM_STATE_NOT_FINITE},
+            {{0, 0, 1e-3, 0.0, HUGE_VAL, 0.0}, GM_STATE_NOT_FINITE, GM_STATE_NOT_FINITE},
+            {{0, 0, 1e-3, 0.0, 1.01e9, 0.0}, GM_STATE_OUT_OF_RANGE, GM_STATE_OUT_OF_RANGE},
+            {{0, 0, 1e-3, half_pitch, 0.0, 0.0}, GM_STATE_OUT_OF_RANGE, GM_OK},
+            {{0, 0, 1e-3, -1e18, 0.0, 0.0}, GM_STATE_OUT_OF_RANGE, GM_OK},
+            {{0, 0, 1e-3, -1.01e18, 0.0, 0.0}, GM_STATE_OUT_OF_RANGE, GM_STATE_OUT_OF_RANGE},
+            {{45, 0, 1e-3, 0.0, 0.0, 0.0}, GM_ERR_TOOTH, GM_OK},
+            {{0, -1, 1e-3, 0.0, 0.0, 0.0}, GM_ERR_TOOTH, GM_OK},
+            {{44, 40, 1e-3, 0.0, -1e9, 0.0}, GM_OK, GM_OK},
         };
         for (size_t i = 0; i < sizeof cases / sizeof cases[0]; ++i) {
             gm_test_context("model %d, case %zu", model, i);
@@ -625,7 +625,7 @@ static void simple_model_pushes_in_the_pitch_point(void) {
     for (int side = GM_DRIVE; side <= GM_COAST; ++side) {
         gm_test_context("side %d", side);
         const double sign = side == GM_DRIVE ? 1.0 : -1.0;
-        const gm_position position = {0, 0, 1e-3, sign * 60e-6, 0.0};
+        const gm_position position = {0, 0, 1e-3, sign * 60e-6, 0.0, 0.0};
         gm_mesh_result r;
         GM_ASSERT_INT(gm_mesh_evaluate_at(mesh, &position, GM_WANT_WRENCH, NULL, &r), GM_OK);
         const double f = fabs(r.force);

@@ -115,9 +115,11 @@ static void difference(const gear_model *model, const double state[STATES_MAX], 
  * force is quadratic in x between kinks. A state whose difference straddles a kink may be off: few are.
  */
 static void jacobian_is_that_of_differences(void) {
-    for (int m = 0; m < 2; ++m) {
+    for (int m = 0; m < 3; ++m) {
         for (int d = 0; d < 2; ++d) {
-            config conf = case_config(meshes[m], drives[d]);
+            /* The third time with friction. */
+            config conf = case_config(meshes[m % 2], drives[d]);
+            conf.friction_coefficient = m == 2 ? 0.1 : 0.0;
             conf.pinion_drag = 0.3;
             conf.wheel_drag = 0.5;
             conf.load_per_speed = 0.7;

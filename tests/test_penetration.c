@@ -176,7 +176,7 @@ static void speeds_are_taken_up_to_1e9(void) {
         gm_test_context("%g", absurd[k]);
         gm_state states[2] = {{0.1, 0.1 * 45.0 / 41.0, absurd[k], 0.0},
                               {0.1, 0.1 * 45.0 / 41.0, 0.0, absurd[k]}};
-        gm_position position = {0, 0, 0.0, 0.0, absurd[k]};
+        gm_position position = {0, 0, 0.0, 0.0, absurd[k], 0.0};
         gm_penetration r;
         gm_wrench w;
         for (int gear = 0; gear < 2; ++gear) {
@@ -189,7 +189,7 @@ static void speeds_are_taken_up_to_1e9(void) {
                           GM_STATE_OUT_OF_RANGE);
             GM_ASSERT_NAN(position.offset_rate);
         }
-        position = (gm_position){0, 0, 0.0, 0.0, absurd[k]};
+        position = (gm_position){0, 0, 0.0, 0.0, absurd[k], 0.0};
         GM_ASSERT_INT(penetration_3d_at(&pair, NULL, NULL, &position, &r), GM_STATE_OUT_OF_RANGE);
         assert_all_nan(&r);
         GM_ASSERT_INT(wrench_3d_at(&pair, NULL, NULL, &position, 1e8, 1e3, &w),
@@ -205,7 +205,7 @@ static void speeds_are_taken_up_to_1e9(void) {
         GM_ASSERT_NAN(position.offset_rate);
     }
     gm_penetration r;
-    gm_position position = {0, 0, 0.0, 0.0, 1e9};
+    gm_position position = {0, 0, 0.0, 0.0, 1e9, 0.0};
     GM_ASSERT_INT(penetration_3d_at(&pair, NULL, NULL, &position, &r), GM_OK);
     GM_ASSERT_REL(r.rate, 1e9 * (r.drive_contact + r.coast_contact), 1e-15);
     GM_ASSERT_INT(gm_position_from_pinion_angle(&pair, 0.1, 0.0, -1e9, &position), GM_OK);

@@ -456,8 +456,8 @@ static void tables_begin_where_their_own_faces_do(void) {
         const double phase = gm_test_uniform(&seed, 0.0, p_bt);
         const double there =
             phase - 2.0 * narrow_pair.face_advance; /* where z = 0 of the wide pinion is */
-        const gm_position at = {0, 0, phase, x, 1e-3};
-        const gm_position wide_at = {0, 0, there - p_bt * floor(there / p_bt), x, 1e-3};
+        const gm_position at = {0, 0, phase, x, 1e-3, 0.0};
+        const gm_position wide_at = {0, 0, there - p_bt * floor(there / p_bt), x, 1e-3, 0.0};
         gm_mesh_result a, c;
         GM_ASSERT_INT(evaluate_posed(&narrow_pair, pinion, wheel, &drawn, &at, &a), GM_OK);
         GM_ASSERT_INT(evaluate_posed(&wide_pair, wide_pinion, wide_wheel, &drawn, &wide_at, &c),

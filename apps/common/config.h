@@ -18,6 +18,7 @@
 
 enum mesh_model { MODEL_SIMPLE, MODEL_3D };
 enum mesh_law { LAW_CONSTANT, LAW_ISO6336, LAW_ELASTIC };
+enum friction_law { FRICTION_CONSTANT, FRICTION_ISO14179, FRICTION_BENEDICT_KELLEY };
 enum drive_kind { DRIVE_SPEED, DRIVE_TORQUE };
 enum analysis_type { ANALYSIS_DYNAMIC, ANALYSIS_STATIC };
 enum static_period { PERIOD_MESH, PERIOD_PINION, PERIOD_HUNTING };
@@ -76,6 +77,7 @@ typedef struct config {
 
     enum mesh_model model;
     enum mesh_law law;
+    enum friction_law friction_law;
     double stiffness;             /* K of one tooth pair, N/m */
     double iso_blank_factor;      /* C_R of ISO 6336-1 */
     double damping;               /* D of one tooth pair, N s/m; NaN: not given */
@@ -85,7 +87,11 @@ typedef struct config {
     double wheel_youngs_modulus;
     double pinion_poisson_ratio;
     double wheel_poisson_ratio;
-    int stations; /* of elastic teeth along the face */
+    double friction_coefficient; /* of the constant law */
+    double friction_speed;       /* at which mu has reached 0.7 of itself, m/s */
+    double oil_viscosity;        /* Pa s */
+    double roughness;            /* Ra, m */
+    int stations;                /* of elastic teeth along the face */
 
     gm_pose pose; /* of the wheel against the drawing */
 
@@ -148,6 +154,12 @@ typedef struct config {
 
     struct key_entry *entries; /* [gearsim_keys.count] what was given, and where: see key_table.h */
 } config;
+
+/* Whether flanks rub on each other. */
+static inline int config_has_friction(const config *conf) {
+    return conf->model == MODEL_3D &&
+           (conf->friction_law != FRICTION_CONSTANT || conf->friction_coefficient > 0);
+}
 
 /* Room for config_note(). */
 enum { PROVENANCE_NOTES = 24 };

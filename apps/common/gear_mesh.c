@@ -84,6 +84,14 @@ static gm_mesh_params params_of(const config *conf, const gear_mesh *mesh) {
     if (fabs(conf->mean_load) > 0) {
         params.reference_torque = fabs(conf->mean_load);
     }
+
+    const int friction_laws[] = {GM_FRICTION_CONSTANT, GM_FRICTION_ISO14179,
+                                 GM_FRICTION_BENEDICT_KELLEY};
+    params.friction_law = friction_laws[conf->friction_law];
+    params.friction_coefficient = conf->friction_coefficient;
+    params.friction_speed = conf->friction_speed;
+    params.oil_viscosity = conf->oil_viscosity;
+    params.roughness = conf->roughness;
     return params;
 }
 

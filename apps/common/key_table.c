@@ -132,6 +132,7 @@ static const struct {
     [UNIT_MM] = {1e3, 1},
     [UNIT_MM_DIAMETER] = {2e3, 1},
     [UNIT_UM] = {1e6, 1},
+    [UNIT_MPAS] = {1e3, 1},
     [UNIT_MRAD] = {1e3, 1},
     [UNIT_GPA] = {1, 1e9},
     [UNIT_DEG] = {180, 3.14159265358979323846},

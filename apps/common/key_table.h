@@ -29,6 +29,7 @@ enum key_unit {
     UNIT_MM,
     UNIT_MM_DIAMETER,
     UNIT_UM,
+    UNIT_MPAS,
     UNIT_MRAD,
     UNIT_GPA,
     UNIT_DEG,
@@ -53,7 +54,10 @@ enum key_situation {
     FOR_ALL = 1 << 7, /* only in `required`: for --geometry as well */
     FOR_CONSTANT = 1 << 8,
     FOR_ISO6336 = 1 << 9,
-    FOR_ELASTIC = 1 << 10
+    FOR_ELASTIC = 1 << 10,
+    FOR_COEFFICIENT = 1 << 11, /* of friction; else from the oil, */
+    FOR_OIL = 1 << 12,
+    FOR_ROUGHNESS = 1 << 13 /* and from that of the flanks */
 };
 
 typedef struct key_spec {

@@ -132,6 +132,18 @@ static const key_spec keys[] = {
     {NAME("mesh", "simple_stiffness_N_per_m"), NUMBER(UNIT_SI, STIFFNESS), INTO(simple_stiffness),
      .derived = "stiffness_N_per_m * eps_alpha", .used = FOR_SIMPLE,
      .help = "of the simple model"},
+    {NAME("mesh", "friction_coefficient"), NUMBER(UNIT_SI, BETWEEN(0, 1)), INTO(friction_coefficient),
+     .standard = "0", .used = FOR_3D | FOR_COEFFICIENT, .help = "of the flanks, 0: no friction"},
+    {NAME("mesh", "friction_law"), CHOICE("constant iso14179 benedict_kelley"), INTO(friction_law), .standard = "constant",
+     .used = FOR_3D, .help = "iso14179: mean coefficient from load, speed and oil; benedict_kelley: place by place"},
+    {NAME("mesh", "friction_speed_m_per_s"), NUMBER(UNIT_SI, BETWEEN(1e-6, 1e3)), INTO(friction_speed),
+     .standard = "0.01", .used = FOR_3D, .help = "sliding speed v0 below which friction fades: mu v / sqrt(v^2 + v0^2)"},
+    {NAME("mesh", "oil_viscosity_mPas"), NUMBER(UNIT_MPAS, BETWEEN(1e-3, 1e6)), INTO(oil_viscosity),
+     .used = FOR_3D | FOR_OIL, .required = FOR_RUN | FOR_3D | FOR_OIL, .derived = "needed by these laws",
+     .help = "dynamic viscosity at the temperature of the oil"},
+    {NAME("mesh", "roughness_Ra_um"), NUMBER(UNIT_UM, BETWEEN(1e-3, 1e3)), INTO(roughness),
+     .used = FOR_3D | FOR_ROUGHNESS, .required = FOR_RUN | FOR_3D | FOR_ROUGHNESS, .derived = "needed by iso14179",
+     .help = "of the flanks, mean of both gears"},
 
     {NAME("mesh", "pinion_youngs_modulus_GPa"), NUMBER(UNIT_GPA, BETWEEN(1e-3, 1e6)), INTO(pinion_youngs_modulus),
      .standard = "206", .help = "E of the pinion's material"},
@@ -265,18 +277,29 @@ static const unsigned law_situation[] = {
 
 static unsigned situation_of(const config *conf) {
     return (unsigned)(conf->model == MODEL_3D ? FOR_3D : FOR_SIMPLE) | law_situation[conf->law] |
+           (unsigned)(conf->friction_law == FRICTION_CONSTANT ? FOR_COEFFICIENT : FOR_OIL) |
+           (unsigned)(conf->friction_law == FRICTION_ISO14179 ? FOR_ROUGHNESS : 0) |
            (unsigned)(conf->drive == DRIVE_SPEED ? FOR_SPEED : FOR_TORQUE) |
            (unsigned)(conf->analysis == ANALYSIS_DYNAMIC ? FOR_DYNAMIC : FOR_STATIC);
 }
 
 int key_is_used(const key_spec *key, const config *conf, const char **reason) {
-    const unsigned lacking = key->used & ~situation_of(conf);
+    static const char *const friction[] = {"mesh.friction_law = constant",
+                                           "mesh.friction_law = iso14179",
+                                           "mesh.friction_law = benedict_kelley"};
+    unsigned lacking = key->used & ~situation_of(conf);
 
+    /* Static positions roll at this speed where that means friction. */
+    if (key->target == offsetof(config, start_speed) && config_has_friction(conf)) {
+        lacking &= ~(unsigned)FOR_DYNAMIC;
+    }
     if (lacking & (FOR_DYNAMIC | FOR_STATIC)) {
         *reason = conf->analysis == ANALYSIS_DYNAMIC ? "analysis.type = dynamic"
                                                      : "analysis.type = static";
     } else if (lacking & (FOR_SPEED | FOR_TORQUE)) {
         *reason = conf->drive == DRIVE_SPEED ? "drive.kind = speed" : "drive.kind = torque";
+    } else if (lacking & (FOR_COEFFICIENT | FOR_OIL | FOR_ROUGHNESS)) {
+        *reason = friction[conf->friction_law];
     } else if (lacking & (FOR_CONSTANT | FOR_ISO6336 | FOR_ELASTIC)) {
         *reason = conf->law == LAW_CONSTANT  ? "mesh.law = constant"
                   : conf->law == LAW_ISO6336 ? "mesh.law = iso6336"

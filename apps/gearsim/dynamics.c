@@ -307,6 +307,12 @@ static int see_means(dynamic_run *run, double row, int i) {
     }
 }
 
+/* The momentum of the bodies tells the force, unless friction has its share in it. */
+static int takes_mean(const dynamic_run *run, const dynamic_column *column) {
+    const int is_force = column->need >= NEEDS_MESH;
+    return run->factor > 1 && column->mean != NULL && !(is_force && config_has_friction(run->conf));
+}
+
 /* Sample i of a row's period; values that nobody needs are left as they were. */
 static int take_sample(dynamic_run *run, double row, int i) {
     const int of_row = i == 0;
@@ -335,9 +341,7 @@ static int take_sample(dynamic_run *run, double row, int i) {
     for (int k = 0; k < dynamic_column_count; ++k) {
         const dynamic_column *column = &dynamic_columns[k];
         if (run->is_wanted[k] && (of_row || column->is_filtered)) {
-            run->values[k] =
-                (run->factor > 1 && column->mean != NULL ? column->mean
-                                                         : column->value)(&run->sample);
+            run->values[k] = (takes_mean(run, column) ? column->mean : column->value)(&run->sample);
         }
     }
     return 0;
@@ -454,8 +458,7 @@ static enum sample_kind kind_of(const dynamic_run *run, const dynamic_column *co
     if (!column->is_filtered) {
         return SAMPLE_PLAIN;
     }
-    return run->factor > 1 && column->mean != NULL ? mean_kind(run->conf, run->model.gears)
-                                                   : SAMPLE_VALUES;
+    return takes_mean(run, column) ? mean_kind(run->conf, run->model.gears) : SAMPLE_VALUES;
 }
 
 /* What is asked for decides what has to be computed, and whether there is anything to filter. */
@@ -542,8 +545,9 @@ int dynamics_note(const gear_mesh *gears, config *conf) {
     }
     if (conf->oversampling > 1) {
         snprintf(text, sizeof text,
-                 "low-pass filtered, contact_force_N and load_torque_Nm from means (%s of %.6g s), "
+                 "low-pass filtered, %sload_torque_Nm from means (%s of %.6g s), "
                  "but time_s, pinion_speed_rpm, angles and pairs_in_contact",
+                 config_has_friction(conf) ? "" : "contact_force_N and ",
                  mean_kind(conf, gears) == SAMPLE_HAT ? "triangle, each side" : "box",
                  1.0 / (conf->output_rate * conf->oversampling));
     }

@@ -3,6 +3,7 @@
 #include "model.h"
 
 #include <math.h>
+#include <string.h>
 
 static const double micrometre = 1e-6;
 static const double two_pi = 6.283185307179586;
@@ -158,16 +159,40 @@ void model_free(gear_model *model) {
  * Quasi-static start
  * ------------------------------------------------------------------------------------------- */
 
-static int equilibrium(const gear_model *model, double force, double *offset) {
+/* x'' that the mesh takes off: what its torques do to both bodies (m/s2). */
+static double mesh_acceleration(const gear_model *model, const gm_mesh_result *mesh) {
+    return model->torque_to_pinion * mesh->pinion_torque +
+           model->torque_to_offset * mesh->wheel_torque;
+}
+
+/*
+ * Where the mesh takes off the x'' that is applied. Without friction the torques are those of one force; with it they
+ * share it by a little more or less, so that the wheel's is corrected by what the last one came to.
+ */
+static int equilibrium(const gear_model *model, double speed, double applied, double *offset) {
+    enum { CORRECTIONS = 20 };
     const gear_mesh *gears = model->gears;
+    double torque = applied / mobility(model) * gears->pair.wheel.base_radius;
+    double guess = (double)NAN;
+    int status = GM_OK;
 
     /* Nothing to carry: the middle of the backlash. */
-    if (force == 0.0 && gears->pair.backlash >= 0.0) {
+    if (applied == 0.0 && gears->pair.backlash >= 0.0) {
         *offset = 0.0;
         return GM_OK;
     }
-    return gm_static_equilibrium(gears->prepared, 0.0, force * gears->pair.wheel.base_radius,
-                                 (double)NAN, gears->workspace, offset, NULL);
+    for (int k = 0; k < CORRECTIONS && status == GM_OK; ++k) {
+        gm_mesh_result mesh;
+        status = gm_rolling_equilibrium(gears->prepared, 0.0, speed, torque, guess,
+                                        gears->workspace, offset, &mesh);
+        const double share = mesh_acceleration(model, &mesh) / applied;
+        if (fabs(share - 1.0) < 1e-12 || !(share > 0.0)) {
+            break;
+        }
+        torque /= share;
+        guess = *offset;
+    }
+    return status;
 }
 
 int model_quasi_static_start(const gear_model *model, double state[]) {
@@ -179,7 +204,7 @@ int model_quasi_static_start(const gear_model *model, double state[]) {
     const model_torques torques = model_applied(model, 0.0, &motion);
     const double applied = torques.drive + model->torque_to_offset * (torques.load + torques.drag);
     double offset = 0.0;
-    const int status = equilibrium(model, applied / mobility(model), &offset);
+    const int status = equilibrium(model, start_speed, applied, &offset);
 
     state[STATE_OFFSET] = offset / micrometre;
     state[STATE_OFFSET_RATE] = 0.0;
@@ -259,6 +284,7 @@ int model_evaluate(const gear_model *model, const gear_motion *motion, int wante
     const int status = gm_position_from_pinion_angle(
         &model->gears->pair, motion->pinion_angle, motion->offset, motion->offset_rate, &position);
 
+    position.pinion_speed = motion->pinion_speed;
     return status != GM_OK ? status
                            : gm_mesh_evaluate_at(model->gears->prepared, &position, wanted,
                                                  model->gears->workspace, result);
@@ -467,12 +493,12 @@ int model_derivative(const gear_model *model, double time, const double state[],
     *contact = contact_of(model, &mesh);
 
     derivative[STATE_OFFSET] = w0 * state[STATE_OFFSET_RATE];
-    derivative[STATE_OFFSET_RATE] = (applied - mobility(model) * mesh.force) * to_state;
+    derivative[STATE_OFFSET_RATE] = (applied - mesh_acceleration(model, &mesh)) * to_state;
 
     if (model->states == STATES_MAX) {
         derivative[STATE_PINION_ARC] = w0 * state[STATE_PINION_SPEED];
         derivative[STATE_PINION_SPEED] =
-            (torques.drive - model->pinion_mobility * mesh.force) * to_state;
+            (torques.drive - model->torque_to_pinion * mesh.pinion_torque) * to_state;
     }
     return GM_OK;
 }
@@ -481,41 +507,25 @@ int model_derivative(const gear_model *model, double time, const double state[],
  * Jacobian
  * ------------------------------------------------------------------------------------------- */
 
-typedef struct force_gradient {
-    double by_offset;      /* dF/dx at fixed phi_p (N/m) */
-    double by_offset_rate; /* dF/dx' (N s/m) */
-    double by_arc;         /* dF/d(r_bp phi_p) at fixed x (N/m) */
-} force_gradient;
-
-/* At fixed phi_p a change of x is one of -phi_w; at fixed x, phi_w follows phi_p by r_bp / r_bw. */
-static force_gradient gradient(const gear_model *model, const gm_mesh_result *mesh) {
+/* Adds what a torque of the mesh does to the row of a speed: x' or r_bp phi_p', of which the torque takes
+ * `factor` (1/(kg m)) times itself off. */
+static void add_mesh_torque(double jacobian[STATES_MAX][STATES_MAX], int row,
+                            const gear_model *model, double factor, const gm_gradient *torque_by) {
     const gm_pair *pair = &model->gears->pair;
     const double r_bp = pair->pinion.base_radius;
     const double r_bw = pair->wheel.base_radius;
-    const force_gradient result = {
-        .by_offset = -mesh->force_by.wheel_angle / r_bw,
-        .by_offset_rate = -mesh->force_by.wheel_speed / r_bw,
-        .by_arc = mesh->force_by.pinion_angle / r_bp + mesh->force_by.wheel_angle / r_bw,
-    };
-    return result;
-}
-
-/* Row of a speed on which the force acts with the given mobility. */
-static void speed_row(double jacobian[STATES_MAX][STATES_MAX], int row, const gear_model *model,
-                      double row_mobility, const force_gradient *force) {
     const double w0 = model->natural_frequency;
 
-    jacobian[STATE_OFFSET][row] = -row_mobility * force->by_offset / w0;
-    jacobian[STATE_OFFSET_RATE][row] = -row_mobility * force->by_offset_rate;
-    jacobian[STATE_PINION_ARC][row] = -row_mobility * force->by_arc / w0;
-    jacobian[STATE_PINION_SPEED][row] = 0.0;
-}
+    /* At fixed phi_p a change of x is one of -phi_w; at fixed x, phi_w follows phi_p by r_bp / r_bw. */
+    const double by_offset = -torque_by->wheel_angle / r_bw;
+    const double by_offset_rate = -torque_by->wheel_speed / r_bw;
+    const double by_arc = torque_by->pinion_angle / r_bp + torque_by->wheel_angle / r_bw;
+    const double by_arc_speed = torque_by->pinion_speed / r_bp + torque_by->wheel_speed / r_bw;
 
-/* Row of a coordinate: its derivative is w0 times its speed. */
-static void coordinate_row(double jacobian[STATES_MAX][STATES_MAX], int row, int speed, double w0) {
-    for (int column = 0; column < STATES_MAX; ++column) {
-        jacobian[column][row] = column == speed ? w0 : 0.0;
-    }
+    jacobian[STATE_OFFSET][row] -= factor * by_offset / w0;
+    jacobian[STATE_OFFSET_RATE][row] -= factor * by_offset_rate;
+    jacobian[STATE_PINION_ARC][row] -= factor * by_arc / w0;
+    jacobian[STATE_PINION_SPEED][row] -= factor * by_arc_speed;
 }
 
 /* What drag and load do to the rows of the speeds, by x' = r_bp phi_p' - r_bw phi_w'. */
@@ -554,12 +564,15 @@ int model_jacobian(const gear_model *model, double time, const double state[],
     }
 
     const double w0 = model->natural_frequency;
-    const force_gradient force = gradient(model, &mesh);
-
-    coordinate_row(jacobian, STATE_OFFSET, STATE_OFFSET_RATE, w0);
-    speed_row(jacobian, STATE_OFFSET_RATE, model, mobility(model), &force);
-    coordinate_row(jacobian, STATE_PINION_ARC, STATE_PINION_SPEED, w0);
-    speed_row(jacobian, STATE_PINION_SPEED, model, model->pinion_mobility, &force);
+    memset(jacobian, 0, STATES_MAX * sizeof jacobian[0]);
+    jacobian[STATE_OFFSET_RATE][STATE_OFFSET] = w0;
+    jacobian[STATE_PINION_SPEED][STATE_PINION_ARC] = w0;
+    add_mesh_torque(jacobian, STATE_OFFSET_RATE, model, model->torque_to_offset,
+                    &mesh.wheel_torque_by);
+    add_mesh_torque(jacobian, STATE_OFFSET_RATE, model, model->torque_to_pinion,
+                    &mesh.pinion_torque_by);
+    add_mesh_torque(jacobian, STATE_PINION_SPEED, model, model->torque_to_pinion,
+                    &mesh.pinion_torque_by);
     add_torques(jacobian, model, &motion);
 
     return GM_OK;

@@ -5,13 +5,14 @@
  * The equations of motion as a first-order system, and their Jacobian.
  *
  *     x  = r_bp phi_p - r_bw phi_w
- *     x'' = r_bp alpha_p + r_bw M_w / I_w - F r_bw^2 / I_w
+ *     x'' = r_bp alpha_p + r_bw M_w / I_w - r_bw T_w / I_w
  *
- * with the prescribed alpha_p, or alpha_p = (M_p - c_p phi_p' - F r_bp) / I_p if the pinion is driven by a
- * torque. M_w contains the wheel's drag c_w phi_w', what of the load follows its speed, and ripple over phi_p, as M_p
+ * with the torque T_w that the mesh gives to the wheel, and the prescribed alpha_p, or
+ * alpha_p = (M_p - c_p phi_p' - T_p) / I_p if the pinion is driven by a torque. Without friction T_w = F r_bw and
+ * T_p = F r_bp. M_w contains the wheel's drag c_w phi_w', what of the load follows its speed, and ripple over phi_p, as M_p
  * does. Both cases read
  * x'' = a - mobility F, where a is what drive, load and drag would do to x without contact, and the mobility
- * is what a force of 1 N along the line of action does.
+ * is what a force of 1 N along the line of action does; with friction mobility F is what both torques do.
  *
  * The solver's state is scaled to the size of the vibration: micrometres, and micrometres times the
  * natural frequency. With an absolute wheel angle of thousands of radians as state, its tolerance

@@ -47,6 +47,10 @@ static double load_torque(const static_position *position) {
 WRENCH_COLUMNS(COMPONENT)
 #undef COMPONENT
 
+static double loss(const static_position *position) {
+    return position->mesh.loss;
+}
+
 static double face_load_factor(const static_position *position) {
     return position->faces.face_load_factor;
 }
@@ -73,6 +77,7 @@ const static_column static_columns[] = {
     {"largest_line_load_N_per_mm", OF_ELASTIC_TEETH, TAKES_FACES, largest_line_load},
     {"largest_pressure_N_per_mm2", OF_ELASTIC_TEETH, TAKES_FACES, largest_pressure},
     WRENCH_COLUMNS(ROW)
+    {"loss_W", OF_FRICTION, TAKES_NOTHING, loss},
 };
 #undef ROW
 /* clang-format on */
@@ -85,6 +90,8 @@ int static_column_is_there(const config *conf, int column) {
         return conf->loads > 1;
     case OF_ELASTIC_TEETH:
         return conf->law == LAW_ELASTIC;
+    case OF_FRICTION:
+        return config_has_friction(conf);
     case ALWAYS:
     default:
         return 1;

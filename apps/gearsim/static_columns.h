@@ -22,7 +22,7 @@ typedef struct static_position {
 } static_position;
 
 /* When there is a column. */
-enum static_column_use { ALWAYS, OF_SEVERAL_LOADS, OF_ELASTIC_TEETH };
+enum static_column_use { ALWAYS, OF_SEVERAL_LOADS, OF_ELASTIC_TEETH, OF_FRICTION };
 
 /* What a column takes from static_position that is only found where a column is asked for. */
 enum static_column_taking { TAKES_NOTHING, TAKES_WRENCH, TAKES_FACES };

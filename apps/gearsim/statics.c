@@ -65,6 +65,7 @@ static int find_needed(const static_results *results, unsigned needs, static_pos
     int status = gm_position_from_pinion_angle(&at->gears->pair, at->pinion_angle, at->offset, 0.0,
                                                &position);
 
+    position.pinion_speed = at->conf->start_speed;
     if (status == GM_OK && (needs & 1u << TAKES_WRENCH)) {
         status = gm_mesh_evaluate_at(at->gears->prepared, &position, GM_WANT_WRENCH,
                                      at->gears->workspace, &result);
@@ -84,18 +85,18 @@ static int write_position(const config *conf, const gear_mesh *gears, double ang
     static_position position = {
         .conf = conf, .gears = gears, .pinion_angle = angle, .load = before->load};
 
-    *status = gm_static_equilibrium(gears->prepared, angle, before->load, guess, gears->workspace,
-                                    &position.offset, &position.mesh);
+    *status = gm_rolling_equilibrium(gears->prepared, angle, conf->start_speed, before->load, guess,
+                                     gears->workspace, &position.offset, &position.mesh);
     if (*status != GM_OK) {
         return EXIT_RUN_FAILED;
     }
 
-    /* Along the curve of constant force, for the guess at the next position. */
+    /* Along the curve of constant torque, for the guess at the next position. */
     before->angle = angle;
     before->offset = position.offset;
     before->slope = pair->pinion.base_radius + pair->wheel.base_radius *
-                                                   position.mesh.force_by.pinion_angle /
-                                                   position.mesh.force_by.wheel_angle;
+                                                   position.mesh.wheel_torque_by.pinion_angle /
+                                                   position.mesh.wheel_torque_by.wheel_angle;
 
     /* What the columns that are asked for, and the other file, take beyond the equilibrium. */
     unsigned needs = results->distribution != NULL ? 1u << TAKES_FACES : 0;

@@ -206,7 +206,7 @@ static int find_motion(const gm_mesh *mesh, const gm_body *pinion, const gm_body
 static void set_motion_nan(gm_motion *motion) {
     const double nan = gmi_nan();
     const gm_pose none = {nan, nan, nan, nan, nan};
-    const gm_motion all = {{0, 0, nan, nan, nan}, none, none};
+    const gm_motion all = {{0, 0, nan, nan, nan, nan}, none, none};
     *motion = all;
 }
 

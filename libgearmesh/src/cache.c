@@ -350,7 +350,7 @@ static void set_node(const gm_cache *cache, float *node, double value, const gmi
 
 static void fill_column(gm_cache *cache, int pass, int index, gm_workspace *workspace) {
     const size_t column = (size_t)pass * (size_t)cache->columns + (size_t)index;
-    gm_position position = {0, 0, cache->phases[index], 0.0, 0.0};
+    gm_position position = {.phase = cache->phases[index]};
     set_teeth(cache, pass, &position);
 
     /* Nodes from the first touch on; none where no line exists. */
@@ -561,7 +561,7 @@ int gm_cache_error(gm_cache *cache, int states, unsigned seed, gm_workspace *wor
     for (int i = 0; i < states; ++i) {
         /* A random tooth pass, phase and depth behind the first touch. */
         const int pass = (int)(gmi_random_unit(&random) * (double)cache->passes);
-        gm_position position = {0, 0, gmi_random_unit(&random) * last_phase, 0.0, 0.0};
+        gm_position position = {.phase = gmi_random_unit(&random) * last_phase};
         const int index = column_before(cache, position.phase);
         set_teeth(cache, pass, &position);
         need_column(cache, pass, index, workspace);

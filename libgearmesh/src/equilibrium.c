@@ -24,6 +24,7 @@ typedef struct problem {
     gm_position position; /* phase and teeth; offset is the unknown */
     double direction;     /* +1: x grows with the load, -1: it falls */
     double target;        /* net sum that carries the torque, >= 0 in that direction (m) */
+    int by_torque;        /* the torque does not follow from the sum alone */
     double
         resolution; /* of x: the rounding of the lengths that the lines of contact are clipped to (m) */
 } problem;
@@ -45,7 +46,20 @@ static double residual(const problem *p, double travel, gm_mesh_result *result) 
     gm_position position = p->position;
     position.offset = p->direction * travel;
     (void)gmi_mesh_evaluate_exact(p->mesh, &position, GM_WANT_DERIVATIVES, p->workspace, result);
-    return p->direction * result->contact.penetration - p->target;
+    const double sum = p->by_torque ? gmi_law_sum_of_torque(&p->mesh->law, result->wheel_torque,
+                                                            p->pair->wheel.base_radius)
+                                    : result->contact.penetration;
+    return p->direction * sum - p->target;
+}
+
+/* Its derivative by the travel. */
+static double slope_of(const problem *p, const gm_mesh_result *result) {
+    const double r_bw = p->pair->wheel.base_radius;
+    const double by_wheel_angle =
+        p->by_torque
+            ? gmi_law_sum_of_torque(&p->mesh->law, result->wheel_torque_by.wheel_angle, r_bw)
+            : result->contact.d_wheel_angle;
+    return -by_wheel_angle / r_bw;
 }
 
 /* No contact on a side whose ideal penetration is below minus this. */
@@ -86,7 +100,7 @@ static int solve(const problem *p, bracket within, double travel, double reach, 
                  gm_mesh_result *result) {
     for (int k = 0; k < LARGEST_STEPS; ++k) {
         const double value = residual(p, travel, result);
-        const double slope = -result->contact.d_wheel_angle / p->pair->wheel.base_radius;
+        const double slope = slope_of(p, result);
         *found = travel;
         if (fabs(value) <= p->resolution * slope) {
             return 1;
@@ -242,9 +256,9 @@ static int find(const problem *p, double guess, double *found, gm_mesh_result *r
                            : find_unloaded(p, guess, found, result);
 }
 
-int gm_static_equilibrium(const gm_mesh *mesh, double pinion_angle, double wheel_torque,
-                          double guess, gm_workspace *workspace, double *offset,
-                          gm_mesh_result *result) {
+int gm_rolling_equilibrium(const gm_mesh *mesh, double pinion_angle, double pinion_speed,
+                           double wheel_torque, double guess, gm_workspace *workspace,
+                           double *offset, gm_mesh_result *result) {
     if (result != NULL) {
         gmi_mesh_result_set_nan(result); /* until found */
     }
@@ -259,11 +273,19 @@ int gm_static_equilibrium(const gm_mesh *mesh, double pinion_angle, double wheel
         return GM_ERR_PARAMETER;
     }
 
-    problem p = {mesh, workspace, mesh->pair, {0, 0, 0.0, 0.0, 0.0}, 1.0, 0.0, 0.0};
+    problem p = {.mesh = mesh,
+                 .workspace = workspace,
+                 .pair = mesh->pair,
+                 .by_torque = mesh->friction.is_on};
     int status = gm_position_from_pinion_angle(p.pair, pinion_angle, 0.0, 0.0, &p.position);
     if (status != GM_OK) {
         return status;
     }
+
+    if (!(fabs(pinion_speed) <= GMI_LARGEST_SPEED)) {
+        return gmi_is_finite(pinion_speed) ? GM_STATE_OUT_OF_RANGE : GM_STATE_NOT_FINITE;
+    }
+    p.position.pinion_speed = pinion_speed;
 
     /* From here on in the coordinates of the posed pair. */
     const double shift = mesh->engagement.offset_shift;
@@ -288,4 +310,11 @@ int gm_static_equilibrium(const gm_mesh *mesh, double pinion_angle, double wheel
         }
     }
     return status;
+}
+
+int gm_static_equilibrium(const gm_mesh *mesh, double pinion_angle, double wheel_torque,
+                          double guess, gm_workspace *workspace, double *offset,
+                          gm_mesh_result *result) {
+    return gm_rolling_equilibrium(mesh, pinion_angle, 0.0, wheel_torque, guess, workspace, offset,
+                                  result);
 }

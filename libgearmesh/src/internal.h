@@ -426,6 +426,17 @@ typedef struct gmi_line {
     gmi_line_tangent *tangent; /* GMI_TANGENT */
 } gmi_line;
 
+/* The part of a line between two places: the parabola as seen from where it begins. */
+static inline gmi_line gmi_line_between(const gmi_line *line, double from, double to) {
+    gmi_line part = *line;
+    const double gone = from - line->from;
+    part.from = from;
+    part.to = to;
+    part.overlap += gone * (2.0 * line->half_slope + gone * line->curvature);
+    part.half_slope += gone * line->curvature;
+    return part;
+}
+
 /* Integrals over the part of a line where f > 0. */
 typedef struct gmi_line_sum {
     double sum;        /* of f (m) */
@@ -647,9 +658,93 @@ static inline void gmi_law_force_of_flow(const gmi_law *law, const gmi_side_sum 
 /* Net sum of overlaps that carries a torque at rest (m). */
 double gmi_law_sum_of_torque(const gmi_law *law, double torque, double base_radius);
 
+/* friction.c: from the force of a part of a line to what friction makes of it. */
+
+/* Places at which lines are cut into parts with a sliding speed each. */
+enum { GMI_FRICTION_CUTS = 7 };
+
+/* The friction of one mesh. */
+typedef struct gmi_friction {
+    int is_on;
+    int law;                        /* enum gm_friction_law */
+    double factor;                  /* mu of the constant law; else what of its law never changes */
+    double normal;                  /* normal force per transverse force, 1 / cos(beta_b) (1) */
+    double creep_squared;           /* v0^2 (m2/s2) */
+    double pitch_point;             /* rho_p there (m) */
+    double cuts[GMI_FRICTION_CUTS]; /* in rho_p, ascending; the pitch point in their middle (m) */
+} gmi_friction;
+
+gmi_friction gmi_friction_of(const gm_mesh_params *params, const gm_pair *pair,
+                             const gmi_engagement *at);
+
+/* Pitch point and cuts of the gears as they stand. */
+void gmi_friction_place(const gm_pair *pair, const gmi_engagement *at, gmi_friction *friction);
+
+/* What a solver knows, in the order of gm_gradient. */
+enum gmi_motion {
+    GMI_PINION_ANGLE,
+    GMI_WHEEL_ANGLE,
+    GMI_PINION_SPEED,
+    GMI_WHEEL_SPEED,
+    GMI_MOTIONS
+};
+
+/* A number and its derivatives. */
+typedef struct gmi_varying {
+    double value;
+    double by[GMI_MOTIONS];
+} gmi_varying;
+
+/* How the flanks of one side slide on each other. */
+typedef struct gmi_sliding {
+    const gmi_friction *friction;
+    double pinion_speed, wheel_speed; /* in the signs of ISO 21771 (rad/s) */
+    double wheel_sign;
+    double line_of_action; /* T (m) */
+    gmi_varying rolling;   /* sum of both speeds of rolling in the pitch point, v0 included (m/s) */
+} gmi_sliding;
+
+gmi_sliding gmi_sliding_find(const gmi_friction *friction, const gm_pair *pair,
+                             const gmi_engagement *at, const gm_position *position);
+
+/* The normal force of a part of a line, in the transverse section. */
+typedef struct gmi_part_force {
+    gmi_varying force;   /* (N) */
+    gmi_varying moment;  /* times mean rho_p (N m) */
+    gmi_varying contact; /* touching part (1) */
+    double force_t1;     /* times mean t1 (N) */
+} gmi_part_force;
+
+/* Friction on the wheel, in the sense in which the pinion's flank moves; on the pinion the other way. */
+typedef struct gmi_friction_sum {
+    gmi_varying force;  /* (N) */
+    gmi_varying moment; /* times rho_p (N m) */
+    double force_t1;    /* times t1 (N) */
+    double loss;        /* (W) */
+} gmi_friction_sum;
+
+/* Adds that of one part. */
+void gmi_friction_add(const gmi_sliding *sliding, const gmi_part_force *part,
+                      gmi_friction_sum *total);
+
+/* What of the law is the same all over a side, by the side's force. */
+void gmi_friction_finish(const gmi_sliding *sliding, const gmi_varying *force,
+                         gmi_friction_sum *total);
+
+/* penetration.c: the sum of a side, with its friction; with_derivatives: of both. */
+void gmi_side_sum_sliding(const gm_pair *pair, const gmi_engagement *at, const gmi_side *prepared,
+                          int side, const gm_position *position, int with_derivatives,
+                          const gmi_law *law, double approach_speed, const gmi_sliding *sliding,
+                          gmi_side_sum *total, gmi_friction_sum *friction);
+
 /* wrench.c: adds the forces of one side. */
 void gmi_wrench_add_side(const gm_pair *pair, const gmi_engagement *at, const gmi_side_force *force,
                          int side, gm_wrench *wrench);
+
+/* Adds the friction of one side. */
+void gmi_wrench_add_friction(const gm_pair *pair, const gmi_engagement *at,
+                             const gmi_friction_sum *friction, int side_of_teeth,
+                             gm_wrench *wrench);
 
 /* Its derivative where alpha_wt and the centre distance move, the forces being what they are. */
 void gmi_wrench_add_by_direction(const gm_pair *pair, const gmi_engagement *at,
@@ -677,8 +772,10 @@ struct gm_mesh {
     int is_posed;
     gmi_side side[2]; /* GM_DRIVE, GM_COAST */
     int model;        /* enum gm_model */
+    int is_special;   /* it has a cache, friction, or teeth that bend */
     gmi_law law;
     const struct gmi_elastic_mesh *elastic; /* NULL = constant stiffness */
+    gmi_friction friction;
     double contact_compliance; /* 1 / E* = sum of (1 - nu^2) / E of both gears (m2/N) */
     gm_cache *cache;           /* NULL = exact */
 };

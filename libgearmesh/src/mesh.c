@@ -41,12 +41,57 @@ void gm_mesh_params_default(gm_mesh_params *params) {
         .wheel_tooth_stiffness = NULL,
         .reference_torque = gmi_nan(),
         .stations = 17,
+        .friction_law = GM_FRICTION_CONSTANT,
+        .friction_coefficient = 0.0,
+        .friction_speed = 0.01,
+        .oil_viscosity = gmi_nan(),
+        .roughness = gmi_nan(),
     };
     *params = defaults;
 }
 
 static int is_stiffness(double value) {
     return value >= GMI_SMALLEST_STIFFNESS && value <= GMI_LARGEST_STIFFNESS;
+}
+
+static int is_within(double value, double from, double to) {
+    return value >= from && value <= to;
+}
+
+/* The field of the friction that is at fault, or NULL. */
+static const char *friction_at_fault(const gm_mesh_params *params, const char **wanted) {
+    const int law = params->friction_law;
+    if (law != GM_FRICTION_CONSTANT && law != GM_FRICTION_ISO14179 &&
+        law != GM_FRICTION_BENEDICT_KELLEY) {
+        *wanted = "GM_FRICTION_CONSTANT, GM_FRICTION_ISO14179 or GM_FRICTION_BENEDICT_KELLEY";
+        return "friction_law";
+    }
+    if (!is_within(params->friction_coefficient, 0.0, 1.0)) {
+        *wanted = "a coefficient from 0 to 1";
+        return "friction_coefficient";
+    }
+    if (params->law == GM_LAW_ELASTIC && law == GM_FRICTION_CONSTANT &&
+        params->friction_coefficient > 0.0) {
+        *wanted = "0 with GM_LAW_ELASTIC, which has no friction";
+        return "friction_coefficient";
+    }
+    if (params->law == GM_LAW_ELASTIC && law != GM_FRICTION_CONSTANT) {
+        *wanted = "GM_FRICTION_CONSTANT with GM_LAW_ELASTIC, which has no friction";
+        return "friction_law";
+    }
+    if (!is_within(params->friction_speed, 1e-9, 1e3)) {
+        *wanted = "a speed from 1e-9 to 1e3 m/s";
+        return "friction_speed";
+    }
+    if (law != GM_FRICTION_CONSTANT && !is_within(params->oil_viscosity, 1e-6, 1e6)) {
+        *wanted = "a viscosity from 1e-6 to 1e6 Pa s";
+        return "oil_viscosity";
+    }
+    if (law == GM_FRICTION_ISO14179 && !is_within(params->roughness, 1e-9, 1e-3)) {
+        *wanted = "a roughness from 1e-9 to 1e-3 m";
+        return "roughness";
+    }
+    return NULL;
 }
 
 /* The first field at fault, in the order of the struct; NULL if all is well. */
@@ -77,7 +122,8 @@ static const char *field_at_fault(const gm_mesh_params *params, const char **wan
         *wanted = stiffness;
         return "simple_stiffness";
     }
-    return gmi_elastic_field_at_fault(params, wanted);
+    const char *at_fault = gmi_elastic_field_at_fault(params, wanted);
+    return at_fault != NULL ? at_fault : friction_at_fault(params, wanted);
 }
 
 int gm_mesh_params_check(const gm_mesh_params *params, const char **field,
@@ -187,6 +233,8 @@ int gm_mesh_init(gm_mesh **mesh, const gm_mesh_params *params, const gm_pair *pa
                                    params->pinion_youngs_modulus +
                                (1.0 - params->wheel_poisson_ratio * params->wheel_poisson_ratio) /
                                    params->wheel_youngs_modulus;
+    made->friction = gmi_friction_of(params, own_pair, &engagement);
+    made->is_special = made->friction.is_on || made->elastic != NULL;
     made->is_posed = engagement.offset_shift != 0.0 || engagement.phase_shift != 0.0;
     if (params->model == GM_MODEL_SIMPLE) {
         pinion_flanks = wheel_flanks = NULL;
@@ -291,6 +339,7 @@ int gm_mesh_use_cache(gm_mesh *mesh, gm_cache *cache) {
         return GM_ERR_PARAMETER;
     }
     mesh->cache = cache;
+    mesh->is_special = cache != NULL || mesh->friction.is_on || mesh->elastic != NULL;
     return GM_OK;
 }
 
@@ -307,7 +356,7 @@ static inline void set_gradients_nan(gm_mesh_result *result) {
 void gmi_mesh_result_set_nan(gm_mesh_result *result) {
     const double nan = gmi_nan();
     result->force = result->drive_force = result->coast_force = nan;
-    result->pinion_torque = result->wheel_torque = nan;
+    result->pinion_torque = result->wheel_torque = result->loss = nan;
     set_gradients_nan(result);
     result->contact = gmi_penetration_nan();
     gmi_wrench_set(&result->wrench, nan);
@@ -352,24 +401,58 @@ static inline void set_force_derivatives(const gm_pair *pair, const gmi_side_for
 static const gmi_side_sum no_contact = {.sum = 0.0};
 static const gmi_side_force no_force = {.force = 0.0};
 
-/* What a user sees of the forces of both sides; NaN in place of what was not asked for. */
+static void add_to_gradient(const double by[GMI_MOTIONS], double factor, gm_gradient *gradient) {
+    gradient->pinion_angle += factor * by[GMI_PINION_ANGLE];
+    gradient->wheel_angle += factor * by[GMI_WHEEL_ANGLE];
+    gradient->pinion_speed += factor * by[GMI_PINION_SPEED];
+    gradient->wheel_speed += factor * by[GMI_WHEEL_SPEED];
+}
+
+/* The friction of one side acts on the pinion at rho_p, on the wheel at rho_w = T - rho_p. */
+static void add_friction(const gm_mesh *mesh, const gmi_friction_sum *friction, int wanted,
+                         gm_mesh_result *result) {
+    const gmi_varying *force = &friction->force, *moment = &friction->moment;
+    const double sign = mesh->pair->wheel.sign;
+    const double length = sign * mesh->engagement.line_of_action;
+    result->pinion_torque += moment->value;
+    result->wheel_torque += length * force->value - sign * moment->value;
+    result->loss += friction->loss;
+    if (wanted & GM_WANT_DERIVATIVES) {
+        add_to_gradient(moment->by, 1.0, &result->pinion_torque_by);
+        add_to_gradient(moment->by, -sign, &result->wheel_torque_by);
+        add_to_gradient(force->by, length, &result->wheel_torque_by);
+    }
+}
+
+/* What a user sees of the forces of both sides, and of their friction, [side] or NULL; NaN in place of what was not asked
+ * for. */
 SPECIALIZED void set_forces(const gm_mesh *mesh, const gmi_side_force *drive_force,
-                            const gmi_side_force *coast_force, int wanted, gm_mesh_result *result) {
+                            const gmi_side_force *coast_force, const gmi_friction_sum *friction,
+                            int wanted, gm_mesh_result *result) {
     result->drive_force = drive_force->force;
     result->coast_force = coast_force->force;
     result->force = drive_force->force - coast_force->force;
     result->pinion_torque = result->force * mesh->pair->pinion.base_radius;
     result->wheel_torque = result->force * mesh->pair->wheel.base_radius;
+    result->loss = 0.0;
 
     if (wanted & GM_WANT_DERIVATIVES) {
         set_force_derivatives(mesh->pair, drive_force, coast_force, result);
     } else {
         set_gradients_nan(result);
     }
+    if (friction != NULL) {
+        add_friction(mesh, &friction[GM_DRIVE], wanted, result);
+        add_friction(mesh, &friction[GM_COAST], wanted, result);
+    }
     if (wanted & GM_WANT_WRENCH) {
         gmi_wrench_set(&result->wrench, 0.0);
         gmi_wrench_add_side(mesh->pair, &mesh->engagement, drive_force, GM_DRIVE, &result->wrench);
         gmi_wrench_add_side(mesh->pair, &mesh->engagement, coast_force, GM_COAST, &result->wrench);
+        for (int side = GM_DRIVE; side <= GM_COAST && friction != NULL; ++side) {
+            gmi_wrench_add_friction(mesh->pair, &mesh->engagement, &friction[side], side,
+                                    &result->wrench);
+        }
         if (mesh->engagement.axis_direction != 0.0) {
             gmi_wrench_turn(&result->wrench, mesh->engagement.axis_direction);
         }
@@ -378,10 +461,10 @@ SPECIALIZED void set_forces(const gm_mesh *mesh, const gmi_side_force *drive_for
     }
 }
 
-/* All that a user sees, from the sums of both sides. */
+/* All that a user sees, from the sums of both sides; friction: [side], or NULL. */
 SPECIALIZED void set_result(const gm_mesh *mesh, const gmi_side_sum *drive,
-                            const gmi_side_sum *coast, const double approach[2], int wanted,
-                            gm_mesh_result *result) {
+                            const gmi_side_sum *coast, const gmi_friction_sum *friction,
+                            const double approach[2], int wanted, gm_mesh_result *result) {
     const int is_moving = approach[GM_DRIVE] != 0.0 || approach[GM_COAST] != 0.0;
     const int mask = accumulated(mesh, is_moving, wanted);
     gmi_penetration_set(mesh->pair, drive, coast, approach, mask, &result->contact);
@@ -397,7 +480,7 @@ SPECIALIZED void set_result(const gm_mesh *mesh, const gmi_side_sum *drive,
         coast_force = &forces[GM_COAST];
     }
 
-    set_forces(mesh, drive_force, coast_force, wanted, result);
+    set_forces(mesh, drive_force, coast_force, friction, wanted, result);
 }
 
 /* The sum of a side, by a mask of enum gmi_wanted: written to `memory`, or that of no contact. */
@@ -426,7 +509,7 @@ SPECIALIZED void evaluate(const gm_mesh *mesh, const gm_position *position, int 
 
     /* The coast flanks approach each other while x falls. */
     const double approach[2] = {position->offset_rate, -position->offset_rate};
-    set_result(mesh, drive, coast, approach, wanted, result);
+    set_result(mesh, drive, coast, NULL, approach, wanted, result);
 }
 
 /*
@@ -457,7 +540,7 @@ static int evaluate_elastic(const gm_mesh *mesh, const gm_position *position, in
         }
     }
     const double approach[2] = {position->offset_rate, -position->offset_rate};
-    set_result(mesh, &sums[GM_DRIVE], &sums[GM_COAST], approach, wanted, result);
+    set_result(mesh, &sums[GM_DRIVE], &sums[GM_COAST], NULL, approach, wanted, result);
     add_roll(mesh, &sums[GM_DRIVE], &sums[GM_COAST], wanted, result);
     return GM_OK;
 }
@@ -467,12 +550,52 @@ static inline int is_elastic(const gm_mesh *mesh) {
     return mesh->elastic != NULL && mesh->model != GM_MODEL_SIMPLE;
 }
 
+/* Apart from what calls it for other meshes. */
+static OWN_STACK void evaluate_any(const gm_mesh *mesh, const gm_position *position, int wanted,
+                                   gm_mesh_result *result) {
+    evaluate(mesh, position, wanted, result);
+}
+
+/* With friction, which needs the moments of the force; and their derivatives, where those are wanted. */
+static OWN_STACK void evaluate_sliding(const gm_mesh *mesh, const gm_position *position,
+                                       const double approach[2], int wanted,
+                                       gm_mesh_result *result) {
+    const gmi_sliding sliding =
+        gmi_sliding_find(&mesh->friction, mesh->pair, &mesh->engagement, position);
+    const gmi_friction_sum none = {.loss = 0.0};
+    gmi_side_sum memory[2];
+    gmi_friction_sum friction[2];
+    const gmi_side_sum *sums[2];
+    for (int side = GM_DRIVE; side <= GM_COAST; ++side) {
+        const gmi_side *prepared = &mesh->side[side];
+        sums[side] = &no_contact;
+        friction[side] = none;
+        if (!gmi_side_is_clear(&mesh->engagement, prepared, side, position->offset)) {
+            gmi_side_sum_sliding(mesh->pair, &mesh->engagement, prepared, side, position,
+                                 (wanted & GM_WANT_DERIVATIVES) != 0, &mesh->law, approach[side],
+                                 &sliding, &memory[side], &friction[side]);
+            sums[side] = &memory[side];
+        }
+    }
+    set_result(mesh, sums[GM_DRIVE], sums[GM_COAST], friction, approach, wanted, result);
+}
+
+static void evaluate_rolling(const gm_mesh *mesh, const gm_position *position, int wanted,
+                             gm_mesh_result *result) {
+    const double approach[2] = {position->offset_rate, -position->offset_rate};
+    evaluate_sliding(mesh, position, approach, wanted, result);
+}
+
 int gmi_mesh_evaluate_exact(const gm_mesh *mesh, const gm_position *position, int wanted,
                             gm_workspace *workspace, gm_mesh_result *result) {
     if (is_elastic(mesh)) {
         return evaluate_elastic(mesh, position, wanted, workspace, result);
     }
-    evaluate(mesh, position, wanted, result);
+    if (mesh->friction.is_on) {
+        evaluate_rolling(mesh, position, wanted, result);
+    } else {
+        evaluate_any(mesh, position, wanted, result);
+    }
     return GM_OK;
 }
 
@@ -501,8 +624,15 @@ static int evaluate_cached(const gm_mesh *mesh, const gm_position *position, int
         return status;
     }
     const double approach[2] = {position->offset_rate, -position->offset_rate};
-    set_result(mesh, &sums[GM_DRIVE], &sums[GM_COAST], approach, wanted, result);
+    set_result(mesh, &sums[GM_DRIVE], &sums[GM_COAST], NULL, approach, wanted, result);
     return GM_OK;
+}
+
+static int check_speed(double speed) {
+    if (fabs(speed) <= GMI_LARGEST_SPEED) {
+        return GM_OK;
+    }
+    return gmi_is_finite(speed) ? GM_STATE_OUT_OF_RANGE : GM_STATE_NOT_FINITE;
 }
 
 static inline int check_evaluation(const gm_mesh *mesh, const gm_position *position, int wanted,
@@ -519,6 +649,14 @@ static inline int check_evaluation(const gm_mesh *mesh, const gm_position *posit
                : gmi_check_position(mesh->pair, position);
 }
 
+/* With friction, or a cache, or teeth that bend. */
+static int evaluate_special(const gm_mesh *mesh, const gm_position *position, int wanted,
+                            gm_workspace *workspace, gm_mesh_result *result) {
+    return mesh->cache != NULL && !mesh->friction.is_on
+               ? evaluate_cached(mesh, position, wanted, workspace, result)
+               : gmi_mesh_evaluate_exact(mesh, position, wanted, workspace, result);
+}
+
 int gm_mesh_evaluate_at(const gm_mesh *mesh, const gm_position *position, int wanted,
                         gm_workspace *workspace, gm_mesh_result *result) {
     if (result == NULL) {
@@ -529,18 +667,18 @@ int gm_mesh_evaluate_at(const gm_mesh *mesh, const gm_position *position, int wa
         posed = gmi_mesh_posed(mesh, position);
         position = &posed;
     }
-    const int status = check_evaluation(mesh, position, wanted, workspace);
+    int status = check_evaluation(mesh, position, wanted, workspace);
+    if (status == GM_OK && mesh->friction.is_on) {
+        status = check_speed(position->pinion_speed);
+    }
     if (status != GM_OK) {
         gmi_mesh_result_set_nan(result);
         return status;
     }
 
     /* Most calls want the force alone: a copy for them leaves all else out. */
-    if (mesh->cache != NULL) {
-        return evaluate_cached(mesh, position, wanted, workspace, result);
-    }
-    if (is_elastic(mesh)) {
-        return evaluate_elastic(mesh, position, wanted, workspace, result);
+    if (mesh->is_special) {
+        return evaluate_special(mesh, position, wanted, workspace, result);
     }
     if (wanted == GM_WANT_FORCE) {
         evaluate(mesh, position, GM_WANT_FORCE, result);
@@ -584,6 +722,7 @@ static int move_mesh(const gm_mesh *mesh, const gm_pose *pose, gm_mesh *moved) {
     const gm_pose both = both_poses(&mesh->pose, pose);
     *moved = *mesh;
     moved->cache = NULL;
+    moved->is_special = mesh->friction.is_on || mesh->elastic != NULL;
     const int status = gmi_engagement_find(mesh->pair, &both, &moved->engagement);
     if (status != GM_OK) {
         return status;
@@ -594,6 +733,7 @@ static int move_mesh(const gm_mesh *mesh, const gm_pose *pose, gm_mesh *moved) {
     if (mesh->side[GM_DRIVE].wheel != NULL) {
         gmi_engagement_keep_tables(mesh->pair, GM_WHEEL, &moved->engagement);
     }
+    gmi_friction_place(mesh->pair, &moved->engagement, &moved->friction);
     moved->is_posed = moved->engagement.offset_shift != 0.0 || moved->engagement.phase_shift != 0.0;
     for (int side = GM_DRIVE; side <= GM_COAST; ++side) {
         gmi_side_move(&moved->side[side], mesh->pair, &moved->engagement, side);
@@ -622,7 +762,11 @@ static int evaluate_moving(const gm_mesh *mesh, const gm_position *position,
         approach[side] =
             gmi_rates_mean_approach(&rates[side], mesh->pair, &mesh->engagement, side, &sums[side]);
     }
-    set_result(mesh, &sums[GM_DRIVE], &sums[GM_COAST], approach, wanted, result);
+    if (mesh->friction.is_on) {
+        evaluate_sliding(mesh, position, approach, wanted, result);
+        return GM_OK;
+    }
+    set_result(mesh, &sums[GM_DRIVE], &sums[GM_COAST], NULL, approach, wanted, result);
     if (is_elastic(mesh)) {
         add_roll(mesh, &sums[GM_DRIVE], &sums[GM_COAST], wanted, result);
     }
@@ -648,7 +792,7 @@ static OWN_STACK void evaluate_tilting(const gm_mesh *mesh, const gm_position *p
     }
     gmi_penetration_set(mesh->pair, &sums[GM_DRIVE], &sums[GM_COAST], approach,
                         accumulated(mesh, 1, wanted), &result->contact);
-    set_forces(mesh, &forces[GM_DRIVE], &forces[GM_COAST], wanted, result);
+    set_forces(mesh, &forces[GM_DRIVE], &forces[GM_COAST], NULL, wanted, result);
 }
 
 static int is_finite_pose(const gm_pose *pose) {
@@ -704,7 +848,7 @@ static OWN_STACK int evaluate_posed(const gm_mesh *mesh, const gm_motion *motion
         return gmi_mesh_evaluate_exact(&moved, &position, wanted, workspace, result);
     }
     const int is_tilting = rates[GM_DRIVE].along != 0.0 || rates[GM_DRIVE].across != 0.0;
-    if (is_tilting && !is_elastic(mesh)) {
+    if (is_tilting && !is_elastic(mesh) && !mesh->friction.is_on) {
         evaluate_tilting(&moved, &position, rates, wanted, result);
         return GM_OK;
     }

@@ -81,6 +81,16 @@ typedef struct side_view {
     gmi_tilted_line tilted;
     double wheel_reach;        /* rho_w - start of the wheel's flank = wheel_reach - rho_p (m) */
     gmi_side_tangent *tangent; /* GMI_TANGENT */
+
+    /* GMI_TANGENT: */
+    const gmi_rates *rates;
+    gmi_line_tangent *line_tangent; /* of the line at hand */
+
+    /* Where flanks slide: */
+    const gmi_law *law;
+    const gmi_sliding *sliding;
+    double approach_speed; /* of the flanks (m/s) */
+    gmi_friction_sum *friction;
 } side_view;
 
 /*
@@ -194,6 +204,16 @@ static int tilt_line(side_view *view, double rho_origin, gmi_line *line) {
     return 1;
 }
 
+static inline void integrate(const gmi_side *prepared, const gmi_line *line, int wanted,
+                             gmi_line_sum *sum) {
+    if (prepared->ramps > 0) {
+        gmi_ramps_integrate(line, &prepared->pinion_grid, &prepared->wheel_grid, prepared->pinion,
+                            prepared->wheel, wanted, sum);
+    } else {
+        gmi_line_integrate(line, &prepared->pinion_grid, &prepared->wheel_grid, wanted, sum);
+    }
+}
+
 /* ---------------------------------------------------------------------------------------------
  * How a side moves with all its coordinates
  * ------------------------------------------------------------------------------------------- */
@@ -201,10 +221,10 @@ static int tilt_line(side_view *view, double rho_origin, gmi_line *line) {
 /* What is known of a line's tangent before it is followed. */
 static void begin_tangent(const side_view *view, double rho_origin) {
     const gmi_side *prepared = view->prepared;
-    gmi_line_tangent *line = &view->tangent->line;
+    gmi_line_tangent *line = view->line_tangent;
     memset(line, 0, sizeof *line);
-    gmi_tilt_tangent(view->pair, view->at, view->side, rho_origin, view->lines.delta,
-                     &view->tangent->rates, line);
+    gmi_tilt_tangent(view->pair, view->at, view->side, rho_origin, view->lines.delta, view->rates,
+                     line);
     line->pinion_per_rho = prepared->pinion_grid.per_rho;
     line->wheel_per_rho = prepared->wheel_grid.per_rho;
     line->face_per_length = prepared->wheel_grid.face_rate / view->pair->face_width;
@@ -289,8 +309,134 @@ static void set_simple_tangent(const gm_pair *pair, const gmi_engagement *at,
     tangent->flow_by[GMI_BY_LENGTH][GMI_BY_RHO] = speed * by_length;
 }
 
-static void add_line(side_view *view, const gmi_flank *pinion, const gmi_flank *wheel, int k,
-                     int wanted, gmi_side_sum *side) {
+/* ---------------------------------------------------------------------------------------------
+ * Lines with friction: in parts
+ * ------------------------------------------------------------------------------------------- */
+
+/* From derivatives by line origin, delta and speed of approach to those by what a solver knows. */
+static gmi_varying varying(const side_view *view, double value, double by_origin, double by_delta,
+                           double by_speed) {
+    const double sign = gmi_side_sign(view->side);
+    const double r_bp = sign * view->pair->pinion.base_radius;
+    const double r_bw = sign * view->pair->wheel.base_radius;
+    const gmi_varying result = {
+        value,
+        {r_bp * (by_delta + by_origin), -r_bw * by_delta, r_bp * by_speed, -r_bw * by_speed}};
+    return result;
+}
+
+/* What the masks of both evaluations mean to the law. */
+enum { SLIDING_SUM = GMI_MOMENTS, SLIDING_ALL = GMI_MOMENTS | GMI_TANGENT };
+static int law_mask(int wanted) {
+    return wanted & GMI_TANGENT ? GMI_MOMENTS | GMI_DERIVATIVES | GMI_CONTACT_DERIVATIVES
+                                : GMI_MOMENTS;
+}
+
+/* Hands the normal force of a part on to friction. */
+static OWN_STACK void add_friction(const side_view *view, double rho_origin, int wanted,
+                                   const gmi_side_sum *part) {
+    gmi_side_force force, of_moment = {.force = 0.0};
+    gmi_law_force(view->law, part, view->approach_speed, law_mask(wanted), &force);
+    if (wanted & GMI_TANGENT) {
+        /* rho_p = origin + advance t1 */
+        const gmi_line_tangent *line = view->line_tangent;
+        const double advance = view->lines.advance;
+        const double(*sum)[2] = line->sum_by, (*contact)[2] = line->flow_by;
+        const int o = GMI_BY_ORIGIN, d = GMI_BY_DELTA;
+        const gmi_side_sum moment = {
+            .sum = part->sum_rho,
+            .contact = part->contact_rho,
+            .by_origin = part->sum + rho_origin * sum[o][0] + advance * sum[o][1],
+            .by_delta = rho_origin * sum[d][0] + advance * sum[d][1],
+            .contact_by_origin =
+                part->contact + rho_origin * contact[o][0] + advance * contact[o][1],
+            .contact_by_delta = rho_origin * contact[d][0] + advance * contact[d][1]};
+        gmi_law_force(view->law, &moment, view->approach_speed, law_mask(wanted), &of_moment);
+    }
+
+    const gmi_part_force part_force = {
+        .force = varying(view, force.force, force.by_origin, force.by_delta, force.by_speed),
+        .moment = varying(view, force.force_rho, of_moment.by_origin, of_moment.by_delta,
+                          of_moment.by_speed),
+        .contact =
+            varying(view, part->contact, part->contact_by_origin, part->contact_by_delta, 0.0),
+        .force_t1 = force.force_t1};
+    gmi_friction_add(view->sliding, &part_force, view->friction);
+}
+
+static void add_sum(const gmi_side_sum *part, gmi_side_sum *side) {
+    side->sum += part->sum;
+    side->contact += part->contact;
+    side->by_origin += part->by_origin;
+    side->by_delta += part->by_delta;
+    side->contact_by_origin += part->contact_by_origin;
+    side->contact_by_delta += part->contact_by_delta;
+    side->sum_t1 += part->sum_t1;
+    side->sum_rho += part->sum_rho;
+    side->contact_t1 += part->contact_t1;
+    side->contact_rho += part->contact_rho;
+}
+
+/* The first place behind `from` at which a line is cut for friction, or `to`. */
+static double next_cut(const side_view *view, double rho_origin, double from, double to) {
+    double next = to;
+    for (int k = 0; k < GMI_FRICTION_CUTS; ++k) {
+        const double cut = (view->sliding->friction->cuts[k] - rho_origin) / view->lines.advance;
+        if (cut > from && cut < next) { /* not for spur gears: infinite */
+            next = cut;
+        }
+    }
+    return next;
+}
+
+/* A line from cut to cut. A cut stays where it is while the line moves: what one part loses there the next one gains. */
+static void add_line_in_parts(side_view *view, const gmi_line *line, double rho_origin, int wanted,
+                              gmi_side_sum *side) {
+    const gmi_side *prepared = view->prepared;
+    const gmi_line_part *whole = &view->tilted_part;
+    const double cut_by[GMI_COORDINATES] = {[GMI_BY_ORIGIN] = -view->ends.per_advance};
+    int touches = 0;
+    double to;
+    if (wanted & GMI_TANGENT && !prepared->is_tilted) {
+        gmi_tilt_clip(view->pair, view->at, view->side, rho_origin, view->lines.delta, 0,
+                      &view->tilted_part);
+    }
+    for (double from = line->from; from < line->to; from = to) {
+        to = next_cut(view, rho_origin, from, line->to);
+        gmi_line part = gmi_line_between(line, from, to);
+        if (wanted & GMI_TANGENT) {
+            begin_tangent(view, rho_origin);
+            part.tangent = view->line_tangent;
+        }
+        gmi_line_sum sum;
+        integrate(prepared, &part, wanted, &sum);
+
+        gmi_side_sum of_part = gmi_no_contact();
+        of_part.sum = sum.sum;
+        of_part.contact = sum.contact;
+        add_moments(&view->lines, rho_origin, &sum, &of_part);
+        if (wanted & GMI_TANGENT) {
+            gmi_line_tangent *tangent = view->line_tangent;
+            add_end(tangent, 1.0, to, sum.at_to, to < line->to ? cut_by : whole->to_by);
+            add_end(tangent, -1.0, from, sum.at_from, from > line->from ? cut_by : whole->from_by);
+            of_part.by_origin = tangent->sum_by[GMI_BY_ORIGIN][0];
+            of_part.by_delta = tangent->sum_by[GMI_BY_DELTA][0];
+            of_part.contact_by_origin = tangent->flow_by[GMI_BY_ORIGIN][0];
+            of_part.contact_by_delta = tangent->flow_by[GMI_BY_DELTA][0];
+        }
+        add_friction(view, rho_origin, wanted, &of_part);
+        add_sum(&of_part, side);
+        touches = touches || sum.contact > 0.0;
+    }
+    side->pairs += touches;
+}
+
+/* ---------------------------------------------------------------------------------------------
+ * All lines of a side
+ * ------------------------------------------------------------------------------------------- */
+
+SPECIALIZED void add_line(side_view *view, const gmi_flank *pinion, const gmi_flank *wheel, int k,
+                          int wanted, int slides, gmi_side_sum *side) {
     const gmi_interval part = gmi_line_clip(&view->ends, k);
     const gmi_side *prepared = view->prepared;
     const int is_tilted = prepared->is_tilted;
@@ -317,18 +463,18 @@ static void add_line(side_view *view, const gmi_flank *pinion, const gmi_flank *
         return;
     }
 
+    if (slides) {
+        add_line_in_parts(view, &line, rho_origin, wanted, side);
+        return;
+    }
+
     if (wanted & GMI_TANGENT) {
         begin_tangent(view, rho_origin);
-        line.tangent = &view->tangent->line;
+        line.tangent = view->line_tangent;
     }
 
     gmi_line_sum sum;
-    if (prepared->ramps > 0) {
-        gmi_ramps_integrate(&line, &prepared->pinion_grid, &prepared->wheel_grid, prepared->pinion,
-                            prepared->wheel, wanted, &sum);
-    } else {
-        gmi_line_integrate(&line, &prepared->pinion_grid, &prepared->wheel_grid, wanted, &sum);
-    }
+    integrate(prepared, &line, wanted, &sum);
 
     /* What it adds to the side. */
     side->sum += sum.sum;
@@ -366,37 +512,74 @@ static int next_tooth(int tooth, int step, int teeth) {
     return next < 0 ? teeth - 1 : next == teeth ? 0 : next;
 }
 
+/* slides: with friction; a constant at each call. view: with what is said of it there. */
+SPECIALIZED void follow_lines(const gm_pair *pair, const gmi_engagement *at,
+                              const gmi_side *prepared, int side, const gm_position *position,
+                              int wanted, int slides, side_view *view, gmi_side_sum *total) {
+    view->pair = pair;
+    view->at = at;
+    view->side = side;
+    view->prepared = prepared;
+    gmi_lines_find(pair, at, side, position, &view->lines);
+    view->ends = gmi_line_ends_find(pair, at, &view->lines);
+    if (prepared->is_tilted) {
+        /* That may bring a line in that is just outside, and its ends are not those of parallel axes. */
+        --view->lines.first;
+        ++view->lines.last;
+        view->ends.face_from = HUGE_VAL;
+        view->ends.face_to = -HUGE_VAL;
+    }
+    view->wheel_reach = at->line_of_action + view->lines.delta - at->wheel_profile_start;
+
+    /* Line by line, each with the teeth that meet on it; those that cannot reach each other are left out. */
+    gmi_teeth teeth = gmi_lines_teeth(pair, side, position, &view->lines);
+    for (int k = view->lines.first; k <= view->lines.last; ++k) {
+        const gmi_flank pinion = gmi_flank_of(prepared->pinion, teeth.pinion);
+        const gmi_flank wheel = gmi_flank_of(prepared->wheel, teeth.wheel);
+        if (view->lines.delta + pinion.peak + wheel.peak + prepared->tilt_bound > 0.0) {
+            add_line(view, &pinion, &wheel, k, wanted, slides, total);
+        }
+        teeth.pinion = next_tooth(teeth.pinion, teeth.step, pair->pinion.teeth);
+        teeth.wheel = next_tooth(teeth.wheel, teeth.step, pair->wheel.teeth);
+    }
+}
+
 static void sum_lines(const gm_pair *pair, const gmi_engagement *at, const gmi_side *prepared,
                       int side, const gm_position *position, int wanted, gmi_side_sum *total,
                       gmi_side_tangent *tangent) {
     side_view view;
     view.tangent = tangent;
-    view.pair = pair;
-    view.at = at;
-    view.side = side;
-    view.prepared = prepared;
-    gmi_lines_find(pair, at, side, position, &view.lines);
-    view.ends = gmi_line_ends_find(pair, at, &view.lines);
-    if (prepared->is_tilted) {
-        /* That may bring a line in that is just outside, and its ends are not those of parallel axes. */
-        --view.lines.first;
-        ++view.lines.last;
-        view.ends.face_from = HUGE_VAL;
-        view.ends.face_to = -HUGE_VAL;
+    if (tangent != NULL) {
+        view.rates = &tangent->rates;
+        view.line_tangent = &tangent->line;
     }
-    view.wheel_reach = at->line_of_action + view.lines.delta - at->wheel_profile_start;
+    follow_lines(pair, at, prepared, side, position, wanted, 0, &view, total);
+}
 
-    /* Line by line, each with the teeth that meet on it; those that cannot reach each other are left out. */
-    gmi_teeth teeth = gmi_lines_teeth(pair, side, position, &view.lines);
-    for (int k = view.lines.first; k <= view.lines.last; ++k) {
-        const gmi_flank pinion = gmi_flank_of(prepared->pinion, teeth.pinion);
-        const gmi_flank wheel = gmi_flank_of(prepared->wheel, teeth.wheel);
-        if (view.lines.delta + pinion.peak + wheel.peak + prepared->tilt_bound > 0.0) {
-            add_line(&view, &pinion, &wheel, k, wanted, total);
-        }
-        teeth.pinion = next_tooth(teeth.pinion, teeth.step, pair->pinion.teeth);
-        teeth.wheel = next_tooth(teeth.wheel, teeth.step, pair->wheel.teeth);
-    }
+void gmi_side_sum_sliding(const gm_pair *pair, const gmi_engagement *at, const gmi_side *prepared,
+                          int side, const gm_position *position, int with_derivatives,
+                          const gmi_law *law, double approach_speed, const gmi_sliding *sliding,
+                          gmi_side_sum *total, gmi_friction_sum *friction) {
+    const gmi_friction_sum none = {.loss = 0.0};
+    const int wanted = with_derivatives ? SLIDING_ALL : SLIDING_SUM;
+    const gmi_rates rates = {.delta = 1.0}; /* so that what flows is the touching part */
+    gmi_line_tangent tangent;
+    side_view view;
+    view.rates = &rates;
+    view.line_tangent = &tangent;
+    view.law = law;
+    view.sliding = sliding;
+    view.approach_speed = approach_speed;
+    view.friction = friction;
+    *total = gmi_no_contact();
+    *friction = none;
+    follow_lines(pair, at, prepared, side, position, wanted, 1, &view, total);
+
+    gmi_side_force force;
+    gmi_law_force(law, total, approach_speed, law_mask(wanted), &force);
+    const gmi_varying all =
+        varying(&view, force.force, force.by_origin, force.by_delta, force.by_speed);
+    gmi_friction_finish(sliding, &all, friction);
 }
 
 void gmi_side_sum_tables(const gm_pair *pair, const gmi_engagement *at, const gmi_side *prepared,

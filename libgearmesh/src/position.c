@@ -51,7 +51,7 @@ static int is_speed(double speed) {
 }
 
 static gm_position position_nan(void) {
-    const gm_position position = {0, 0, gmi_nan(), gmi_nan(), gmi_nan()};
+    const gm_position position = {0, 0, gmi_nan(), gmi_nan(), gmi_nan(), gmi_nan()};
     return position;
 }
 
@@ -121,6 +121,7 @@ int gm_position_from_state(const gm_pair *pair, const gm_state *state, gm_positi
     set_pinion(pair, pinion, position);
     position->offset = offset_from(pair, pinion, wheel);
     position->offset_rate = offset_rate_from(pair, state);
+    position->pinion_speed = state->pinion_speed;
     return finish(position);
 }
 
@@ -144,6 +145,7 @@ int gm_position_from_pinion_angle(const gm_pair *pair, double pinion_angle, doub
     set_pinion(pair, reduce_angle(&pair->pinion, pinion_angle), position);
     position->offset = offset;
     position->offset_rate = offset_rate;
+    position->pinion_speed = 0.0;
     return finish(position);
 }
 
@@ -165,5 +167,6 @@ int gmi_position_nearest(const gm_pair *pair, const gm_state *state, double shif
     position->wheel_tooth = tooth_after(pinion.turned - teeth, pair->wheel.teeth);
     position->offset = offset_from(pair, pinion, wheel);
     position->offset_rate = offset_rate_from(pair, state);
+    position->pinion_speed = state->pinion_speed;
     return finish(position);
 }

@@ -79,6 +79,34 @@ void gmi_wrench_add_by_turn(const gm_wrench *wrench, double turn_by, gm_wrench *
     }
 }
 
+/*
+ * Friction acts across the line of action, on the wheel as the pinion's flank moves there: friction * (-sign cos(alpha),
+ * sin(alpha), 0), at the same points.
+ */
+void gmi_wrench_add_friction(const gm_pair *pair, const gmi_engagement *at,
+                             const gmi_friction_sum *friction, int side_of_teeth,
+                             gm_wrench *wrench) {
+    const double sign = gmi_side_sign(side_of_teeth);
+    const double across[2] = {-sign * cos(at->working_pressure_angle),
+                              sin(at->working_pressure_angle)};
+    const double force = friction->force.value;
+    const double z_force = pair->face_start * force + pair->face_width * friction->force_t1;
+
+    /* About the pinion's axis the arm is rho_p, about the wheel's -rho_w. */
+    const double on_wheel[2] = {force * across[0], force * across[1]};
+    const double tilting[2] = {-z_force * across[1], z_force * across[0]};
+    const double about_pinion = friction->moment.value;
+    const double about_wheel = about_pinion - at->line_of_action * force;
+    for (int k = 0; k < 2; ++k) {
+        wrench->wheel_force[k] += on_wheel[k];
+        wrench->wheel_moment[k] += tilting[k];
+        wrench->pinion_force[k] -= on_wheel[k];
+        wrench->pinion_moment[k] -= tilting[k];
+    }
+    wrench->pinion_moment[2] -= about_pinion;
+    wrench->wheel_moment[2] += about_wheel;
+}
+
 /* The same vector, seen from axes that are turned back by the angle. */
 static void turn(double vector[3], double cosine, double sine) {
     const double x = vector[0];

@@ -609,8 +609,9 @@ typedef struct gm_position {
     int wheel_tooth;  /**< wheel tooth that its drive flank meets, 0 .. z_w - 1 */
     double
         phase; /**< r_bp times the angle of that pinion tooth, in [0, p_bt) up to a rounding (m) */
-    double offset;      /**< x = r_bp phi_p - r_bw phi_w, |x| < p_bt / 2 (m) */
-    double offset_rate; /**< dx/dt (m/s) */
+    double offset;       /**< x = r_bp phi_p - r_bw phi_w, |x| < p_bt / 2 (m) */
+    double offset_rate;  /**< dx/dt (m/s) */
+    double pinion_speed; /**< d phi_p / dt, which friction needs to know (rad/s) */
 } gm_position;
 
 /** Result of an evaluation. Net = drive - coast. */
@@ -645,7 +646,7 @@ GM_API int gm_position_from_state(const gm_pair *pair, const gm_state *state,
  * @param[in]  pinion_angle  phi_p (rad)
  * @param[in]  offset        x (m); any size here, but the 3D model takes |x| < p_bt / 2 only
  * @param[in]  offset_rate   dx/dt (m/s)
- * @param[out] position      the position
+ * @param[out] position      the position, with a pinion_speed of 0: set it where the mesh has friction
  * @return GM_OK, GM_ERR_NULL, GM_STATE_NOT_FINITE, GM_STATE_OUT_OF_RANGE
  */
 GM_API int gm_position_from_pinion_angle(const gm_pair *pair, double pinion_angle, double offset,
@@ -699,6 +700,17 @@ enum gm_law {
                               gm_iso6336_single_stiffness() */
     GM_LAW_ELASTIC = 2 /**< teeth that bend, share the load and flatten, from drawing and material:
                               docs/elastic.md */
+};
+
+/** Coefficient of friction mu of flanks that slide on each other. */
+enum gm_friction_law {
+    GM_FRICTION_CONSTANT = 0, /**< friction_coefficient */
+    GM_FRICTION_ISO14179 =
+        1, /**< mean over the mesh, of Schlenk [ISO14179]: 0.048 (F/b / (v_sum rho_red))^0.2 eta^-0.05 Ra^0.25, mineral
+                oil; N/mm, m/s, mm, mPa s, um; v_sum and rho_red in the pitch point */
+    GM_FRICTION_BENEDICT_KELLEY =
+        2 /**< by place [BenedictKelley]: 0.0127 lg(29.66 (F/b) / (eta |v| v_sum^2)), N/mm, mPa s, m/s, |v| taken as
+               sqrt(v^2 + v0^2) */
 };
 
 /* ISO 6336-1, method B: stiffness of steel teeth from the gear data. What a constant stiffness of a pair of teeth cannot
@@ -784,6 +796,16 @@ typedef struct gm_mesh_params {
         reference_torque; /**< load on the wheel, > 0 N m, at which the stiffness is taken that eigenfrequency and damping
                                        go by [NaN: 100 N per mm of face] */
     int stations; /**< along the face, 2 .. 97; docs/elastic.md has the error of each number [17] */
+
+    /* Friction, of the 3D model. At a sliding speed v its coefficient is mu v / sqrt(v^2 + v0^2). */
+    int friction_law;            /**< enum gm_friction_law [GM_FRICTION_CONSTANT] */
+    double friction_coefficient; /**< mu of GM_FRICTION_CONSTANT, 0 .. 1 [0: no friction] */
+    double friction_speed;       /**< v0, 1e-9 .. 1e3 m/s [0.01] */
+    double
+        oil_viscosity; /**< dynamic viscosity eta at the temperature of the oil, 1e-6 .. 1e6 Pa s, required by
+                                      the other laws */
+    double
+        roughness; /**< Ra, mean of both gears, 1e-9 .. 1e-3 m, required by GM_FRICTION_ISO14179 */
 } gm_mesh_params;
 
 /**
@@ -940,9 +962,13 @@ typedef struct gm_mesh_result {
 
     double
         pinion_torque; /**< that the mesh takes from the pinion: I_p phi_p'' = M_p - pinion_torque; F r_bp
-                             unless the law says otherwise (N m) */
+                             without friction (N m) */
     double
         wheel_torque; /**< that it gives to the wheel: I_w phi_w'' = -M_w + wheel_torque; likewise (N m) */
+
+    double
+        loss; /**< power that friction takes, >= 0; pinion_torque times the pinion's speed is wheel_torque times the
+                      wheel's, F dx/dt, and this (W) */
 
     gm_gradient force_by;         /**< derivatives of F (N/rad, N s/rad) */
     gm_gradient pinion_torque_by; /**< of pinion_torque (N m/rad, N m s/rad) */
@@ -1039,7 +1065,7 @@ typedef struct gm_tangent {
  * @param[in]  mesh     the mesh; of constant stiffness, or that of ISO 6336-1
  * @param[in]  motion   where the gears are and how they move
  * @param[out] tangent  all of it; NaN on an error
- * @return as gm_mesh_evaluate_posed(); GM_ERR_PARAMETER for elastic teeth, whose derivatives by both angles
+ * @return as gm_mesh_evaluate_posed(); GM_ERR_PARAMETER with friction, and for elastic teeth, whose derivatives by both angles
  *         gm_mesh_evaluate() has
  *
  * Accuracy: roundings. Cost: some six evaluations with tables; docs/performance.md. Source: docs/equations.md.
@@ -1131,6 +1157,24 @@ GM_API double gm_mesh_touching_stiffness(const gm_mesh *mesh, const gm_mesh_resu
 GM_API int gm_static_equilibrium(const gm_mesh *mesh, double pinion_angle, double wheel_torque,
                                  double guess, gm_workspace *workspace, double *offset,
                                  gm_mesh_result *result);
+
+/**
+ * As gm_static_equilibrium(), while the gears roll on each other at a speed: with friction, so that wheel_torque in result
+ * is the torque. Without friction the speed changes nothing.
+ *
+ * @param[in]     mesh          the mesh
+ * @param[in]     pinion_angle  phi_p (rad)
+ * @param[in]     pinion_speed  d phi_p / dt (rad/s)
+ * @param[in]     wheel_torque  load on the wheel (N m)
+ * @param[in]     guess         x to begin with, NaN = none (m)
+ * @param[in,out] workspace     as gm_mesh_evaluate()
+ * @param[out]    offset        x (m)
+ * @param[out]    result        there, with GM_WANT_DERIVATIVES; may be NULL
+ * @return as gm_static_equilibrium(), and GM_STATE_OUT_OF_RANGE for a speed beyond 1e9 rad/s
+ */
+GM_API int gm_rolling_equilibrium(const gm_mesh *mesh, double pinion_angle, double pinion_speed,
+                                  double wheel_torque, double guess, gm_workspace *workspace,
+                                  double *offset, gm_mesh_result *result);
 
 /** The load at one point of a line of contact. */
 typedef struct gm_line_load_point {
@@ -1255,7 +1299,7 @@ GM_API int gm_cache_fill(gm_cache *cache, int first_pass, int count, gm_workspac
  * sum reaches zero. The touching fraction is taken as the derivative by x, from which it differs by the
  * slope of the flanks (some um per mm); rates follow from it.
  *
- * Never extrapolates: beyond its depth, for teeth that the pair as assembled never brings together, and for
+ * A mesh with friction answers exactly, whatever its cache. Never extrapolates: beyond its depth, for teeth that the pair as assembled never brings together, and for
  * a phase outside [0, p_bt] the mesh evaluates exactly, and so it does for a wrench and for the numbers of pairs,
  * which are -1 where the cache answered. Where nothing touches, the sum is exactly 0.
  *

@@ -1,0 +1,223 @@
+/* SPDX-FileCopyrightText: The gearmesh authors */
+/* SPDX-License-Identifier: BSD-3-Clause */
+
+/*
+ * Friction of the flanks. Where they touch at rho_p they slide on each other by
+ *
+ *     v = omega_p rho_p - omega_w rho_w,     rho_w = T - rho_p      (in the signs of ISO 21771, a ring's below 0),
+ *
+ * which at constant x is (omega_p + omega_w) (rho_p - rho_C), zero in the pitch point C. Friction mu_r times the normal
+ * force acts across the line of action, with mu_r = mu v / sqrt(v^2 + v0^2): it turns round in the pitch point without a
+ * jump.
+ *
+ * Lines of contact are cut at fixed places, one of them the pitch point, and mu_r of a part is that at its mean sliding
+ * speed, weighted with the normal force. So the force of a part and its first moment say all: exact where mu_r is the same all along
+ * a part, that is for spur gears, and for v far above v0. The torques of a part act at its mean rho_p, and its loss is its
+ * friction times its mean sliding speed: power in is power out and loss, to rounding.
+ */
+#include "internal.h"
+
+#include <math.h>
+
+static const double per_ln_10 = 0.43429448190325182765;
+
+/* Of the formulas below, which take N/mm, mm, mPa s and um. */
+static const double milli = 1e3, micro = 1e6;
+
+/* ---------------------------------------------------------------------------------------------
+ * What never changes
+ * ------------------------------------------------------------------------------------------- */
+
+/* Mean coefficient of Schlenk [ISO14179]: 0.048 (F/b / (v_sum rho_red))^0.2 eta^-0.05 Ra^0.25, without F and v_sum. */
+static double schlenk_factor(const gm_mesh_params *params, const gm_pair *pair, double rho_p,
+                             double rho_w) {
+    const double reduced = rho_p * rho_w / (rho_p + rho_w) / cos(pair->base_helix_angle);
+    const double load = 1.0 / (milli * pair->face_width * milli * reduced);
+    return 0.048 * pow(load, 0.2) * pow(milli * params->oil_viscosity, -0.05) *
+           pow(micro * params->roughness, 0.25);
+}
+
+void gmi_friction_place(const gm_pair *pair, const gmi_engagement *at, gmi_friction *friction) {
+    /* Parts are twice as long from one to the next: as mu_r changes most next to the pitch point. */
+    const double shares[GMI_FRICTION_CUTS] = {-0.5, -0.25, -0.125, 0.0, 0.125, 0.25, 0.5};
+    const double pitch_point = pair->pinion.base_radius * tan(at->working_pressure_angle);
+    const double beyond = at->line_of_action - pitch_point;
+    const double reach =
+        fmax(pair->pinion.tip_roll_length - pitch_point, at->tip_roll_length[GM_WHEEL] - beyond);
+    friction->pitch_point = pitch_point;
+    for (int k = 0; k < GMI_FRICTION_CUTS; ++k) {
+        friction->cuts[k] = pitch_point + shares[k] * reach;
+    }
+}
+
+gmi_friction gmi_friction_of(const gm_mesh_params *params, const gm_pair *pair,
+                             const gmi_engagement *at) {
+    gmi_friction friction = {.is_on = 0};
+    const int is_constant = params->friction_law == GM_FRICTION_CONSTANT;
+    if (params->model == GM_MODEL_SIMPLE || (is_constant && params->friction_coefficient == 0.0)) {
+        return friction;
+    }
+
+    friction.is_on = 1;
+    friction.law = params->friction_law;
+    friction.normal = 1.0 / cos(pair->base_helix_angle);
+    friction.creep_squared = params->friction_speed * params->friction_speed;
+    gmi_friction_place(pair, at, &friction);
+    const double rho_p = friction.pitch_point;
+    switch (params->friction_law) {
+    case GM_FRICTION_ISO14179:
+        friction.factor = schlenk_factor(params, pair, rho_p, at->line_of_action - rho_p);
+        break;
+    case GM_FRICTION_BENEDICT_KELLEY:
+        friction.factor =
+            29.66 * friction.normal / (milli * pair->face_width * milli * params->oil_viscosity);
+        break;
+    default:
+        friction.factor = params->friction_coefficient;
+        break;
+    }
+
+    return friction;
+}
+
+/* ---------------------------------------------------------------------------------------------
+ * Sliding and rolling
+ * ------------------------------------------------------------------------------------------- */
+
+gmi_sliding gmi_sliding_find(const gmi_friction *friction, const gm_pair *pair,
+                             const gmi_engagement *at, const gm_position *position) {
+    gmi_sliding s = {.friction = friction};
+    s.pinion_speed = position->pinion_speed;
+    s.wheel_speed = (pair->pinion.base_radius * position->pinion_speed - position->offset_rate) /
+                    at->wheel_base_radius;
+    s.wheel_sign = pair->wheel.sign;
+    s.line_of_action = at->line_of_action;
+
+    /* In the pitch point; v0 keeps the coefficients finite at rest. */
+    const double rho_p = friction->pitch_point;
+    const double rho_w = at->line_of_action - rho_p;
+    const double sum = s.pinion_speed * rho_p + s.wheel_speed * rho_w;
+    s.rolling.value = sqrt(sum * sum + friction->creep_squared);
+    s.rolling.by[GMI_PINION_SPEED] = sum / s.rolling.value * rho_p;
+    s.rolling.by[GMI_WHEEL_SPEED] = sum / s.rolling.value * s.wheel_sign * rho_w;
+    return s;
+}
+
+/* Mean sliding speed of a part, at its mean rho_p. */
+static gmi_varying sliding_speed(const gmi_sliding *s, const gmi_part_force *part) {
+    const double rho_p = part->moment.value / part->force.value;
+    const double rho_w = s->line_of_action - rho_p;
+    gmi_varying speed = {.value = s->pinion_speed * rho_p - s->wheel_speed * rho_w};
+    for (int k = 0; k < GMI_MOTIONS; ++k) {
+        const double rho_by = (part->moment.by[k] - rho_p * part->force.by[k]) / part->force.value;
+        speed.by[k] = (s->pinion_speed + s->wheel_speed) * rho_by;
+    }
+    speed.by[GMI_PINION_SPEED] += rho_p;
+    speed.by[GMI_WHEEL_SPEED] -= s->wheel_sign * rho_w;
+    return speed;
+}
+
+/* ---------------------------------------------------------------------------------------------
+ * Coefficients
+ * ------------------------------------------------------------------------------------------- */
+
+/*
+ * [BenedictKelley]: 0.0127 lg(29.66 (F/b) / (eta |v| v_sum^2)) by the load of the part over its touching length, with
+ * sqrt(v^2 + v0^2) for |v|. Not below 0, where the formula does not hold.
+ */
+static gmi_varying benedict_kelley(const gmi_sliding *s, const gmi_part_force *part,
+                                   const gmi_varying *speed) {
+    const double squared = speed->value * speed->value + s->friction->creep_squared;
+    const double load = part->force.value / part->contact.value;
+    const double factor = 0.0127 * per_ln_10;
+    gmi_varying mu = {.value = factor * log(s->friction->factor * load /
+                                            (sqrt(squared) * s->rolling.value * s->rolling.value))};
+    if (!(mu.value > 0.0)) {
+        mu.value = 0.0;
+        return mu;
+    }
+    for (int k = 0; k < GMI_MOTIONS; ++k) {
+        mu.by[k] =
+            factor *
+            (part->force.by[k] / part->force.value - part->contact.by[k] / part->contact.value -
+             speed->value * speed->by[k] / squared - 2.0 * s->rolling.by[k] / s->rolling.value);
+    }
+    return mu;
+}
+
+/* What of mu depends on the part; the rest is the same all over the side. */
+static gmi_varying coefficient_of(const gmi_sliding *s, const gmi_part_force *part,
+                                  const gmi_varying *speed) {
+    if (s->friction->law == GM_FRICTION_BENEDICT_KELLEY) {
+        return benedict_kelley(s, part, speed);
+    }
+    const gmi_varying one = {1.0, {0.0, 0.0, 0.0, 0.0}};
+    return one;
+}
+
+/* And the rest. */
+static gmi_varying common_coefficient(const gmi_sliding *s, const gmi_varying *force) {
+    gmi_varying mu = {1.0, {0.0, 0.0, 0.0, 0.0}};
+    if (s->friction->law == GM_FRICTION_CONSTANT) {
+        mu.value = s->friction->factor;
+    } else if (s->friction->law == GM_FRICTION_ISO14179) {
+        mu.value = s->friction->factor * pow(force->value / s->rolling.value, 0.2);
+        for (int k = 0; k < GMI_MOTIONS; ++k) {
+            mu.by[k] = 0.2 * mu.value *
+                       (force->by[k] / force->value - s->rolling.by[k] / s->rolling.value);
+        }
+    }
+    return mu;
+}
+
+/* ---------------------------------------------------------------------------------------------
+ * Friction
+ * ------------------------------------------------------------------------------------------- */
+
+static void add_product(const gmi_varying *a, const gmi_varying *b, gmi_varying *sum) {
+    sum->value += a->value * b->value;
+    for (int k = 0; k < GMI_MOTIONS; ++k) {
+        sum->by[k] += a->value * b->by[k] + a->by[k] * b->value;
+    }
+}
+
+void gmi_friction_add(const gmi_sliding *sliding, const gmi_part_force *part,
+                      gmi_friction_sum *total) {
+    if (!(part->force.value > 0.0)) {
+        return;
+    }
+
+    /* mu_r / cos(beta_b) with its derivatives: v / sqrt(v^2 + v0^2) changes by v0^2 / sqrt(v^2 + v0^2)^3. */
+    const gmi_varying speed = sliding_speed(sliding, part);
+    const gmi_varying mu = coefficient_of(sliding, part, &speed);
+    const double creep_squared = sliding->friction->creep_squared;
+    const double squared = speed.value * speed.value + creep_squared;
+    const double per_root = 1.0 / sqrt(squared);
+    const double normal = sliding->friction->normal;
+    gmi_varying share = {.value = normal * mu.value * speed.value * per_root};
+    for (int k = 0; k < GMI_MOTIONS; ++k) {
+        share.by[k] = normal * per_root *
+                      (mu.value * creep_squared / squared * speed.by[k] + mu.by[k] * speed.value);
+    }
+
+    add_product(&share, &part->force, &total->force);
+    add_product(&share, &part->moment, &total->moment);
+    total->force_t1 += share.value * part->force_t1;
+    total->loss += share.value * part->force.value * speed.value;
+}
+
+void gmi_friction_finish(const gmi_sliding *sliding, const gmi_varying *force,
+                         gmi_friction_sum *total) {
+    const gmi_friction_sum parts = *total;
+    const gmi_friction_sum none = {.loss = 0.0};
+    *total = none;
+    if (!(force->value > 0.0)) { /* damping has taken the force of the side away */
+        return;
+    }
+
+    const gmi_varying mu = common_coefficient(sliding, force);
+    add_product(&mu, &parts.force, &total->force);
+    add_product(&mu, &parts.moment, &total->moment);
+    total->force_t1 = mu.value * parts.force_t1;
+    total->loss = mu.value * parts.loss;
+}
