@@ -17,12 +17,15 @@ set offsets 0, 0, graph 0.06, graph 0.06
 set autoscale fix
 set key at graph 1, graph 1 bottom right maxrows 1 samplen 2 font ',12'
 
+look = " lc rgb word(colours, i - first_curve + 1) title value(sprintf('label_%d', i)) noenhanced"
+
 do for [format in formats] {
     eval terminal(format, 'cases', 1400, 1000)
     set output picture . '.' . format
     set multiplot
     do for [k = 0:panels - 1] {
         first_curve = value(sprintf('first_%d', k))
+        lines_to = value(sprintf('lines_to_%d', k))
         last_curve = value(sprintf('last_%d', k))
         bounds = value(sprintf('bounds_%d', k))
         unset label
@@ -42,8 +45,10 @@ do for [format in formats] {
         set xlabel (k == panels - 1 ? xlabel_text : '') noenhanced
         if (k == panels - 1) { set format x '%g' } else { set format x '' }
         set ylabel value(sprintf('ylabel_%d', k)) noenhanced
-        plot for [i = first_curve:last_curve] data index i using 1:2 with lines lw 2.2 \
-            lc rgb word(colours, i - first_curve + 1) title value(sprintf('label_%d', i)) noenhanced
+        lines = "for [i = first_curve:lines_to] data index i using 1:2 with lines lw 2.2 " . look
+        points = lines_to == last_curve ? '' \
+            : ", for [i = lines_to + 1:last_curve] data index i using 1:2 with points pt 7 ps 1 " . look
+        eval 'plot ' . lines . points
     }
     unset multiplot
     unset output

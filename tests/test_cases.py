@@ -307,10 +307,20 @@ class Script(unittest.TestCase):
                 curves = set(re.findall(r'id="cases_plot_(\d+)a"', file.read()))
             self.assertEqual(curves, {"1", "2", "3"})
 
+    def test_elastic_teeth_are_shown_beside_finite_elements(self):
+        """Mean within 1 %, peak to peak within 3 %, as seen of a pair with solid bodies; both say so."""
+        result = self.cases("elastic", "--no-pictures")
+        self.assertEqual((result.returncode, result.stderr), (0, ""))
+        mean, own, elements = map(float, re.search(
+            r"62/62 teeth, 100 N/mm: mean ([-+.\d]+) %, peak to peak ([.\d]+) um, finite elements ([.\d]+) um",
+            result.stdout).groups())
+        self.assertLess(abs(mean), 1)
+        self.assertAlmostEqual(own, elements, delta=0.03 * elements)
+
     def test_wrong_use_is_refused(self):
         result = self.cases("clank")
         self.assertEqual(result.returncode, 2)
-        self.assertIn("clank: there is no such case, but rattle, clunk, nrel5mw, misaligned, cracked", result.stderr)
+        self.assertIn("clank: there is no such case, but rattle, clunk, nrel5mw, misaligned, elastic, cracked", result.stderr)
         self.assertEqual(self.cases("--help").returncode, 0)
 
 
