@@ -702,9 +702,8 @@ class Values(Case):
     def test_loads_of_a_static_analysis_fit_together(self):
         static = ["--set", "analysis.type=static", "--set", "analysis.loads=2"]
         self.refused("--set analysis.loads: ", "must be 1 without load.end_Nm (got 2)", arguments=static)
-        for end in ("-5", "0"):
-            self.refused("--set load.end_Nm: ", "must have the sign of load.mean_Nm",
-                         arguments=static + ["--set", f"load.end_Nm={end}"])
+        self.refused("--set load.mean_Nm: ", "must not be 0",
+                     arguments=static + ["--set", "load.mean_Nm=0", "--set", "load.end_Nm=0"])
         self.refused("--set analysis.loads: ", "must give at most 1e+09 rows (got 1000000 loads with 100000000 positions)",
                      arguments=static + ["--set", "analysis.loads=1000000", "--set", "load.end_Nm=5", "--set",
                                          "analysis.positions=100000000"])

@@ -198,6 +198,13 @@ class Elastic(unittest.TestCase):
         self.write(deep)
         self.assertEqual(self.gearsim("--geometry").returncode, 0)
 
+    def test_corner_contact_is_not_there(self):
+        self.rows(SPUR62 | {"mesh": {"corner_contact": "off"}})
+        self.refused(SPUR62 | {"mesh": {"corner_contact": "on"}}, "run.ini:", "mesh.corner_contact: must be off (got on)")
+
+    def test_friction_is_for_other_laws(self):
+        self.refused(SPUR62 | {"mesh": {"friction_coefficient": 0.05}}, "mesh.")
+
     def test_files_of_soft_teeth_are_checked(self):
         for text, message in (("tooth,stiffness\n", "soft.csv:1: the columns must be tooth,factor"),
                               ("", "soft.csv:0: the columns must be tooth,factor (got nothing)"),

@@ -921,6 +921,17 @@ class Static(Case):
                                     for name in one_by_one[0]})
         self.assertGreater(max(together["te_um"][120:]) - max(together["te_um"][:60]), 1)
 
+    def test_loads_from_one_side_to_the_other_leave_out_none(self):
+        """Each side of the backlash; a step of 0 leaves no rows."""
+        for settings, loads in ((("load.mean_Nm=-20", "load.end_Nm=20", "analysis.loads=3"), [-20, 20]),
+                                (("load.mean_Nm=-5", "load.end_Nm=10", "analysis.loads=4"), [-5, 5, 10]),
+                                (("load.mean_Nm=0", "load.end_Nm=10", "analysis.loads=2"), [10])):
+            with self.subTest(loads):
+                both = self.static(*settings)
+                self.assert_all_close(both["load_torque_Nm"], [load for load in loads for _ in range(60)], absolute=1e-9)
+                alone = self.static(f"load.mean_Nm={loads[0]}")
+                self.assert_all_close(both["te_um"][:60], alone["te_um"], absolute=1e-9)
+
     def test_coast_side_mirrors_the_drive_side(self):
         """Without flank files: the mean of one side is minus that of the other."""
         drive, coast = self.static("analysis.positions=500"), self.static("load.mean_Nm=-20", "analysis.positions=500")

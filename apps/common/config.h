@@ -19,6 +19,7 @@
 enum mesh_model { MODEL_SIMPLE, MODEL_3D };
 enum mesh_law { LAW_CONSTANT, LAW_ISO6336, LAW_ELASTIC };
 enum friction_law { FRICTION_CONSTANT, FRICTION_ISO14179, FRICTION_BENEDICT_KELLEY };
+enum corner_contact { CORNER_CONTACT_OFF };
 enum drive_kind { DRIVE_SPEED, DRIVE_TORQUE };
 enum analysis_type { ANALYSIS_DYNAMIC, ANALYSIS_STATIC };
 enum static_period { PERIOD_MESH, PERIOD_PINION, PERIOD_HUNTING };
@@ -91,7 +92,8 @@ typedef struct config {
     double friction_speed;       /* at which mu has reached 0.7 of itself, m/s */
     double oil_viscosity;        /* Pa s */
     double roughness;            /* Ra, m */
-    int stations;                /* of elastic teeth along the face */
+    enum corner_contact corner_contact;
+    int stations; /* of elastic teeth along the face */
 
     gm_pose pose; /* of the wheel against the drawing */
 

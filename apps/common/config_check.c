@@ -50,7 +50,7 @@ static int check_profile_window(const config *conf) {
     return 1;
 }
 
-/* The loads of a static analysis must not pass zero. */
+/* How many loads a static analysis has, and which. */
 static int check_loads(const config *conf) {
     const double rows = (double)conf->loads * conf->positions;
 
@@ -61,16 +61,10 @@ static int check_loads(const config *conf) {
         return 1;
     }
 
-    /* Several loads need the last one, on the same side of the backlash. */
+    /* Several loads need the last one. */
     if (conf->loads > 1 && isnan(conf->end_load)) {
         config_complain(conf, "analysis.loads", "must be 1 without load.end_Nm (got %d)",
                         conf->loads);
-        return 1;
-    }
-    if (conf->loads > 1 && !(conf->mean_load * conf->end_load > 0)) {
-        config_complain(conf, "load.end_Nm",
-                        "must have the sign of load.mean_Nm (got %.9g and %.9g)", conf->end_load,
-                        conf->mean_load);
         return 1;
     }
     return 0;
@@ -83,7 +77,7 @@ static int check_static(const config *conf) {
         config_complain(conf, "mesh.model", "must be 3d for a static analysis (got simple)");
         ++faults;
     }
-    if (conf->mean_load == 0) {
+    if (conf->mean_load == 0 && !(conf->loads > 1 && conf->end_load != 0)) {
         config_complain(conf, "load.mean_Nm",
                         "must not be 0 in a static analysis, where no load leaves the gears "
                         "anywhere in the backlash (got 0)");

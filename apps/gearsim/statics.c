@@ -42,6 +42,14 @@ static double load_of(const config *conf, int index) {
     return share > 0.0 ? (1.0 - share) * conf->mean_load + share * conf->end_load : conf->mean_load;
 }
 
+/* A step of the loads from one side of the backlash to the other may be 0, up to a rounding. */
+static int is_no_load(const config *conf, int index) {
+    const double largest =
+        conf->loads > 1 ? fmax(fabs(conf->mean_load), fabs(conf->end_load)) : 0.0;
+
+    return fabs(load_of(conf, index)) <= 1e-12 * largest;
+}
+
 /* A period under one load: where the position before was in equilibrium, and how it goes on from there. */
 typedef struct sweep {
     double load;   /* (N m) */
@@ -185,6 +193,13 @@ static int write_period(const config *conf, const gear_mesh *gears, double load,
 
 static int write_all(const config *conf, const gear_mesh *gears, const static_results *results) {
     for (int index = 0; index < conf->loads; ++index) {
+        if (is_no_load(conf, index)) {
+            message_note(conf->messages,
+                         "%s: note: no rows under the load of 0, which leaves the gears anywhere "
+                         "in the backlash",
+                         conf->path);
+            continue;
+        }
         const int exit_code = write_period(conf, gears, load_of(conf, index), results);
         if (exit_code != 0) {
             return exit_code;
@@ -196,7 +211,11 @@ static int write_all(const config *conf, const gear_mesh *gears, const static_re
 }
 
 double statics_rows(const config *conf) {
-    return (double)conf->loads * conf->positions;
+    int loads = 0;
+    for (int index = 0; index < conf->loads; ++index) {
+        loads += !is_no_load(conf, index);
+    }
+    return (double)loads * conf->positions;
 }
 
 int statics_check(const config *conf) {
