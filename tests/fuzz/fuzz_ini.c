@@ -20,7 +20,8 @@ static void claim_config(const config *conf) {
     FUZZ_CLAIM(conf->gears.pinion_teeth >= 3 && abs(conf->gears.wheel_teeth) >= 3);
     FUZZ_CLAIM(isfinite(conf->gears.normal_module) && isfinite(conf->gears.center_distance));
     FUZZ_CLAIM(isfinite(conf->flank_scale) && conf->profile_from < conf->profile_to);
-    FUZZ_CLAIM(conf->damping >= 0.0 && conf->noise_amplitude >= 0.0 && conf->noise_interval > 0.0);
+    FUZZ_CLAIM(isnan(conf->damping) || conf->damping >= 0.0);
+    FUZZ_CLAIM(conf->noise_amplitude >= 0.0 && conf->noise_interval > 0.0);
     FUZZ_CLAIM(conf->digits >= 3 && conf->digits <= 17 && conf->oversampling >= 1);
     FUZZ_CLAIM(conf->output_file != NULL && conf->provenance_count > 0);
 }
@@ -32,7 +33,7 @@ static void print_geometry(const gear_mesh *mesh, const config *conf) {
         nowhere = fopen("/dev/null", "w");
         FUZZ_CLAIM(nowhere != NULL);
     }
-    geometry_print(mesh, conf, nowhere);
+    geometry_print(mesh, conf, 0, nowhere);
 }
 
 /* With a listener or without: to find the words for a message is most of the work. */
@@ -55,7 +56,8 @@ static int load(enum config_purpose purpose, int listening) {
     gear_mesh mesh;
     int opened = 0;
     if (conf.pinion_flanks.deviations == NULL && conf.pinion_flanks.pitch == NULL &&
-        conf.wheel_flanks.deviations == NULL && conf.wheel_flanks.pitch == NULL) {
+        conf.pinion_flanks.tooth_stiffness == NULL && conf.wheel_flanks.deviations == NULL &&
+        conf.wheel_flanks.pitch == NULL && conf.wheel_flanks.tooth_stiffness == NULL) {
         messages = 0;
         opened = gear_mesh_open(&mesh, &conf);
         FUZZ_CLAIM(opened == 0 || opened == EXIT_BAD_INPUT);
