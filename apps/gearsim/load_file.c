@@ -81,6 +81,8 @@ int load_file_open(load_file **file, const config *conf) {
     if (status != 0) {
         return status;
     }
+
+    /* The struct, with nothing open yet. */
     load_file *opened = allocate(1, sizeof *opened);
     if (opened == NULL) {
         return message_no_memory(conf->messages);
@@ -88,6 +90,8 @@ int load_file_open(load_file **file, const config *conf) {
     opened->messages = conf->messages;
     opened->digits = conf->digits;
     opened->result.data = opened->result.lock = -1;
+
+    /* FILE.part, and a stream on it. */
     status = complain(conf, &opened->result,
                       result_file_check(&opened->result, conf->load_distribution));
     if (status == EXIT_DONE) {
@@ -102,6 +106,7 @@ int load_file_open(load_file **file, const config *conf) {
         free_file(opened);
         return status;
     }
+
     write_head(opened, conf);
     *file = opened;
     return 0;

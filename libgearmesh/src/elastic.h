@@ -374,6 +374,22 @@ static inline gmi_elastic_span gmi_elastic_span_of(const gmi_elastic_work *work,
     return span;
 }
 
+/* Sum over the points, in four parts that a processor adds side by side. */
+static inline double gmi_elastic_sum(int count, const double *values) {
+    double sums[4] = {0.0, 0.0, 0.0, 0.0};
+    int k = 0;
+    for (; k + 4 <= count; k += 4) {
+        sums[0] += values[k];
+        sums[1] += values[k + 1];
+        sums[2] += values[k + 2];
+        sums[3] += values[k + 3];
+    }
+    for (; k < count; ++k) {
+        sums[0] += values[k];
+    }
+    return (sums[0] + sums[1]) + (sums[2] + sums[3]);
+}
+
 /* elastic_points.c: approach of all points, from the deflections of work->state. */
 void gmi_elastic_approach(gmi_elastic_work *work, double x);
 

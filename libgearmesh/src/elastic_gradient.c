@@ -60,21 +60,6 @@ APART void energy_terms(int count, double half, const double *restrict force,
     }
 }
 
-static double sum_of(int count, const double *values) {
-    double sums[4] = {0.0, 0.0, 0.0, 0.0};
-    int k = 0;
-    for (; k + 4 <= count; k += 4) {
-        sums[0] += values[k];
-        sums[1] += values[k + 1];
-        sums[2] += values[k + 2];
-        sums[3] += values[k + 3];
-    }
-    for (; k < count; ++k) {
-        sums[0] += values[k];
-    }
-    return (sums[0] + sums[1]) + (sums[2] + sums[3]);
-}
-
 /* Load at which the straight part of the contact law begins, from where on it does not depend on the rate. */
 static double last_load(const gmi_elastic *law, const gmi_elastic_work *work, int p) {
     return 0.5 * gmi_hertz_largest / (law->hertz_compliance * work->rate[p]);
@@ -208,7 +193,7 @@ static void move_points(const gmi_elastic *law, gmi_elastic_work *work,
     functional_terms(count, work->force, work->stiffness, work->slope, work->deflection, work->pull,
                      work->tooth_adjoint, work->deviation_by_roll, work->tooth_by_roll,
                      work->rate_by_roll, work->scratch);
-    gradient->by_roll = sum_of(count, work->scratch);
+    gradient->by_roll = gmi_elastic_sum(count, work->scratch);
     if (work->straight) {
         gradient->by_roll -= straight_functional(law, work, work->rate_by_roll);
     }
@@ -240,7 +225,7 @@ static void differentiate_energy(const gmi_elastic *law, gmi_elastic_work *work,
     const double half = 0.5 * law->hertz_compliance;
     energy_terms(count, half, work->force, work->load, work->deflection, work->deviation_by_roll,
                  work->tooth_by_roll, work->rate_by_roll, work->scratch);
-    energy->by_roll = sum_of(count, work->scratch);
+    energy->by_roll = gmi_elastic_sum(count, work->scratch);
     if (work->straight) {
         energy->by_roll -= straight_energy(law, work, work->rate_by_roll);
     }
@@ -266,8 +251,8 @@ void gmi_elastic_differentiate(const gmi_elastic *law, gmi_elastic_work *work,
         return;
     }
     const int count = 2 * work->slots;
-    force->value = energy->by_approach = sum_of(count, work->force);
-    force->by_approach = sum_of(count, work->by_deviation);
+    force->value = energy->by_approach = gmi_elastic_sum(count, work->force);
+    force->by_approach = gmi_elastic_sum(count, work->by_deviation);
     energy->value = work->energy;
     move_points(law, work, force);
     differentiate_energy(law, work, energy);

@@ -348,11 +348,6 @@ typedef struct side_view {
     double (*softness)[GMI_ELASTIC_NUMBERS_MAX]; /* [enum gm_role] of the workspace */
 } side_view;
 
-static int next_tooth(int tooth, int step, int teeth) {
-    const int next = tooth + step;
-    return next < 0 ? teeth - 1 : next == teeth ? 0 : next;
-}
-
 static void set_softness(side_view *view, int count) {
     const gm_pair *pair = view->mesh->pair;
     const int all[2] = {pair->pinion.teeth, pair->wheel.teeth};
@@ -361,7 +356,7 @@ static void set_softness(side_view *view, int count) {
         for (int role = GM_PINION; role <= GM_WHEEL; ++role) {
             const double *factors = view->elastic->tooth_stiffness[role];
             view->softness[role][k] = factors == NULL ? 1.0 : 1.0 / factors[tooth[role]];
-            tooth[role] = next_tooth(tooth[role], view->teeth.step, all[role]);
+            tooth[role] = gmi_surface_tooth(tooth[role], view->teeth.step, all[role]);
         }
     }
 }

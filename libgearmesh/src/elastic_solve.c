@@ -294,21 +294,6 @@ static double straight_energy(const gmi_elastic *law, gmi_elastic_work *work) {
     return sum;
 }
 
-static double sum_of(int count, const double *values) {
-    double sums[4] = {0.0, 0.0, 0.0, 0.0};
-    int k = 0;
-    for (; k + 4 <= count; k += 4) {
-        sums[0] += values[k];
-        sums[1] += values[k + 1];
-        sums[2] += values[k + 2];
-        sums[3] += values[k + 3];
-    }
-    for (; k < count; ++k) {
-        sums[0] += values[k];
-    }
-    return (sums[0] + sums[1]) + (sums[2] + sums[3]);
-}
-
 /* In balance the layers hold half the work of the loads: U = sum W (q (x + w) / 2 - B q^2 / 4). */
 static void finish(const gmi_elastic *law, gmi_elastic_work *work, double x,
                    gmi_elastic_result *result) {
@@ -318,11 +303,11 @@ static void finish(const gmi_elastic *law, gmi_elastic_work *work, double x,
     result->force = 0.0;
     for (int k = 0; k < work->count; ++k) {
         const gmi_elastic_line *line = &work->line[k];
-        result->line_force[k] = sum_of(line->elements, work->force + line->slot) +
-                                sum_of(line->elements, work->force + slots + line->slot);
+        result->line_force[k] = gmi_elastic_sum(line->elements, work->force + line->slot) +
+                                gmi_elastic_sum(line->elements, work->force + slots + line->slot);
         result->force += result->line_force[k];
     }
-    result->energy = sum_of(2 * slots, work->scratch) + straight_energy(law, work);
+    result->energy = gmi_elastic_sum(2 * slots, work->scratch) + straight_energy(law, work);
 }
 
 /* dF/dx, as a whole and by points. */
@@ -333,7 +318,7 @@ static void find_stiffness(gmi_elastic_work *work, gmi_elastic_result *result) {
     for (int p = 0; p < 2 * slots; ++p) {
         work->by_deviation[p] = work->stiffness[p] * work->pull[p];
     }
-    result->by_approach = sum_of(2 * slots, work->by_deviation);
+    result->by_approach = gmi_elastic_sum(2 * slots, work->by_deviation);
 }
 
 int gmi_elastic_solve(const gmi_elastic *law, gmi_elastic_work *work, double approach,

@@ -101,6 +101,8 @@ static int walk_line(walk *w, const side_lines *found, int index, int row, gmi_i
     const int stations = stations_of(mesh);
     const double spacing = (at->face_to - at->face_from) / (double)(stations - 1);
     int touches = 0;
+
+    /* The stations that the line passes go to the caller. */
     for (int k = 0; k < stations; ++k) {
         const double t1 = k == stations - 1 ? at->face_to : at->face_from + (double)k * spacing;
         if (!(t1 >= part.from && t1 <= part.to)) {
@@ -117,12 +119,16 @@ static int walk_line(walk *w, const side_lines *found, int index, int row, gmi_i
         }
         ++w->load->points;
     }
+
+    /* Between stations the load may be largest where the line ends. */
     for (int end = 0; end < 2; ++end) {
         const gm_line_load_point point =
             point_at(mesh, found, &flanks, index, row, end == 0 ? part.from : part.to);
         count_point(w, &point);
         touches = touches || point.line_load > 0.0;
     }
+
+    /* All of a line that touches anywhere bears the mean line load. */
     w->length += touches ? (part.to - part.from) * mesh->pair->face_width : 0.0;
     return GM_OK;
 }

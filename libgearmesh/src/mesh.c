@@ -61,6 +61,8 @@ static int is_within(double value, double from, double to) {
 /* The field of the friction that is at fault, or NULL. */
 static const char *friction_at_fault(const gm_mesh_params *params, const char **wanted) {
     const int law = params->friction_law;
+
+    /* Which law, and whether the teeth can have it. */
     if (law != GM_FRICTION_CONSTANT && law != GM_FRICTION_ISO14179 &&
         law != GM_FRICTION_BENEDICT_KELLEY) {
         *wanted = "GM_FRICTION_CONSTANT, GM_FRICTION_ISO14179 or GM_FRICTION_BENEDICT_KELLEY";
@@ -79,6 +81,8 @@ static const char *friction_at_fault(const gm_mesh_params *params, const char **
         *wanted = "GM_FRICTION_CONSTANT with GM_LAW_ELASTIC, which has no friction";
         return "friction_law";
     }
+
+    /* Its numbers, as far as it takes them. */
     if (!is_within(params->friction_speed, 1e-9, 1e3)) {
         *wanted = "a speed from 1e-9 to 1e3 m/s";
         return "friction_speed";
@@ -97,6 +101,8 @@ static const char *friction_at_fault(const gm_mesh_params *params, const char **
 /* The first field at fault, in the order of the struct; NULL if all is well. */
 static const char *field_at_fault(const gm_mesh_params *params, const char **wanted) {
     static const char stiffness[] = "a stiffness from 1e-30 to 1e30 N/m";
+
+    /* Which model and law. */
     if (params->model != GM_MODEL_3D && params->model != GM_MODEL_SIMPLE) {
         *wanted = "GM_MODEL_3D or GM_MODEL_SIMPLE";
         return "model";
@@ -106,6 +112,8 @@ static const char *field_at_fault(const gm_mesh_params *params, const char **wan
         *wanted = "GM_LAW_CONSTANT, GM_LAW_ISO6336 or GM_LAW_ELASTIC";
         return "law";
     }
+
+    /* Their numbers. */
     if (params->law == GM_LAW_CONSTANT && !is_stiffness(params->stiffness)) {
         *wanted = stiffness;
         return "stiffness";
@@ -122,6 +130,8 @@ static const char *field_at_fault(const gm_mesh_params *params, const char **wan
         *wanted = stiffness;
         return "simple_stiffness";
     }
+
+    /* Materials, and then friction. */
     const char *at_fault = gmi_elastic_field_at_fault(params, wanted);
     return at_fault != NULL ? at_fault : friction_at_fault(params, wanted);
 }
@@ -741,12 +751,15 @@ static int move_mesh(const gm_mesh *mesh, const gm_pose *pose, gm_mesh *moved) {
     return GM_OK;
 }
 
+/* As the axes move, each side has an approach speed of its own: its mean over what touches. */
 static int evaluate_moving(const gm_mesh *mesh, const gm_position *position,
                            const gmi_rates rates[2], int wanted, gm_workspace *workspace,
                            gm_mesh_result *result) {
     const int is_tilting = rates[GM_DRIVE].along != 0.0 || rates[GM_DRIVE].across != 0.0;
     const int mask = accumulated(mesh, 1, wanted) | (is_tilting ? GMI_MOMENTS : GMI_SUM) |
                      (is_elastic(mesh) ? GMI_ROLL : GMI_SUM);
+
+    /* The sums of both sides. */
     gmi_side_sum sums[2];
     double approach[2];
     for (int side = GM_DRIVE; side <= GM_COAST; ++side) {
@@ -762,6 +775,8 @@ static int evaluate_moving(const gm_mesh *mesh, const gm_position *position,
         approach[side] =
             gmi_rates_mean_approach(&rates[side], mesh->pair, &mesh->engagement, side, &sums[side]);
     }
+
+    /* And what they mean. */
     if (mesh->friction.is_on) {
         evaluate_sliding(mesh, position, approach, wanted, result);
         return GM_OK;

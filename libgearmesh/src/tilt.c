@@ -117,6 +117,8 @@ static void place_gradient(const tilted *line, double t1, int place, double by[G
     const double u = value_at(line->u, t1);
     const double rho_w = value_at(line->rho_w, t1);
     const double p = line->r_bp / line->length, q = line->r_bw / line->length;
+
+    /* Each place moves with some of the coordinates. */
     for (int k = 0; k < GMI_COORDINATES; ++k) {
         by[k] = 0.0;
     }
