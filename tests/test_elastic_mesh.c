@@ -272,6 +272,45 @@ static void derivatives_are_those_of_differences(void) {
     }
 }
 
+/* With x held the force changes by little as the gears roll on, which the derivatives by both angles hide from each other. */
+static void roll_at_held_approach_is_differentiated_exactly(void) {
+    int compared = 0;
+    for (int k = 0; k < VARIANTS; ++k) {
+        variant v;
+        variant_make(&v, k);
+        elastic_mesh *m = &v.mesh;
+        const double r_bp = m->pair.pinion.base_radius;
+        const double r_bw = m->pair.wheel.base_radius;
+        for (int n = 0; n < 8; ++n) {
+            gm_test_context("variant %d, state %d", k, n);
+            const double angle = 0.013 + 0.37 * n / m->pair.pinion.teeth;
+            const gm_state state = pressed_state(m, angle, pressed_offset(m, n % 2, angle));
+            forget(m);
+            const gm_mesh_result at = evaluate(m, &state, GM_WANT_DERIVATIVES);
+            const double slope = at.force_by.pinion_angle / r_bp + at.force_by.wheel_angle / r_bw;
+            const double step = 5e-5 * m->pair.normal_module;
+            double force[3];
+            for (int i = 0; i < 3; ++i) {
+                gm_state rolled = state;
+                rolled.pinion_angle += (i - 1) * step / r_bp;
+                rolled.wheel_angle += (i - 1) * step / r_bw;
+                forget(m);
+                force[i] = evaluate(m, &rolled, GM_WANT_FORCE).force;
+            }
+
+            /* Not where a grid line or the end of a line is passed within the step. */
+            const double left = (force[1] - force[0]) / step;
+            const double right = (force[2] - force[1]) / step;
+            if (fabs(right - left) < 4e-3 * fabs(slope)) {
+                GM_ASSERT_ABS(slope, 0.5 * (left + right), 3e-4 * fabs(slope));
+                ++compared;
+            }
+        }
+        variant_free(&v);
+    }
+    GM_ASSERT(compared > 20);
+}
+
 /* Work of the torques around a closed path of both angles, by Simpson's rule on each of its four sides. */
 static double work_around(elastic_mesh *m, double angle, double offset, double turn, double press,
                           double *throughput) {
@@ -593,6 +632,26 @@ static void wrench_acts_where_the_load_is(void) {
     GM_ASSERT_REL(a.wrench.wheel_moment[2], -a.force * even.pair.wheel.base_radius, 1e-12);
     release(&even);
     release(&skewed);
+
+    /* Damping acts where the stiffness is: a little speed as a little more approach, moments too. */
+    law.damping = 800.0;
+    elastic_mesh damped;
+    GM_ASSERT_INT(make(&damped, &gears, &law, NULL, NULL), GM_OK);
+    const double relaxation =
+        gm_mesh_mean_damping(damped.mesh) / gm_mesh_mean_stiffness(damped.mesh);
+    const double more = 2e-9;
+    const gm_state pressed = pressed_state(&damped, 0.01, 4e-6 + more);
+    gm_state moving = state;
+    moving.pinion_speed = more / relaxation / damped.pair.pinion.base_radius;
+    const gm_mesh_result still = evaluate(&damped, &state, GM_WANT_WRENCH);
+    const gm_mesh_result by_approach = evaluate(&damped, &pressed, GM_WANT_WRENCH);
+    const gm_mesh_result by_speed = evaluate(&damped, &moving, GM_WANT_WRENCH);
+    for (int axis = 0; axis < 3; ++axis) {
+        GM_ASSERT_REL(by_speed.wrench.wheel_moment[axis] - still.wrench.wheel_moment[axis],
+                      by_approach.wrench.wheel_moment[axis] - still.wrench.wheel_moment[axis],
+                      2e-3);
+    }
+    release(&damped);
 }
 
 /* Line loads at stations and ends add up to the force, and follow from Hertz what the pressure is. */
@@ -812,6 +871,7 @@ int main(int argc, char **argv) {
     static const gm_test tests[] = {
         GM_TEST(check_values_are_met),
         GM_TEST(derivatives_are_those_of_differences),
+        GM_TEST(roll_at_held_approach_is_differentiated_exactly),
         GM_TEST(energy_is_kept_around_closed_paths),
         GM_TEST(coast_is_drive_in_a_mirror),
         GM_TEST(answer_does_not_depend_on_the_one_before),

@@ -408,14 +408,19 @@ static int is_drawn(const gm_mesh *mesh, int side) {
     return prepared->pinion == NULL && prepared->wheel == NULL && !prepared->is_tilted;
 }
 
+/* Deviations of both flanks at all points of a side, with their slopes. */
 static void set_material(const side_view *view, gmi_elastic_work *work) {
     const size_t bytes = 2 * sizeof(double) * (size_t)work->slots;
+
+    /* Ideal flanks on parallel axes have none. */
     if (is_drawn(view->mesh, view->side)) {
         memset(work->deviation, 0, bytes);
         memset(work->deviation_by_roll, 0, bytes);
         memset(work->deviation_by_z, 0, bytes);
         return;
     }
+
+    /* Line by line, each with the teeth that meet on it; both points of each part. */
     const gmi_engagement *at = &view->mesh->engagement;
     const double per_width = 1.0 / view->mesh->pair->face_width;
     for (int row = 0; row < work->count; ++row) {

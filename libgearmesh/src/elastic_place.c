@@ -428,6 +428,8 @@ static void follow_teeth(gmi_elastic_work *work) {
     if (work->count == 0) {
         return;
     }
+
+    /* How many rows the teeth have moved by, the short way round the gear. */
     const int direction = at->step * row_step(at);
     const int tooth = (at->tooth + at->step * (work->line[0].index - at->first)) % at->teeth;
     int shift = direction * (tooth - work->warm_tooth) % at->teeth;
@@ -437,6 +439,8 @@ static void follow_teeth(gmi_elastic_work *work) {
         shift += at->teeth;
     }
     work->warm_tooth = tooth;
+
+    /* Far off, the last solution tells nothing. */
     if (shift == 0 || work->warm == 0) {
         return;
     }
@@ -444,6 +448,7 @@ static void follow_teeth(gmi_elastic_work *work) {
         gmi_elastic_work_reset(work);
         return;
     }
+
     work->warm_place += (double)(row_step(at) * shift) * at->pitch;
     shift_rows(work, shift, work->state);
     shift_rows(work, shift, work->adjoint);

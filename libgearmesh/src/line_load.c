@@ -60,6 +60,8 @@ static double pressure_of(const gm_mesh *mesh, double line_load, double roll, do
 static gm_line_load_point point_at(const gm_mesh *mesh, const side_lines *found,
                                    const gmi_line_flanks *flanks, int index, int row, double t1) {
     const gm_pair *pair = mesh->pair;
+
+    /* Where it is, and how much material both flanks have there. */
     const double roll = found->lines.origin + (double)index * pair->transverse_base_pitch +
                         found->lines.advance * t1;
     const double material = gmi_line_flanks_at(flanks, t1, roll, found->reach).value;
@@ -71,6 +73,8 @@ static gm_line_load_point point_at(const gm_mesh *mesh, const side_lines *found,
         .pinion_roll_length = roll,
         .wheel_roll_length = fabs(found->reach - roll),
     };
+
+    /* What presses there: from the deflections of elastic teeth, or the overlap itself. */
     double approach;
     if (found->work != NULL) {
         const double z = (t1 - mesh->engagement.face_from) * pair->face_width;

@@ -904,7 +904,7 @@ GM_API int gm_mesh_elastic_stiffness(const gm_mesh *mesh, gm_mesh_stiffness *sti
 GM_API const gm_pair *gm_mesh_pair(const gm_mesh *mesh);
 
 /** Stiffness along the line of action over all pairs that touch on average: K eps_alpha, or the spring of the simple
- *  model (N/m). NaN for NULL. */
+ *  model; of elastic teeth the mean of dF/dx at the reference torque (N/m). NaN for NULL. */
 GM_API double gm_mesh_mean_stiffness(const gm_mesh *mesh);
 
 /** Damping likewise: D eps_alpha (N s/m). NaN for NULL. */
@@ -974,7 +974,9 @@ typedef struct gm_mesh_result {
     gm_gradient pinion_torque_by; /**< of pinion_torque (N m/rad, N m s/rad) */
     gm_gradient wheel_torque_by;  /**< of wheel_torque, likewise */
 
-    gm_penetration contact; /**< overlap and contact of the flanks, as gm_penetration_3d() */
+    gm_penetration
+        contact; /**< overlap and contact of the flanks, as gm_penetration_3d(); of elastic teeth those that a
+                                 mesh of constant stiffness K_mean / eps_alpha has under the same force: F / K, dF/dx / K */
     gm_wrench
         wrench; /**< each line of contact taken where it is: with the tilting moments of helical gears and of
                                  partly touching flanks. Forces along the surface normal. In the simple model all acts in
@@ -1130,8 +1132,8 @@ GM_API int gm_mesh_evaluate_bodies(const gm_mesh *mesh, const gm_body *pinion, c
 GM_API int gm_motion_of_bodies(const gm_mesh *mesh, const gm_body *pinion, const gm_body *wheel,
                                gm_motion *motion, double frame[9]);
 
-/** Stiffness of what touches in a result: K times the touching part of the face width, all pairs and both sides (N/m).
- *  NaN for NULL. */
+/** Stiffness of what touches in a result: K times the touching part of the face width, all pairs and both sides; of elastic
+ *  teeth dF/dx (N/m). NaN for NULL. */
 GM_API double gm_mesh_touching_stiffness(const gm_mesh *mesh, const gm_mesh_result *result);
 
 /**
