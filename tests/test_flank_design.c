@@ -307,8 +307,10 @@ static void designs_that_cannot_be_are_refused(void) {
     options.modification_tolerance = 0.0;
     refused("(got 0)", "modification_tolerance: must be at least 1e-12 m");
     begin();
-    static gm_modification
-        many[GM_MODIFICATIONS_MAX]; /* 2 m together, beyond a double with this factor */
+
+    /* 2 m together, beyond a double with this factor */
+    static gm_modification many[GM_MODIFICATIONS_MAX];
+
     for (int k = 0; k < GM_MODIFICATIONS_MAX; ++k) {
         many[k] =
             (gm_modification){.kind = GM_MOD_CROWNING, .shape = GM_SHAPE_PARABOLIC, .amount = 0.01};

@@ -12,8 +12,9 @@
 
 typedef struct option_spec {
     const char *name; /* such as "--output" */
-    const char *
-        right; /* what its value must be, in words; NULL = it takes none; in brackets: it may lack, and stands behind a `=` */
+
+    /* what its value must be, in words; NULL = it takes none; in brackets: it may lack, and stands behind a `=` */
+    const char *right;
 } option_spec;
 
 enum option_result {

@@ -24,9 +24,10 @@ struct decimator {
     int started;             /* the first sample fills the past */
     enum sample_kind *kinds; /* [channels] */
     double *weights;         /* [SAMPLE_KINDS - 1][length], from SAMPLE_VALUES on */
-    double
-        *samples; /* [channels][2 length]: a ring written twice, so that the last `length` samples
-                        are always contiguous, from `next` on */
+
+    /* [channels][2 length]: a ring written twice, so that the last `length` samples are always
+     * contiguous, from `next` on */
+    double *samples;
 };
 
 /* Modified Bessel function of order 0, by its power series. */

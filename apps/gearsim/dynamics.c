@@ -34,8 +34,10 @@ typedef struct dynamic_run {
     gear_motion next;           /* at the next sample */
     int follows;                /* drive or load depend on the motion */
     double gathered_time;       /* up to which their integrals have been taken, */
-    model_torques gathered
-        [2]; /* of the part since the edge: of the torques, and of them times the share of it */
+
+    /* of the part since the edge: of the torques, and of them times the share of it */
+    model_torques gathered[2];
+
     model_torques rising;         /* the second over the side of a triangle before its middle */
     enum column_need row_need;    /* the most that a column asked for needs of the mesh, */
     enum column_need sample_need; /* and of the mesh between the rows, as it is filtered */

@@ -22,8 +22,10 @@ struct gm_cache {
     double per_step;     /* its inverse (1/m) */
     double lowest;       /* nothing touches at or below this delta (m) */
     double *phases;      /* [columns] 0 .. p_bt (m) */
-    double *
-        starts; /* [passes][columns] delta of the first node (m), NaN = not filled yet, infinite = no contact */
+
+    /* [passes][columns] delta of the first node (m), NaN = not filled yet, infinite = no contact */
+    double *starts;
+
     float *values; /* [passes][columns][nodes][4] */
 };
 

@@ -102,8 +102,9 @@ typedef struct gmi_elastic_cell {
  */
 typedef struct gmi_elastic_gear {
     double start, per_cell; /* (m, 1/m) */
-    gmi_elastic_cell
-        cell[GMI_ELASTIC_CELLS + 2]; /* the first and the last hold the values beyond the ends */
+
+    /* the first and the last hold the values beyond the ends */
+    gmi_elastic_cell cell[GMI_ELASTIC_CELLS + 2];
 } gmi_elastic_gear;
 
 /*
@@ -128,8 +129,10 @@ typedef struct gmi_elastic {
     double line_of_action;       /* T of the drawing (m) */
     double least_compliance[2];  /* of the teeth on their profiles, pinion, wheel (m per N/m) */
     gmi_elastic_gear gear[2];
-    gmi_elastic_gear
-        pair; /* both whole teeth on the line of action of the drawing: s and 1 / (B e^L) by rho_p */
+
+    /* both whole teeth on the line of action of the drawing: s and 1 / (B e^L) by rho_p */
+    gmi_elastic_gear pair;
+
     gmi_elastic_layer tooth;
     gmi_elastic_layer rim; /* divided by r^2: the rim's unknown is its own deflection */
 } gmi_elastic;
@@ -190,8 +193,9 @@ typedef struct gmi_elastic_line {
     int slot;     /* its first slot */
     int element;  /* element of the face that slot lies in: from station `element` on */
     int elements; /* how many */
-    int limited
-        [2]; /* whether its begin and end along z are those of the path: -1 lower, +1 upper, 0: of the face */
+
+    /* whether its begin and end along z are those of the path: -1 lower, +1 upper, 0: of the face */
+    int limited[2];
 } gmi_elastic_line;
 
 /* Memory of the solver. Points into the memory of the caller; one for each flank side and thread. */
@@ -219,8 +223,10 @@ typedef struct gmi_elastic_work {
     double *roll;      /* rho_p (m) */
     double *weight;    /* W, integral over z (m) */
     double *deviation; /* w, of both flanks: the caller's (m) */
-    double
-        *deviation_by_roll; /* its slope along rho_p at fixed z, the caller's for derivatives (1) */
+
+    /* its slope along rho_p at fixed z, the caller's for derivatives (1) */
+    double *deviation_by_roll;
+
     double *deviation_by_z; /* its slope along z at fixed rho_p, likewise (1) */
     double *load;           /* q (N/m) */
     double *approach_at;    /* gamma, local approach of the surfaces (m) */
@@ -241,9 +247,11 @@ typedef struct gmi_elastic_work {
     double *change_at;  /* of gamma in the last step (m) */
     double *expected;   /* W q after the step, in first order (N) */
     double *scratch;    /* forces, ... */
-    double
-        *table[4]; /* [2 slots][2]: values and slopes of pinion and wheel, while they are placed */
-    double *pull;  /* m - J lambda */
+
+    /* [2 slots][2]: values and slopes of pinion and wheel, while they are placed */
+    double *table[4];
+
+    double *pull;          /* m - J lambda */
     double *tooth_adjoint; /* lambda of the tooth layer */
 
     /* Over slots: the element's part of the Newton matrix, and forces of its two stations. */
@@ -325,8 +333,10 @@ typedef struct gmi_elastic_functional {
 typedef struct gmi_elastic_gradient {
     double value;       /* G */
     double by_approach; /* by x, and by a common deviation of all points */
-    double
-        by_roll; /* by the origin of the lines, which move through the path and past the stations */
+
+    /* by the origin of the lines, which move through the path and past the stations */
+    double by_roll;
+
     double by_lower; /* by the ends of the path ... */
     double by_upper;
     double by_action; /* ... and by the line of action, at fixed rho_p; 0 unless slopes were 2 */

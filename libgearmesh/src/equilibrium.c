@@ -25,8 +25,9 @@ typedef struct problem {
     double direction;     /* +1: x grows with the load, -1: it falls */
     double target;        /* net sum that carries the torque, >= 0 in that direction (m) */
     int by_torque;        /* the torque does not follow from the sum alone */
-    double
-        resolution; /* of x: the rounding of the lengths that the lines of contact are clipped to (m) */
+
+    /* of x: the rounding of the lengths that the lines of contact are clipped to (m) */
+    double resolution;
 } problem;
 
 /* The load is below the target at `lower`; what is known of `upper`: */

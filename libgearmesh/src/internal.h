@@ -100,12 +100,16 @@ typedef struct gmi_meshing {
     double working_pressure_angle; /* alpha_wt (rad) */
     double involute_difference;    /* inv(alpha_wt) - inv(alpha_t) (1) */
     double backlash;               /* transverse, along the line of action (m) */
-    double start_roll_length
-        [2]; /* [enum gm_role] where the active profile starts at this distance (m) */
+
+    /* [enum gm_role] where the active profile starts at this distance (m) */
+    double start_roll_length[2];
+
     double path_start, path_end;     /* at zero penetration, from the pinion's tangent point (m) */
     double transverse_contact_ratio; /* (1) */
-    double
-        phase_origin[2]; /* [side] rho_p of tooth 0 at phi_p = 0 where the common face begins (m) */
+
+    /* [side] rho_p of tooth 0 at phi_p = 0 where the common face begins (m) */
+    double phase_origin[2];
+
     double working_pitch_radius[2]; /* [enum gm_role] (m) */
     double tip_clearance[2];        /* [enum gm_role] from this gear's tip to the mate's root (m) */
 } gmi_meshing;
@@ -151,8 +155,9 @@ typedef struct gmi_engagement {
     /* From the coordinates of the drawing to those of the posed pair; 0 without a pose. */
     double offset_shift; /* added to x (m) */
     double phase_shift;  /* added to the phase (m) */
-    double
-        axis_direction; /* of the wheel's axis, seen from the pinion's, counter-clockwise from +x (rad) */
+
+    /* of the wheel's axis, seen from the pinion's, counter-clockwise from +x (rad) */
+    double axis_direction;
 
     /* The wheel's rotation vector about the middle of its own face, along the line of action and across it. */
     int is_tilted;
@@ -202,8 +207,8 @@ typedef struct gmi_side_sum {
     double contact_t1;  /* of t1 (1) */
     double contact_rho; /* of rho_p (m) */
 
-    double
-        roll; /* GMI_ROLL: energy by a common roll of all lines, over the stiffness; 0 with constant stiffness (m) */
+    /* GMI_ROLL: energy by a common roll of all lines, over the stiffness; 0 with constant stiffness (m) */
+    double roll;
 } gmi_side_sum;
 
 static inline gmi_side_sum gmi_no_contact(void) {
@@ -235,8 +240,10 @@ typedef struct gmi_lines {
     double origin;       /* (m) */
     double advance;      /* (m) */
     double lower, upper; /* limits of rho_p (m) */
-    double
-        lower_by_delta; /* 1 where the wheel sets the limit, so that it moves with delta; else 0 */
+
+    /* 1 where the wheel sets the limit, so that it moves with delta; else 0 */
+    double lower_by_delta;
+
     double upper_by_delta;
     double fall, rise; /* a line covers origin + [fall, rise] of the line of action (m) */
     int first, last;   /* lines that can exist, none if first > last */
@@ -244,8 +251,9 @@ typedef struct gmi_lines {
 
 /* Where the lines enter and leave the flanks as t1 grows: line k at enter - k spacing and leave - k spacing. */
 typedef struct gmi_line_ends {
-    double
-        per_advance; /* 1 / advance; 0 for spur gears, whose lines have no ends within the face (1/m) */
+    /* 1 / advance; 0 for spur gears, whose lines have no ends within the face (1/m) */
+    double per_advance;
+
     double enter, leave, spacing;
     double enter_by_delta, leave_by_delta; /* 1 where the end moves with delta, else 0 */
     double face_from, face_to;             /* where the face begins and ends */
@@ -389,8 +397,10 @@ enum gmi_coordinate {
 typedef struct gmi_line_tangent {
     double by[GMI_COORDINATES][3]; /* beside the tables */
     double speed[2];               /* of approach (m/s) */
-    double arm
-        [2]; /* u of tilt.c: the speed of approach falls by it times that of the tilt across (m) */
+
+    /* u of tilt.c: the speed of approach falls by it times that of the tilt across (m) */
+    double arm[2];
+
     double pinion_per_rho, wheel_per_rho,
         face_per_length; /* d v2 / d rho of both, d v1 / d z of the wheel (1/m) */
 
@@ -585,8 +595,9 @@ int gmi_check_flanks(const gm_pair *pair, const gm_flanks *pinion_flanks,
 
 /* The law of one mesh. */
 typedef struct gmi_law {
-    double
-        stiffness; /* of one pair over the common face width; of the mesh in the simple model (N/m) */
+    /* of one pair over the common face width; of the mesh in the simple model (N/m) */
+    double stiffness;
+
     double damping;        /* likewise (N s/m) */
     double mean_stiffness; /* of the mesh over all pairs that touch on average (N/m) */
 } gmi_law;

@@ -33,8 +33,10 @@ typedef struct fmu_values {
     double state[MAX_STATES];    /* likewise */
     double derivative[MAX_STATES];
     double output[MAX_OUTPUTS];
-    double
-        indicator[INDICATORS]; /* how far drive and coast flanks are beyond their clearance (m) */
+
+    /* how far drive and coast flanks are beyond their clearance (m) */
+    double indicator[INDICATORS];
+
     int contact; /* 1 drive flanks may touch, -1 coast flanks, 0 neither, 2 both; changes at events */
 } fmu_values;
 

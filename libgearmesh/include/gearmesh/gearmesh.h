@@ -158,9 +158,11 @@ typedef struct gm_pair_params {
     double wheel_face_width;  /**< b_w of the wheel alone, m [NaN: face_width] */
     double axial_offset; /**< middle of the wheel's face less that of the pinion's, along +z, m,
                                         |axial_offset| <= 1e9 m [0]; the faces must overlap */
-    double
-        pinion_profile_shift; /**< x_p, 1, |x_p| <= 1000 [NaN: half of the sum that gives zero backlash; the rest
-                                        of that sum if only the wheel's is given] */
+
+    /** x_p, 1, |x_p| <= 1000 [NaN: half of the sum that gives zero backlash; the rest of that sum if only the
+     * wheel's is given] */
+    double pinion_profile_shift;
+
     double wheel_profile_shift; /**< x_w, 1 [NaN: as for the pinion] */
     double backlash;            /**< transverse, along the line of action, m [NaN: from the tooth
                                         thicknesses; else both normal thicknesses at the reference
@@ -224,10 +226,12 @@ typedef struct gm_gear {
     double start_roll_length;    /**< rho at the start radius = r_b chi_start (m) */
     double tip_roll_length;      /**< rho at the tip radius = r_b chi_end (m) */
     double pitch_angle;          /**< 2 pi / z, leading part (rad) */
-    double
-        pitch_angle_remainder; /**< 2 pi / z - pitch_angle, so that 1e6 rad cost one rounding (rad) */
-    double face_width;         /**< b of this gear (m) */
-    double face_start;         /**< z of its face I; 0 for the pinion (m) */
+
+    /** 2 pi / z - pitch_angle, so that 1e6 rad cost one rounding (rad) */
+    double pitch_angle_remainder;
+
+    double face_width; /**< b of this gear (m) */
+    double face_start; /**< z of its face I; 0 for the pinion (m) */
 } gm_gear;
 
 /**
@@ -607,8 +611,10 @@ typedef struct gm_state {
 typedef struct gm_position {
     int pinion_tooth; /**< pinion tooth whose phase it is, 0 .. z_p - 1 */
     int wheel_tooth;  /**< wheel tooth that its drive flank meets, 0 .. z_w - 1 */
-    double
-        phase; /**< r_bp times the angle of that pinion tooth, in [0, p_bt) up to a rounding (m) */
+
+    /** r_bp times the angle of that pinion tooth, in [0, p_bt) up to a rounding (m) */
+    double phase;
+
     double offset;       /**< x = r_bp phi_p - r_bw phi_w, |x| < p_bt / 2 (m) */
     double offset_rate;  /**< dx/dt (m/s) */
     double pinion_speed; /**< d phi_p / dt, which friction needs to know (rad/s) */
@@ -770,42 +776,52 @@ typedef struct gm_pose {
 typedef struct gm_mesh_params {
     int model; /**< enum gm_model [GM_MODEL_3D] */
     int law;   /**< enum gm_law [GM_LAW_CONSTANT] */
-    double
-        stiffness; /**< K of one pair of teeth that touches over the common face width, 1e-30 .. 1e30 N/m,
-                                  required by GM_LAW_CONSTANT, not used by others */
+
+    /** K of one pair of teeth that touches over the common face width, 1e-30 .. 1e30 N/m, required by
+     * GM_LAW_CONSTANT, not used by others */
+    double stiffness;
+
     double iso_blank_factor; /**< C_R of GM_LAW_ISO6336, 0.01 .. 2 [1: solid blanks] */
     double damping;          /**< D of one pair of teeth likewise, 0 .. 1e30 N s/m [0] */
-    double
-        simple_stiffness; /**< spring of the simple model, 1e-30 .. 1e30 N/m [NaN: K eps_alpha] */
-    gm_pose pose;         /**< of the wheel [as drawn] */
+
+    /** spring of the simple model, 1e-30 .. 1e30 N/m [NaN: K eps_alpha] */
+    double simple_stiffness;
+
+    gm_pose pose; /**< of the wheel [as drawn] */
 
     /* Of elastic teeth, which need no stiffness: it follows. With other laws E and nu give the contact pressure. */
     double pinion_youngs_modulus; /**< E, 1e6 .. 1e15 N/m2 [206e9] */
     double wheel_youngs_modulus;  /**< as for the pinion */
     double pinion_poisson_ratio;  /**< nu, 0 .. 0.499 [0.3] */
     double wheel_poisson_ratio;   /**< as for the pinion */
-    double
-        pinion_bore_radius; /**< of a disc that winds up between bore and root, in series with the teeth, m, 0 < r < r_f
-                                       [NaN: rigid body] */
+
+    /** of a disc that winds up between bore and root, in series with the teeth, m, 0 < r < r_f [NaN: rigid body] */
+    double pinion_bore_radius;
+
     double wheel_bore_radius; /**< as for the pinion */
-    const double *
-        pinion_tooth_stiffness; /**< [pinion_teeth] factor of each tooth's stiffness, 0.01 .. 100: below 1 for cracks and
-                                       spalls; must stay where it is as long as the mesh is used [NULL: 1] */
+
+    /** [pinion_teeth] factor of each tooth's stiffness, 0.01 .. 100: below 1 for cracks and spalls; must stay where
+     * it is as long as the mesh is used [NULL: 1] */
+    const double *pinion_tooth_stiffness;
+
     const double *wheel_tooth_stiffness; /**< [wheel_teeth] likewise */
-    double
-        reference_torque; /**< load on the wheel, > 0 N m, at which the stiffness is taken that eigenfrequency and damping
-                                       go by [NaN: 100 N per mm of face] */
+
+    /** load on the wheel, > 0 N m, at which the stiffness is taken that eigenfrequency and damping go by [NaN: 100
+     * N per mm of face] */
+    double reference_torque;
+
     int stations; /**< along the face, 2 .. 97; docs/elastic.md has the error of each number [17] */
 
     /* Friction, of the 3D model. At a sliding speed v its coefficient is mu v / sqrt(v^2 + v0^2). */
     int friction_law;            /**< enum gm_friction_law [GM_FRICTION_CONSTANT] */
     double friction_coefficient; /**< mu of GM_FRICTION_CONSTANT, 0 .. 1 [0: no friction] */
     double friction_speed;       /**< v0, 1e-9 .. 1e3 m/s [0.01] */
-    double
-        oil_viscosity; /**< dynamic viscosity eta at the temperature of the oil, 1e-6 .. 1e6 Pa s, required by
-                                      the other laws */
-    double
-        roughness; /**< Ra, mean of both gears, 1e-9 .. 1e-3 m, required by GM_FRICTION_ISO14179 */
+
+    /** dynamic viscosity eta at the temperature of the oil, 1e-6 .. 1e6 Pa s, required by the other laws */
+    double oil_viscosity;
+
+    /** Ra, mean of both gears, 1e-9 .. 1e-3 m, required by GM_FRICTION_ISO14179 */
+    double roughness;
 } gm_mesh_params;
 
 /**
@@ -891,8 +907,10 @@ typedef struct gm_mesh_stiffness {
     double mesh_mean;     /**< dF/dx of all pairs, mean over a mesh cycle */
     double mesh_smallest; /**< in it */
     double mesh_largest;  /**< in it */
-    double
-        single_mean; /**< of one pair that carries the force alone, all along the face, mean over its path */
+
+    /** of one pair that carries the force alone, all along the face, mean over its path */
+    double single_mean;
+
     double single_smallest; /**< on it */
     double single_largest;  /**< on it */
 } gm_mesh_stiffness;
@@ -960,27 +978,27 @@ typedef struct gm_mesh_result {
     double drive_force; /**< of the drive flanks alone, >= 0; F = drive_force - coast_force (N) */
     double coast_force; /**< of the coast flanks alone, >= 0 (N) */
 
-    double
-        pinion_torque; /**< that the mesh takes from the pinion: I_p phi_p'' = M_p - pinion_torque; F r_bp
-                             without friction (N m) */
-    double
-        wheel_torque; /**< that it gives to the wheel: I_w phi_w'' = -M_w + wheel_torque; likewise (N m) */
+    /** that the mesh takes from the pinion: I_p phi_p'' = M_p - pinion_torque; F r_bp without friction (N m) */
+    double pinion_torque;
 
-    double
-        loss; /**< power that friction takes, >= 0; pinion_torque times the pinion's speed is wheel_torque times the
-                      wheel's, F dx/dt, and this (W) */
+    /** that it gives to the wheel: I_w phi_w'' = -M_w + wheel_torque; likewise (N m) */
+    double wheel_torque;
+
+    /** power that friction takes, >= 0; pinion_torque times the pinion's speed is wheel_torque times the wheel's, F
+     * dx/dt, and this (W) */
+    double loss;
 
     gm_gradient force_by;         /**< derivatives of F (N/rad, N s/rad) */
     gm_gradient pinion_torque_by; /**< of pinion_torque (N m/rad, N m s/rad) */
     gm_gradient wheel_torque_by;  /**< of wheel_torque, likewise */
 
-    gm_penetration
-        contact; /**< overlap and contact of the flanks, as gm_penetration_3d(); of elastic teeth those that a
-                                 mesh of constant stiffness K_mean / eps_alpha has under the same force: F / K, dF/dx / K */
-    gm_wrench
-        wrench; /**< each line of contact taken where it is: with the tilting moments of helical gears and of
-                                 partly touching flanks. Forces along the surface normal. In the simple model all acts in
-                                 the pitch point at mid-face */
+    /** overlap and contact of the flanks, as gm_penetration_3d(); of elastic teeth those that a mesh of constant
+     * stiffness K_mean / eps_alpha has under the same force: F / K, dF/dx / K */
+    gm_penetration contact;
+
+    /** each line of contact taken where it is: with the tilting moments of helical gears and of partly touching
+     * flanks. Forces along the surface normal. In the simple model all acts in the pitch point at mid-face */
+    gm_wrench wrench;
 } gm_mesh_result;
 
 /**
@@ -1017,9 +1035,9 @@ GM_API int gm_mesh_evaluate_at(const gm_mesh *mesh, const gm_position *position,
 typedef struct gm_motion {
     gm_position position; /**< angles and dx/dt, see gm_position_from_state() */
     gm_pose pose;         /**< of the wheel, in addition to the one that the mesh was prepared in */
-    gm_pose
-        pose_rate; /**< its rate (m/s, rad/s), each at most 1e9 either way; the approach speed of the flanks
-                            contains it */
+
+    /** its rate (m/s, rad/s), each at most 1e9 either way; the approach speed of the flanks contains it */
+    gm_pose pose_rate;
 } gm_motion;
 
 /**
@@ -1082,8 +1100,10 @@ GM_API int gm_mesh_tangent(const gm_mesh *mesh, const gm_motion *motion, gm_tang
  */
 typedef struct gm_body {
     double position[3]; /**< of the reference point (m) */
-    double rotation
-        [9]; /**< from the body's axes to the common frame, row by row: v_common = R v_body */
+
+    /** from the body's axes to the common frame, row by row: v_common = R v_body */
+    double rotation[9];
+
     double velocity[3];         /**< of the reference point (m/s) */
     double angular_velocity[3]; /**< in the common frame (rad/s) */
 } gm_body;
@@ -1186,9 +1206,10 @@ typedef struct gm_line_load_point {
     double z;                  /**< along the face (m) */
     double pinion_roll_length; /**< rho_p (m) */
     double wheel_roll_length;  /**< rho_w, of a ring above 0 too (m) */
-    double
-        line_load; /**< q, normal force per length of the contact line (N/m); its integral over z is the
-                               transverse force */
+
+    /** q, normal force per length of the contact line (N/m); its integral over z is the transverse force */
+    double line_load;
+
     double pressure; /**< p_0 = 2 q / (pi a), largest Hertzian pressure there (N/m2) */
     double gap;      /**< between the surfaces, < 0 pressed into each other (m) */
 } gm_line_load_point;
@@ -1197,9 +1218,10 @@ typedef struct gm_line_load_point {
 typedef struct gm_line_loads {
     double largest_line_load; /**< of all points and ends of lines (N/m) */
     double largest_pressure;  /**< likewise (N/m2) */
-    double
-        face_load_factor; /**< largest line load over the mean one along the lines that touch: of a single
-                                       spur pair max(q) b / F */
+
+    /** largest line load over the mean one along the lines that touch: of a single spur pair max(q) b / F */
+    double face_load_factor;
+
     double touching_width; /**< touching part of the face, summed over all lines (m) */
     int points;            /**< how many were written */
 } gm_line_loads;

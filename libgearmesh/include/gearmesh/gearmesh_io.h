@@ -69,8 +69,10 @@ typedef struct gm_deviations {
 /** Contents of a pitch file, resolved to every tooth and side. All arrays come from malloc(). */
 typedef struct gm_pitch {
     int teeth; /**< of the gear, 3 .. 100000 */
-    double *
-        drive; /**< [teeth] along the line of action in the transverse section, > 0: material added (m) */
+
+    /** [teeth] along the line of action in the transverse section, > 0: material added (m) */
+    double *drive;
+
     double *coast; /**< [teeth] likewise (m) */
     /** [teeth] 1 if the file has a row for it, 0 = the tooth stands where it should */
     int *drive_set;
@@ -634,10 +636,12 @@ GM_API int gm_traces_build(gm_deviations *deviations, gm_traces_report *report,
 /** What gm_measured_pitch_build() found, [side] with arcs at the measuring circle. The last three fields compare what
  *  varies once per revolution on both sides with a gear that is displaced as a whole; NaN if one side is missing. */
 typedef struct gm_measured_pitch_report {
-    double sum
-        [2]; /**< [side] of the single pitches, spread evenly over them; 0 for cumulative values (m) */
-    double level
-        [2]; /**< [side] mean of the cumulative values, taken out: no pitch says how thick teeth are (m) */
+    /** [side] of the single pitches, spread evenly over them; 0 for cumulative values (m) */
+    double sum[2];
+
+    /** [side] mean of the cumulative values, taken out: no pitch says how thick teeth are (m) */
+    double level[2];
+
     double displacement; /**< of the axis, that fits best (m) */
     double rest;         /**< share (of squares) of the first order that it leaves, 0 .. 1 */
     /** The same if left and right, or else the direction of counting, were the other way round than said */

@@ -19,8 +19,9 @@
 #define GMI_NODES_PER_WAVE 4
 
 typedef struct gmi_generator {
-    gm_deviations
-        *deviations; /**< a set for every flank, tooth by tooth; their values are to be filled */
+    /** a set for every flank, tooth by tooth; their values are to be filled */
+    gm_deviations *deviations;
+
     gm_pitch *pitch; /**< to be filled */
     const gm_pair *pair;
     const gm_gear *gear;

@@ -340,8 +340,9 @@ static int check_gear(reader *from) {
 typedef struct trace_head {
     gm_trace trace; /* without points */
     int values;     /* that follow */
-    char
-        axis; /* z: a profile at a distance from the datum, x: a helix at a roll length, d: at a diameter */
+
+    /* z: a profile at a distance from the datum, x: a helix at a roll length, d: at a diameter */
+    char axis;
 } trace_head;
 
 static int fail_head(const reader *from, const char *right) {

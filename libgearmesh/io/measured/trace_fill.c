@@ -37,8 +37,9 @@ static const double step_floor = 2e-6;
 typedef struct stretch {
     int first;
     int last;
-    double
-        step; /* how far the trace stands off behind it, or before (m); 0 = it goes on smoothly */
+
+    /* how far the trace stands off behind it, or before (m); 0 = it goes on smoothly */
+    double step;
 } stretch;
 
 /* ---------------------------------------------------------------------------------------------
