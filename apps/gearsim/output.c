@@ -4,6 +4,7 @@
 #include "output_format.h"
 #include "progress.h"
 
+#include <dlfcn.h>
 #include <errno.h>
 #include <fcntl.h>
 #include <stdlib.h>
@@ -26,25 +27,55 @@ static int ends_with(const char *text, const char *suffix) {
     return length >= suffix_length && strcmp(text + length - suffix_length, suffix) == 0;
 }
 
+#ifdef GEARSIM_HDF5
+/* The module, which stays loaded. It lies at one place beside the program, and no other one is searched.
+ * NULL: not there, with the reason. */
+static const output_format *load_hdf5(const char **why) {
+    void *module = dlopen(GEARSIM_HDF5_MODULE, RTLD_NOW | RTLD_LOCAL);
+    const output_format *format = module != NULL ? dlsym(module, "gearsim_hdf5_format") : NULL;
+    if (format == NULL) {
+        *why = dlerror();
+        return NULL;
+    }
+    if (strcmp(format->version, GM_VERSION_STRING) != 0) {
+        *why = "its module is that of another version of gearsim";
+        return NULL;
+    }
+    return format;
+}
+#else
+static const output_format *load_hdf5(const char **why) {
+    *why = "this gearsim was built without HDF5";
+    return NULL;
+}
+#endif
+
 /* By the name that was asked for, a link's target may have any. NULL after a message. */
 static const output_format *format_of(const config *conf) {
     if (!ends_with(conf->output_file, ".h5") && !ends_with(conf->output_file, ".hdf5")) {
         return &csv_format;
     }
-#ifdef GEARSIM_HDF5
-    return &hdf5_format;
-#else
-    config_complain(conf, file_key, "'%s': this gearsim was built without HDF5; name a .csv file",
-                    conf->output_file);
-    return NULL;
-#endif
+    const char *why = NULL;
+    const output_format *format = load_hdf5(&why);
+
+    if (format == NULL) {
+        config_complain(conf, file_key, "'%s': HDF5 cannot be written (%s); name a .csv file",
+                        conf->output_file, why);
+    }
+    return format;
 }
 
-int output_fail(output_file *output, int error) {
-    output->error = error;
-    message_of_program(output->messages, "%s: %s",
-                       output->is_stream ? "standard output" : output->result.part,
-                       strerror(error));
+/* Keeps and tells why the file takes no more, the first time; returns an exit code. */
+static int settle(output_file *output, int error) {
+    if (error == 0) {
+        return EXIT_DONE;
+    }
+    if (output->error == 0) {
+        output->error = error;
+        message_of_program(output->messages, "%s: %s",
+                           output->is_stream ? "standard output" : output->result.part,
+                           strerror(error));
+    }
     return EXIT_RUN_FAILED;
 }
 
@@ -108,7 +139,7 @@ int output_check(const config *conf, const char *const names[], int name_count) 
 /* A descriptor of our own, to be closed as that of a file. */
 static int open_stream(output_file *output) {
     output->result.data = fcntl(STDOUT_FILENO, F_DUPFD_CLOEXEC, 0);
-    return output->result.data >= 0 ? EXIT_DONE : output_fail(output, errno);
+    return settle(output, output->result.data >= 0 ? 0 : errno);
 }
 
 output_file *output_open(const config *conf, const char *const names[], int name_count,
@@ -124,7 +155,7 @@ output_file *output_open(const config *conf, const char *const names[], int name
         output_free(opened);
         return NULL;
     }
-    if (opened->format->begin(opened, conf, names) != 0) {
+    if (settle(opened, opened->format->begin(opened, conf, names)) != EXIT_DONE) {
         *exit_code = output_close(opened, "the header could not be written");
         return NULL;
     }
@@ -146,7 +177,7 @@ int output_wants(const output_file *output, int name) {
 
 int output_row(output_file *output, const double values[]) {
     ++output->rows;
-    return output->format->row(output, values);
+    return settle(output, output->error != 0 ? output->error : output->format->row(output, values));
 }
 
 /* ---------------------------------------------------------------------------------------------
@@ -161,7 +192,7 @@ static void tell(const output_file *output, const char *path, const char *incomp
 }
 
 int output_close(output_file *output, const char *incomplete) {
-    int exit_code = output->format->end(output, incomplete);
+    int exit_code = settle(output, output->format->end(output, incomplete));
     const result_file *wrong;
 
     if (exit_code == EXIT_DONE && incomplete == NULL && !output->is_stream) {

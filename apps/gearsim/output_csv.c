@@ -60,17 +60,15 @@ static int flush(output_file *output) {
     size_t done;
 
     if (output->error != 0) {
-        return EXIT_RUN_FAILED;
+        return output->error;
     }
     const int error = write_all(output->result.data, memory->buffer, memory->used, &done);
     memory->written += (off_t)whole_lines(memory->buffer, done);
     memory->used = 0;
-    if (error == 0) {
-        return 0;
+    if (error != 0) {
+        cut_to_whole_lines(output);
     }
-
-    cut_to_whole_lines(output);
-    return output_fail(output, error);
+    return error;
 }
 
 /* A line of any length, which must end in '\n' and not be split: longer than the buffer is an error. */
@@ -78,11 +76,9 @@ static int put_line(output_file *output, const char *first, const char *second) 
     csv_memory *memory = output->memory;
     const size_t size = strlen(first) + strlen(second) + 1;
 
-    if (size > BUFFER_SIZE - memory->used && flush(output) != 0) {
-        return EXIT_RUN_FAILED;
-    }
-    if (size >= BUFFER_SIZE) {
-        return output_fail(output, EOVERFLOW);
+    const int error = size > BUFFER_SIZE - memory->used ? flush(output) : 0;
+    if (error != 0 || size >= BUFFER_SIZE) {
+        return error != 0 ? error : EOVERFLOW;
     }
     memory->used += (size_t)sprintf(memory->buffer + memory->used, "%s%s", first, second);
     memory->buffer[memory->used++] = '\n';
@@ -94,12 +90,12 @@ static int begin(output_file *output, const config *conf, const char *const name
 
     output->memory = calloc(1, sizeof(csv_memory));
     if (output->memory == NULL) {
-        return output_fail(output, ENOMEM);
+        return ENOMEM;
     }
 
-    int failed = put_line(output, "# gearsim ", gm_version());
-    for (int i = 0; i < conf->provenance_count && !failed; ++i) {
-        failed = put_line(output, "# ", conf->provenance[i]);
+    int error = put_line(output, "# gearsim ", GM_VERSION_STRING);
+    for (int i = 0; i < conf->provenance_count && error == 0; ++i) {
+        error = put_line(output, "# ", conf->provenance[i]);
     }
     for (int i = 0; i < output->columns.count; ++i) {
         if (i > 0) {
@@ -107,18 +103,20 @@ static int begin(output_file *output, const config *conf, const char *const name
         }
         strcat(header, names[output->columns.name[i]]);
     }
-    failed = failed || put_line(output, header, "") || flush(output) != 0;
+    error = error != 0 ? error : put_line(output, header, "");
+    error = error != 0 ? error : flush(output);
 
     csv_memory *memory = output->memory;
     memory->head = memory->written;
-    return failed ? EXIT_RUN_FAILED : 0;
+    return error;
 }
 
 static int row(output_file *output, const double values[]) {
     csv_memory *memory = output->memory;
 
-    if (memory->used > BUFFER_SIZE - ROW_SIZE_MAX && flush(output) != 0) {
-        return EXIT_RUN_FAILED;
+    const int error = memory->used > BUFFER_SIZE - ROW_SIZE_MAX ? flush(output) : 0;
+    if (error != 0) {
+        return error;
     }
 
     char *out = memory->buffer + memory->used;
@@ -129,8 +127,7 @@ static int row(output_file *output, const double values[]) {
     }
     out[-1] = '\n';
     memory->used = (size_t)(out - memory->buffer);
-
-    return output->error != 0 ? EXIT_RUN_FAILED : 0;
+    return 0;
 }
 
 /* Gives up as many of the last rows as hold so many bytes. Uses the buffer, which is empty by now. */
@@ -165,17 +162,18 @@ static void mark_incomplete(const output_file *output, const char *why) {
 
 static int end(output_file *output, const char *incomplete) {
     if (output->memory == NULL) {
-        return EXIT_RUN_FAILED;
+        return ENOMEM;
     }
 
-    const int failed = flush(output);
-    const char *why = output->error != 0 ? strerror(output->error) : incomplete;
+    const int error = flush(output);
+    const char *why = error != 0 ? strerror(error) : incomplete;
     if (why != NULL) {
         mark_incomplete(output, why);
     }
     free(output->memory);
     output->memory = NULL;
-    return failed;
+    return error;
 }
 
-const output_format csv_format = {.begin = begin, .row = row, .end = end};
+const output_format csv_format = {
+    .version = GM_VERSION_STRING, .begin = begin, .row = row, .end = end};

@@ -2,8 +2,10 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 
 /*
- * What output.c asks of a format of the result file. Names, places, `.part` and the rename are common to
- * all; a format puts provenance, names and rows into the file that is open.
+ * What output.c asks of a format of the result file. Names, places, messages, `.part` and the rename are
+ * common to all; a format puts provenance, names and rows into the file that is open. That of HDF5 is a
+ * module of its own, loaded where a name asks for it: its forty libraries take ten times as long to bind
+ * as all the rest of gearsim.
  */
 #ifndef GEARSIM_OUTPUT_FORMAT_H
 #define GEARSIM_OUTPUT_FORMAT_H
@@ -13,6 +15,8 @@
 #include "result_file.h"
 
 typedef struct output_format {
+    const char *version; /* of gearsim: a module of another one has other structures */
+
     /* Writes all that precedes the rows, to the disk: a full one is found before the run, not after it. */
     int (*begin)(output_file *output, const config *conf, const char *const names[]);
 
@@ -23,8 +27,11 @@ typedef struct output_format {
     int (*end)(output_file *output, const char *incomplete);
 } output_format;
 
-/* All three return 0, or EXIT_RUN_FAILED after output_fail(). */
-extern const output_format csv_format, hdf5_format;
+/* All three return 0 or the errno of what failed. After that nothing more is written but the end. */
+extern const output_format csv_format;
+
+/* The one symbol of the module. */
+extern const output_format gearsim_hdf5_format;
 
 struct output_file {
     const output_format *format;
@@ -38,8 +45,5 @@ struct output_file {
     double started; /* by wall_clock() */
     int error;      /* errno of the write that failed, 0 = none: nothing more is written */
 };
-
-/* Keeps and tells why the file takes no more; returns EXIT_RUN_FAILED. */
-int output_fail(output_file *output, int error);
 
 #endif

@@ -9,6 +9,8 @@
  * A write that fails in the middle would leave a file that nobody can open. Room is therefore reserved on
  * the disk before each block of rows; where there is none, the blocks before it are all that the file
  * holds. Every block is flushed, so that a file is whole even if the process is killed.
+ *
+ * This is the module that output.c loads. It takes no symbol from the program.
  */
 #include "output_format.h"
 
@@ -41,8 +43,8 @@ typedef struct hdf5_memory {
 } hdf5_memory;
 
 /* errno of a call that HDF5 has made in vain; it has other reasons as well. */
-static int fail(output_file *output) {
-    return output_fail(output, errno != 0 ? errno : EIO);
+static int reason(void) {
+    return errno != 0 ? errno : EIO;
 }
 
 /* ---------------------------------------------------------------------------------------------
@@ -50,24 +52,22 @@ static int fail(output_file *output) {
  * ------------------------------------------------------------------------------------------- */
 
 /* So that the next bytes will not meet a full disk. HDF5 cuts what it has not used. */
-static int reserve(output_file *output, size_t size) {
+static int reserve(const output_file *output, size_t size) {
     const hdf5_memory *memory = output->memory;
     hsize_t end = 0;
 
     if (memory->file >= 0 && H5Fget_filesize(memory->file, &end) < 0) {
-        return fail(output);
+        return reason();
     }
     const int error = posix_fallocate(output->result.data, (off_t)end, (off_t)size);
 
     /* Some file systems cannot reserve. */
-    return error == 0 || error == EINVAL || error == EOPNOTSUPP ? 0 : output_fail(output, error);
+    return error == EINVAL || error == EOPNOTSUPP ? 0 : error;
 }
 
-static int flush(output_file *output) {
-    const hdf5_memory *memory = output->memory;
-
+static int flush(const hdf5_memory *memory) {
     errno = 0;
-    return H5Fflush(memory->file, H5F_SCOPE_LOCAL) < 0 ? fail(output) : 0;
+    return H5Fflush(memory->file, H5F_SCOPE_LOCAL) < 0 ? reason() : 0;
 }
 
 /* ---------------------------------------------------------------------------------------------
@@ -138,7 +138,7 @@ static hid_t create_set(hid_t file, const char *name) {
 
 static herr_t write_head(const output_file *output, const config *conf, const char *const names[]) {
     hdf5_memory *memory = output->memory;
-    herr_t failed = write_text(memory->file, "gearsim", gm_version());
+    herr_t failed = write_text(memory->file, "gearsim", GM_VERSION_STRING);
 
     for (int i = 0; i < conf->provenance_count && failed >= 0; ++i) {
         failed = write_provenance(memory->file, conf->provenance[i]);
@@ -162,7 +162,7 @@ static size_t head_size(const config *conf) {
 static int begin(output_file *output, const config *conf, const char *const names[]) {
     hdf5_memory *memory = calloc(1, sizeof *memory);
     if (memory == NULL) {
-        return output_fail(output, ENOMEM);
+        return ENOMEM;
     }
     output->memory = memory;
     memory->file = memory->incomplete = memory->reason = -1;
@@ -171,19 +171,26 @@ static int begin(output_file *output, const config *conf, const char *const name
     H5dont_atexit();
     /* FILE.part is locked already. A second lock of the same kind would be refused to HDF5. */
     if (setenv("HDF5_USE_FILE_LOCKING", "FALSE", 1) != 0) {
-        return output_fail(output, errno);
+        return errno;
     }
     H5Eset_auto2(H5E_DEFAULT, NULL, NULL);
-    if (reserve(output, head_size(conf)) != 0) {
-        return EXIT_RUN_FAILED;
+
+    /* Room, the file, which takes that room back, and room again. */
+    int error = reserve(output, head_size(conf));
+    if (error != 0) {
+        return error;
     }
     errno = 0;
     memory->file = H5Fcreate(output->result.part, H5F_ACC_TRUNC, H5P_DEFAULT, H5P_DEFAULT);
-    if (memory->file < 0 || reserve(output, head_size(conf)) != 0 ||
-        write_head(output, conf, names) < 0) {
-        return output->error != 0 ? EXIT_RUN_FAILED : fail(output);
+    if (memory->file < 0) {
+        return reason();
     }
-    return flush(output);
+    error = reserve(output, head_size(conf));
+    if (error != 0) {
+        return error;
+    }
+    errno = 0;
+    return write_head(output, conf, names) < 0 ? reason() : flush(memory);
 }
 
 /* ---------------------------------------------------------------------------------------------
@@ -211,24 +218,22 @@ static int write_block(output_file *output) {
     hdf5_memory *memory = output->memory;
     const size_t size = (size_t)output->columns.count * sizeof memory->block[0] + HEAD_ROOM;
 
-    if (output->error != 0) {
-        return EXIT_RUN_FAILED;
+    if (output->error != 0 || memory->used == 0) {
+        return output->error;
     }
-    if (memory->used == 0) {
-        return 0;
-    }
-    if (reserve(output, size) != 0) {
-        return EXIT_RUN_FAILED;
+    const int error = reserve(output, size);
+    if (error != 0) {
+        return error;
     }
     errno = 0;
     for (int i = 0; i < output->columns.count; ++i) {
         if (append(memory->sets[i], memory->rows, memory->block[i], (hsize_t)memory->used) < 0) {
-            return fail(output);
+            return reason();
         }
     }
     memory->rows += (hsize_t)memory->used;
     memory->used = 0;
-    return flush(output);
+    return flush(memory);
 }
 
 static int row(output_file *output, const double values[]) {
@@ -257,9 +262,9 @@ static int close_file(output_file *output) {
     errno = 0;
     if (H5Fflush(memory->file, H5F_SCOPE_LOCAL) < 0 || H5Fget_filesize(memory->file, &size) < 0 ||
         H5Fclose(memory->file) < 0 || ftruncate(output->result.data, (off_t)size) != 0) {
-        return output->error != 0 ? EXIT_RUN_FAILED : fail(output);
+        return reason();
     }
-    return output->error != 0 ? EXIT_RUN_FAILED : 0;
+    return 0;
 }
 
 /* The attribute goes when the file is whole, else it says why not. */
@@ -277,22 +282,27 @@ static herr_t settle_incomplete(hdf5_memory *memory, const char *why) {
 static int end(output_file *output, const char *incomplete) {
     hdf5_memory *memory = output->memory;
     if (memory == NULL) {
-        return EXIT_RUN_FAILED;
+        return ENOMEM;
     }
 
-    int failed = EXIT_RUN_FAILED;
+    /* The first of all errors is told, and is the reason in the file. */
+    int error = output->error;
     if (memory->file >= 0) {
-        write_block(output);
-        if (settle_incomplete(memory, output->error != 0 ? strerror(output->error) : incomplete) <
-                0 &&
-            output->error == 0) {
-            fail(output);
+        error = write_block(output);
+        const char *why = error != 0 ? strerror(error) : incomplete;
+        if (settle_incomplete(memory, why) < 0 && error == 0) {
+            error = reason();
         }
-        failed = close_file(output);
+        const int closed = close_file(output);
+        error = error != 0 ? error : closed;
     }
     free(memory);
     output->memory = NULL;
-    return failed;
+    return error;
 }
 
-const output_format hdf5_format = {.begin = begin, .row = row, .end = end};
+#if defined(__GNUC__)
+__attribute__((visibility("default")))
+#endif
+const output_format gearsim_hdf5_format = {
+    .version = GM_VERSION_STRING, .begin = begin, .row = row, .end = end};
