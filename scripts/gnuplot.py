@@ -72,13 +72,12 @@ def _run(pictures, folder):
     """Draw all at once; raises RunFailed if a gnuplot failed or complained, when all have ended."""
     for path in glob.glob(os.path.join(glob.escape(SCRIPTS), "*.gp")):
         shutil.copy(path, folder)
-    running = {script: _start(script, values, folder) for script, values in pictures.items()}
-    complaints = {}
-    for script, process in running.items():
-        complaints[script] = process.communicate()[1].decode("utf-8", errors="replace").strip()
-    for script, process in running.items():
-        if process.returncode != 0 or complaints[script]:
-            raise program.RunFailed(f"gnuplot {script}: {complaints[script] or process.returncode}")
+    running = [(script, _start(script, values, folder)) for script, values in pictures]
+    ended = [(script, process.communicate()[1], process.returncode) for script, process in running]
+    for script, complaints, status in ended:
+        text = complaints.decode("utf-8", errors="replace").strip()
+        if status != 0 or text:
+            raise program.RunFailed(f"gnuplot {script}: {text or status}")
 
 
 def draw(stem, prepare):
@@ -90,8 +89,7 @@ def draw(stem, prepare):
     with tempfile.TemporaryDirectory(prefix=".gearmesh_", dir=os.path.dirname(stem) or ".") as folder:
         folder = os.path.abspath(folder)
         pictures = prepare(folder)
-        named = {script: {"picture": f"picture{name}", **values} for name, (script, values) in pictures.items()}
-        _run(named, folder)
+        _run([(script, {"picture": f"picture{name}", **values}) for name, (script, values) in pictures.items()], folder)
         for name in pictures:
             for suffix in FORMATS:
                 os.replace(os.path.join(folder, f"picture{name}.{suffix}"), f"{stem}{name}.{suffix}")

@@ -200,7 +200,7 @@ class Gears:
     def _run(self, values):
         """Head lines and rows of a static run."""
         path = os.path.join(self.folder.name, f"{threading.get_ident()}.csv")
-        forced = {"analysis.type": "static", "output.columns": "te_um", "output.digits": 12,
+        forced = {"analysis.type": "static", "output.digits": 12,
                   "output.load_distribution": ""}  # one file for runs that go side by side
         if self.positions is not None:
             forced["analysis.positions"] = self.positions
@@ -211,24 +211,25 @@ class Gears:
     def load_distribution(self):
         """The CSV with the loads along the lines of contact at mean_Nm; it goes with close()."""
         path = os.path.join(self.folder.name, "load.csv")
-        self._run({"analysis.loads": 1, "output.load_distribution": path})
+        self._run({"analysis.loads": 1, "output.columns": "te_um", "output.load_distribution": path})
         return path
 
-    def te_um(self, torques_Nm, values):
-        """Transmission error [torque, position] with {key: value} in place of the file's; the torques are even."""
-        loads = {"load.mean_Nm": float(torques_Nm[0]), "analysis.loads": len(torques_Nm)}
+    def curves(self, torques_Nm, values, columns):
+        """Columns [torque, position, column] with {key: value} in place of the file's; the torques are even."""
+        forced = {"load.mean_Nm": float(torques_Nm[0]), "analysis.loads": len(torques_Nm),
+                  "output.columns": ",".join(columns)}
         if len(torques_Nm) > 1:
-            loads["load.end_Nm"] = float(torques_Nm[-1])
+            forced["load.end_Nm"] = float(torques_Nm[-1])
         try:
-            return np.reshape(self._run({**values, **loads})[1][:, 0], (len(torques_Nm), -1))
+            return np.reshape(self._run({**values, **forced})[1], (len(torques_Nm), -1, len(columns)))
         except (NoEquilibrium, RunFailed) as error:
             given = "".join(f"{short_key(key)} = {value:.6g}: " for key, value in values.items())
             raise type(error)(f"{given}{error}") from error
 
-    def each(self, designs, torques_Nm):
-        """Transmission error [torque, position] of each {key: value}, in this order, several at a time."""
+    def each(self, designs, torques_Nm, columns=("te_um",)):
+        """Columns [torque, position, column] of each {key: value}, in this order, several at a time."""
         parts = even_parts(torques_Nm)
-        futures = [[self.pool.submit(self.te_um, part, design) for part in parts] for design in designs]
+        futures = [[self.pool.submit(self.curves, part, design, columns) for part in parts] for design in designs]
         try:
             for of_design in futures:
                 yield np.vstack([future.result() for future in of_design])
@@ -238,8 +239,8 @@ class Gears:
                     future.cancel()
 
     def curves_um(self, designs, torques_Nm):
-        """The same of all: [design, torque, position]."""
-        return np.array(list(self.each(designs, torques_Nm)))
+        """Transmission error of all: [design, torque, position]."""
+        return np.array(list(self.each(designs, torques_Nm)))[..., 0]
 
     def carried(self, designs, torques_Nm):
         """Those of the torques, lowest first, that each {key: value} can carry; tells of the others."""

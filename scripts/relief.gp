@@ -1,7 +1,7 @@
 # SPDX-FileCopyrightText: The gearmesh authors
 # SPDX-License-Identifier: BSD-3-Clause
 #
-# Peak-to-peak transmission error over torque, before and after; scripts/relief sets the variables used here before
+# Peak-to-peak transmission error or face load factor over torque, before and after; scripts/relief sets the variables used here before
 # it loads this file.
 
 load 'style.gp'
@@ -9,7 +9,6 @@ load 'style.gp'
 array colours[2] = [grey, '#0072b2']
 array names[2] = ['before', 'after']
 array widths[2] = [2.4, 4]
-curves = 'curves.dat'
 set lmargin at screen 0.105
 set rmargin at screen 0.885
 set tmargin at screen 0.825
@@ -17,13 +16,15 @@ set bmargin at screen 0.105
 set border 3
 set grid ytics lt 1 lw 0.6 lc rgb '#d8d8d8'
 set xrange [0:torque_high]
-set yrange [0:top]
+set yrange [low:top]
 set xlabel 'torque on the wheel / N m'
-set ylabel 'peak-to-peak transmission error' . um
+what = !is_face ? 'peak-to-peak transmission error' : 'face load factor'
+set ylabel what . (!is_face ? um : '')
 unset key
 
 set label title_text at screen 0.025, screen 0.96 left font ',17' noenhanced
-set label 'Peak-to-peak transmission error over torque; grey: the range searched' \
+set label (!is_face ? 'Peak-to-peak transmission error' : 'Largest face load factor of the mesh cycle') \
+    . ' over torque; grey: the range searched' \
     . (has_band ? ', bands: ' . band_text : '') at screen 0.025, screen 0.92 left font ',12' textcolor rgb grey
 if (range_high > range_low) {
     set object rectangle from first range_low, graph 0 to first range_high, graph 1 behind fillcolor rgb '#eeeeee' \

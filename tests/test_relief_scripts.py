@@ -427,6 +427,21 @@ class Relief(Case):
         step_um = 20 / DESIGN_NM * DEFLECTION_UM
         self.assertAlmostEqual(numbers["mean"][1], step_um / 2, delta=0.1)
 
+    def test_a_robust_search_is_best_at_the_worst_of_the_tolerance(self):
+        # Teeth of a stiffness within +-40 % give way by d / 1.4 to d / 0.6: |d - C| / 2 is least for C in their middle.
+        softest_um, stiffest_um = DEFLECTION_UM / 0.6, DEFLECTION_UM / 1.4
+        arguments = [SPUR, *self.ELSEWHERE, *self.AMOUNTS, "--torques", f"{DESIGN_NM}", "--starts", "1", "--tolerance",
+                     f"mesh.stiffness_N_per_m={0.4 * STIFFNESS_N_PER_M}"]
+        text, found = self.search(*arguments, "--robust")
+        for gear in ("pinion", "wheel"):
+            self.assertAlmostEqual(found[f"{gear}_tip_relief_um"], (softest_um + stiffest_um) / 2, delta=0.15)
+        delta = length_error_um(softest_um, DESIGN_NM / 0.6)
+        self.assertAlmostEqual(self.worst_um(text)[2], (softest_um - stiffest_um) / 4, delta=delta)
+        # The search that looks at the drawing alone is worse by the difference of the two reliefs.
+        text, found = self.search(*arguments)
+        self.assertAlmostEqual(found["pinion_tip_relief_um"], DEFLECTION_UM, delta=0.11)
+        self.assertAlmostEqual(self.worst_um(text)[2], (softest_um - DEFLECTION_UM) / 2, delta=delta)
+
     def test_variables_by_itself_and_pictures(self):
         result = self.accepted("relief", SPUR, "--output", "r", "--torques", "36:73:2", "--starts", "1", "--tolerance",
                                "0.5", "--set", "analysis.positions=40", run=self.run_program)
@@ -496,6 +511,11 @@ class Relief(Case):
             (["--torques", "80:40"], ["80 is above 40"]),
             (["--torques", "1e6"], ["no equilibrium", "under 1000000 N m"]),
             (["--tolerance", "-1"], ["--tolerance"]),
+            (["--tolerance", "much"], ["--tolerance much: a number >= 0 is right, or KEY=AMOUNT"]),
+            (["--tolerance", "pose.skew=1"], ["--tolerance pose.skew: the file has no such number"]),
+            (["--tolerance", "pinion_tip_releif_um=1"], ["pinion_tip_releif_um: unknown key"]),
+            (["--face-load-weight", "nan"], ["--face-load-weight: a number >= 0 is right"]),
+            (["--face-load-weight", "1"], ["only elastic teeth have a face load factor"]),
             (["--starts", "0"], ["--starts"]),
             ([word for i in range(9) for word in ("--vary", f"gears.x{i}=0:9")], ["at most 8"]),
         ]:
@@ -638,6 +658,38 @@ class ElasticTeeth(Case):
         ideal = [f"modifications.{key}=0" for key in BOTH_RELIEFS.split(",")]
         self.assertAlmostEqual(self.peak_um("out/r_relief.ini", DESIGN_NM, *ideal), before_um, delta=1e-3)
         self.assertLess(after_um, 0.5 * before_um)
+
+    def face_load(self, slope_um, crowning_um):
+        """Largest factor of gearsim itself, with the wheel 12 um out of line."""
+        self.peak_um("in/params.ini", DESIGN_NM, "analysis.positions=4", "output.columns=te_um,face_load_factor",
+                     "modifications.wheel_helix_slope_um=12", f"modifications.pinion_crowning_um={crowning_um}",
+                     f"modifications.pinion_drive_helix_slope_um={slope_um}")
+        return max(row["face_load_factor"] for row in self.table("te.csv"))
+
+    LEAD = ["in/params.ini", "--set", "modifications.wheel_helix_slope_um=12", "--set", "analysis.positions=4", "--torques",
+            f"{DESIGN_NM}", "--starts", "1", "--output", "r", "--face-load-weight", "100"]
+
+    def test_the_lead_correction_for_an_even_load_is_the_misalignment(self):
+        result = self.accepted("relief", *self.LEAD, "--vary", "pinion_drive_helix_slope_um=-25:25")
+        self.assertRegex(result.stdout, r"(?m)^  pinion_drive_helix_slope_um +- +-12 ")
+        rows = re.findall(r"(?m)^ +worst +(\S+) +(\S+) +(\S+) +(\S+)$", result.stdout)
+        before, _, after, within = map(float, rows[1])
+        self.assertAlmostEqual(before, self.face_load(0, 0), delta=1e-3)
+        self.assertAlmostEqual(after, self.face_load(-12, 0), delta=1e-3)
+        self.assertAlmostEqual(within, max(self.face_load(-10, 0), self.face_load(-14, 0)), delta=1e-3)
+        self.assertLess(after, before - 1)
+        self.assertIn("after_within_2_um_face_load_factor", self.read("r_relief.csv"))
+        self.assertIn("face load factor", self.svg_text("r_relief_face.svg"))
+
+    def test_a_crowning_is_for_leads_that_are_not_as_drawn(self):
+        crowned = [*self.LEAD, "--set", "modifications.pinion_drive_helix_slope_um=-12", "--vary", "pinion_crowning_um=0:20",
+                   "--tolerance", "pinion_drive_helix_slope_um=5", "--no-pictures"]
+        self.assertRegex(self.accepted("relief", *crowned).stdout, r"(?m)^  pinion_crowning_um +- +- ")
+        text = self.accepted("relief", *crowned, "--robust").stdout
+        found_um = float(re.search(r"(?m)^  pinion_crowning_um +- +(\S+) ", text)[1])
+        worst = [max(self.face_load(-12 + off_um, found_um + more_um) for off_um in (-5, 0, 5)) for more_um in (-0.7, 0, 0.7)]
+        self.assertEqual(min(worst), worst[1])
+        self.assertLess(worst[1], max(self.face_load(-17, 0), self.face_load(-7, 0)) - 0.2)
 
 
 if __name__ == "__main__":
