@@ -188,6 +188,39 @@ def named_turns(order, gears, width):
 # ----------------------------------------------------------------------------------------------------
 
 
+def speed_rim(orders, frequency_high, row_low, row_high, constant_rpm=None):
+    """Variables of speed_map.gp: where the lines of orders leave a map of frequency over speed, and their numbers.
+
+    All in shares of the map. At a constant speed lines are upright. A number that would stand on another one is left out.
+    """
+    out, letter, line = 1.014, 0.0125, 0.035
+    values, taken, count = {}, [], 0
+    height = row_high - row_low
+    for order in orders:
+        if constant_rpm is not None:
+            x = order * constant_rpm / 60.0 / frequency_high
+            ends = (x, 1.0, x, out)
+        else:
+            leaves_rpm = 60.0 * frequency_high / order
+            if leaves_rpm < row_high:
+                ends = (1.0, (leaves_rpm - row_low) / height, out, (leaves_rpm * out - row_low) / height)
+            else:
+                x = order * row_high / 60.0 / frequency_high
+                ends = (x, 1.0, x * (1.0 + (out - 1.0) * height / row_high), out)
+        # Where its number stands: above the map or beside it.
+        text = f"{order:.5g}"
+        middle = ends[2] if ends[0] < 1.0 else ends[2] + letter * (0.5 * len(text) + 1)
+        place = (middle, ends[3], 0.5 * letter * (len(text) + 1))
+        is_clear = all(abs(place[0] - x) > place[2] + half or abs(place[1] - y) > line for x, y, half in taken)
+        if ends[0] <= 1.0 and 0.0 < ends[1]:
+            taken += [place] if is_clear else []
+            names = ("mark_x", "mark_y", "mark_out_x", "mark_out_y")
+            values.update({f"{name}_{count}": float(end) for name, end in zip(names, ends)})
+            values[f"mark_text_{count}"] = text if is_clear else ""
+            count += 1
+    return {**values, "marks": count}
+
+
 def rim_values(known, asked, edge, scale=1.0, letters=87, levels=3):
     """Variables of rim.gp: names above a picture that reaches up to an order and is so many letters wide.
 

@@ -25,7 +25,7 @@ FLOOR = 1e-30  # keeps logarithms finite
 class Settings:
     """What is asked for where nobody asks; a command line has the same names."""
 
-    orders = turns = db = over = max_order = range = ghost = planetary = title = None
+    orders = turns = db = over = max_order = max_frequency = range = ghost = planetary = title = None
     pinion_teeth = wheel_teeth = eigenfrequency = None
     method, bandwidth, window, amplitude, sidebands = "resampling", None, "hann", "peak", 5
 
@@ -207,6 +207,14 @@ class Analysis:
                 yield peak, mean, self.gears and lines.named_turns(peak, self.gears, 1.0 / self.long_turns)
 
 
+    def speed_map(self):
+        """Map over frequency and speed, in windows in which no tracked order loses more than 1 %; and these windows (s)."""
+        run, options = self.signal.run, self.options
+        length = runup.window_length(run, max(map(float, self.tracked)))
+        map_ = runup.speed_map(run, options.window, length, max(1, length // 4), over_time=self.map.over_time)
+        return map_, length / run.rate_Hz
+
+
 # ----------------------------------------------------------------------------------------------------
 # Pictures
 # ----------------------------------------------------------------------------------------------------
@@ -240,6 +248,52 @@ def subtitle(signal, gears, frames, edge):
     gears_text = f"gears {gears.pinion_teeth}/{gears.wheel_teeth} teeth, " if gears else ""
     white = "" if frames.trusted([edge]).all() else "; white: above 0.4 of the rate"
     return f"{gears_text}{runup.speed_text(run)}; frames of {frames.turns:g} turns{white}"
+
+
+def frequency_edge_Hz(analysis, frequency_Hz):
+    """Right edge of the speed map: what is tracked at the highest speed, and the eigenfrequency, as far as the rate goes."""
+    run, asked = analysis.signal.run, analysis.options.max_frequency
+    lines_Hz = max(map(float, analysis.tracked)) * run.speed_rpm.max() / 60.0
+    return min(asked or 1.2 * max(lines_Hz, 1.25 * frequency_Hz), run.trusted_Hz)
+
+
+def speed_map_picture(analysis, folder):
+    """The same of the map over frequency and speed."""
+    signal, options, scale, gears = analysis.signal, analysis.options, analysis.scale, analysis.gears
+    run = signal.run
+    frequency_Hz = (gears and gears.eigenfrequency_Hz) or options.eigenfrequency or 0.0
+    map_, window_s = analysis.speed_map()
+    grid = map_.grid(frequency_edge_Hz(analysis, frequency_Hz))
+
+    # A row without a window is that of the nearest one that has some.
+    filled = np.flatnonzero(np.isfinite(map_.amplitude_N[:, 0]))
+    nearest = filled[np.abs(np.arange(grid["rows"])[:, None] - filled).argmin(axis=1)]
+    shown = scale.shown(scale.of_power(map_.amplitude_N[nearest, : grid["columns"]] ** 2))
+    shown.astype("<f4").tofile(f"{folder}/speeds.bin")
+    colours = options.range or range_of(shown, scale, 4.0, 1.5)
+
+    # Over time an order is a straight line at a constant speed only.
+    is_straight = not map_.over_time or run.is_constant
+    rim = lines.speed_rim([float(one) for one in analysis.tracked] if is_straight else [], grid["frequency_high"],
+                          *map_.row_range, run.speed_rpm.mean() if map_.over_time else None)
+    gears_text = f"gears {gears.pinion_teeth}/{gears.wheel_teeth} teeth, " if gears else ""
+    return {
+        "_speedmap": ("speed_map.gp", {
+            "data": "speeds.bin",
+            "title_text": program.title_of(options.title, signal.path),
+            "subtitle_text": f"{gears_text}{runup.speed_text(run)}; windows of {1e3 * window_s:.3g} ms",
+            "map_text": scale.text if scale.reference else "log10 " + scale.text,
+            "is_level": int(bool(scale.reference)),
+            "over_time": int(map_.over_time),
+            "speed_name": "pinion speed" if gears else "speed",
+            "rim_note": "rim: orders" if rim["marks"] else "",
+            "eigenfrequency": frequency_Hz,
+            "colour_low": float(colours[0]),
+            "colour_high": float(colours[1]),
+            **rim,
+            **grid,
+        })
+    }
 
 
 def pictures(analysis, folder):

@@ -57,10 +57,11 @@ class Gears:
 def speed_text(run):
     """How the pinion turns: `100 to 6000 rpm in 10 s`."""
     duration = f"{run.time_s[-1] - run.time_s[0]:.3g} s"
+    start_rpm, end_rpm = (float(f"{speed_rpm:.4g}") for speed_rpm in (run.start_rpm, run.end_rpm))
     if run.is_constant:
         return f"{run.start_rpm:.5g} rpm for {duration}"
     reverses = ", reversing" if run.reverses else ""
-    return f"{run.start_rpm:.5g} to {run.end_rpm:.5g} rpm{reverses} in {duration}"
+    return f"{start_rpm:g} to {end_rpm:g} rpm{reverses} in {duration}"
 
 
 # ----------------------------------------------------------------------------------------------------
@@ -156,15 +157,29 @@ class Map:
         self.amplitude_N = amplitude_N  # [row, bin]; a row without a frame is NaN
         self.over_time = over_time
 
+    def grid(self, frequency_high):
+        """What gnuplot has to know of the grid up to a frequency."""
+        low, high = self.row_range
+        return {
+            "columns": int((self.frequency_Hz <= frequency_high).sum()),
+            "rows": len(self.row),
+            "frequency_step": self.frequency_Hz[1],
+            "row_first": self.row[0],
+            "row_step": self.row[1] - self.row[0] if len(self.row) > 1 else high - low,
+            "row_low": low,
+            "row_high": high,
+            "frequency_high": frequency_high,
+        }
 
-def speed_map(run, window="hann", length=STANDARD_LENGTH, hop=STANDARD_HOP, rows=330):
+
+def speed_map(run, window="hann", length=STANDARD_LENGTH, hop=STANDARD_HOP, rows=330, over_time=None):
     """Rms of the amplitudes over the frames of each row: a Map with never more rows than a third of the frames.
 
     The frames of a row have slightly different speeds, so an order stands at another frequency in each of them, a
     resonance does not. Both are read: the mean over the frames at the same frequency, and at the same order. What is
     shown is the larger one; for noise they are equal, but for some tenths of a dB.
     """
-    over_time = run.is_constant
+    over_time = run.is_constant if over_time is None else over_time
     along = middles_of(run.time_s if over_time else run.speed_rpm, length, hop)
     speed_rpm = middles_of(run.speed_rpm, length, hop)
     whole = run.time_s if over_time else run.speed_rpm

@@ -7,6 +7,7 @@ import random
 import subprocess
 import sys
 import tempfile
+import types
 import unittest
 from fractions import Fraction
 from unittest import mock
@@ -135,6 +136,25 @@ class Tracking(unittest.TestCase):
         np.testing.assert_allclose(map_.power.max(axis=1), 1.0, rtol=0.01)
         self.assertTrue(1000 < map_.row[0] < map_.row[-1] < 2000)
 
+    def test_a_speed_map_shows_the_amplitudes_whatever_the_speed_does(self):
+        known = {23.0: (3.0, 0.3), 60.5: (1.0, 1.0)}
+        record = types.SimpleNamespace(path="record", provenance={}, incomplete=None)
+        options = ordermap.Settings()
+        options.orders = "23, 60.5"
+        for start_rpm, end_rpm in (*SPEEDS, (2400, -2400)):
+            run = run_of(start_rpm, end_rpm, lambda angle: waves(angle, known))
+            map_, _ = ordermap.Analysis(records.Signal(run, "force", "N", record), options).speed_map()
+            self.assertEqual(map_.over_time, start_rpm == end_rpm)
+            speeds_rpm = np.full(len(map_.row), 1500.0) if map_.over_time else map_.row
+            for order, (amplitude, _) in known.items():
+                told = 0
+                for speed_rpm, row in zip(speeds_rpm, map_.amplitude_N):
+                    near = np.abs(map_.frequency_Hz - order * speed_rpm / 60.0) < 0.2 * order * speed_rpm / 60.0
+                    if speed_rpm > 900.0 and np.isfinite(row[0]):
+                        self.assertAlmostEqual(row[near].max(), amplitude, delta=0.01 * amplitude)
+                        told += 1
+                self.assertGreater(told, 15)
+
     def test_overall_is_the_rms_without_the_mean(self):
         frames = tracking.frames_of(run_of(1500, 1500), 20, 40)
         expected = np.sqrt(sum(a**2 / 2 for a, _ in KNOWN.values()))
@@ -178,6 +198,19 @@ class Lines(unittest.TestCase):
         self.assertEqual(names["mesh 1"], (1 - carrier) * 18)  # the sun's teeth, as seen from the carrier
         self.assertEqual(names["planet turns"], (1 - carrier) * 18 / 36)
         self.assertEqual(names["planets pass"], 3 * carrier)
+
+    def test_lines_leave_a_speed_map_where_they_cross_its_edge(self):
+        rim = lines.speed_rim([10, 10.1, 60, 3000], 1000.0, 600.0, 3000.0)
+        self.assertEqual(rim["marks"], 3)  # 3000 is beyond the lowest speed
+        self.assertEqual((rim["mark_x_0"], rim["mark_y_0"], rim["mark_text_0"]), (0.5, 1.0, "10"))
+        self.assertEqual(rim["mark_text_1"], "")  # 10.1 has no room for its number
+        self.assertEqual((rim["mark_x_2"], rim["mark_y_2"], rim["mark_text_2"]), (1.0, (1000.0 - 600.0) / 2400.0, "60"))
+        # Both ends of a mark lie on a line through speed 0.
+        for i in range(3):
+            x, y, out_x, out_y = (rim[f"mark_{end}_{i}"] for end in ("x", "y", "out_x", "out_y"))
+            self.assertAlmostEqual(x / (600.0 + 2400.0 * y), out_x / (600.0 + 2400.0 * out_y))
+        upright = lines.speed_rim([10], 1000.0, 0.0, 2.0, 3000.0)
+        self.assertEqual((upright["mark_x_0"], upright["mark_out_x_0"]), (0.5, 0.5))
 
     def test_ghosts_and_orders_that_are_asked_for(self):
         gears = runup.Gears(23, 71, None)
@@ -262,13 +295,17 @@ class Files(Case):
         self.assertEqual((result.returncode, result.stderr), (0, ""))
         self.assertRegex(result.stdout, r"order 23 \(mesh 1\): 66\.[56] dB re 0.001 N")  # 20 lg(3 / sqrt(2) / 0.001)
         self.assertIn("a line without a name at order 22.5", result.stdout)
-        for name in ("run_ordermap", "run_tracks", "run_orderspectrum"):
+        for name in ("run_ordermap", "run_speedmap", "run_tracks", "run_orderspectrum"):
             for suffix, begin in (("png", b"\x89PNG"), ("svg", b"<?xml"), ("pdf", b"%PDF")):
                 with open(self.path(f"{name}.{suffix}"), "rb") as file:
                     self.assertTrue(file.read(8).startswith(begin))
         with open(self.path("run_ordermap.svg"), encoding="utf-8") as file:
             svg = file.read()
         for text in ("23 mesh 1", "46 mesh 2", "29.677 ghost wheel:40", "eigenfrequency f0 = 500 Hz", "hunting tooth"):
+            self.assertTrue(text in svg, text)
+        with open(self.path("run_speedmap.svg"), encoding="utf-8") as file:
+            svg = file.read()
+        for text in ("frequency / Hz", "pinion speed / rpm", "rim: orders, f0 = eigenfrequency 500 Hz", "600 to 2400 rpm"):
             self.assertTrue(text in svg, text)
         with open(self.path("run_lines.csv"), encoding="utf-8") as file:
             self.assertIn("\nmesh 1 - 1 wheel,22.258065,", file.read())
