@@ -87,12 +87,11 @@ typedef struct gmi_elastic_params {
 } gmi_elastic_params;
 
 /*
- * A cell of a table: cubics in the place 0 .. 1 within it, lowest power first, and their slopes by the roll length. Columns:
- * compliance c_n / cos(beta_b), and curvature factor.
+ * A cell of a table: cubics in the place 0 .. 1 within it, lowest power first. Columns: compliance c_n / cos(beta_b), and
+ * curvature factor.
  */
 typedef struct gmi_elastic_cell {
     double value[4][2];
-    double slope[3][2];
 } gmi_elastic_cell;
 
 /*
@@ -102,6 +101,7 @@ typedef struct gmi_elastic_cell {
  */
 typedef struct gmi_elastic_gear {
     double start, per_cell; /* (m, 1/m) */
+    double last;            /* number of the last cell */
 
     /* the first and the last hold the values beyond the ends */
     gmi_elastic_cell cell[GMI_ELASTIC_CELLS + 2];
@@ -118,7 +118,7 @@ typedef struct gmi_elastic_layer {
     double right[GMI_ELASTIC_STATIONS_MAX];
 } gmi_elastic_layer;
 
-/* Plain data, 28 kB; read-only after gmi_elastic_init(). */
+/* Plain data, 16 kB; read-only after gmi_elastic_init(). */
 typedef struct gmi_elastic {
     int stations;
     int lines_max;
@@ -198,6 +198,12 @@ typedef struct gmi_elastic_line {
     int limited[2];
 } gmi_elastic_line;
 
+/* Elements first .. last have the same lines, all of which go through them; or one element. */
+typedef struct gmi_elastic_run {
+    int first, last;
+    int kind; /* what they do there, see elastic_front.c */
+} gmi_elastic_run;
+
 /* Memory of the solver. Points into the memory of the caller; one for each flank side and thread. */
 typedef struct gmi_elastic_work {
     int stations, lines_max;
@@ -267,14 +273,16 @@ typedef struct gmi_elastic_work {
     double *last_step;
     double *other; /* adjoint of another functional */
 
-    double *carry;      /* scratch of the elimination, ... */
-    double *front;      /* ... and for unusual numbers of lines */
-    double *factor;     /* its records */
-    double *end_record; /* those of the ends of each line, [lines_max][2][4] */
-    int *factor_at;     /* [stations] where the records of each begin */
-    int *low, *high;    /* [stations] rows of the lines in each element; none if low > high */
-    int *traffic;       /* [stations] what they do there, see elastic_front.c */
-    int begin, end;     /* elements in which any line touches: begin .. end - 1 */
+    double *carry;        /* scratch of the elimination, ... */
+    double *front;        /* ... and for unusual numbers of lines */
+    double *factor;       /* its records */
+    double *end_record;   /* those of the ends of each line, [lines_max][2][4] */
+    int *factor_at;       /* [stations] where the records of each begin */
+    int *low, *high;      /* [stations] rows of the lines in each element; none if low > high */
+    int *traffic;         /* [stations] what they do there, see elastic_front.c */
+    int begin, end;       /* elements in which any line touches: begin .. end - 1 */
+    gmi_elastic_run *run; /* [stations] elements that are alike, of begin .. end - 1 ... */
+    int runs;             /* ... how many */
 } gmi_elastic_work;
 
 /* Bytes of memory for one flank side; 0 if the sizes are out of range. */
@@ -423,6 +431,9 @@ void gmi_elastic_pull(gmi_elastic_work *work, const double *factor, const double
  * within the nodes that lines touch. Returns the product of it with its solution.
  */
 double gmi_elastic_factor(const gmi_elastic *law, gmi_elastic_work *work, double *rows);
+
+/* Finds the runs of elements that are alike, which both go through. */
+void gmi_elastic_find_runs(gmi_elastic_work *work);
 
 /* Solves for another one. */
 void gmi_elastic_substitute(const gmi_elastic_work *work, double *rows);

@@ -205,7 +205,7 @@ typedef struct front_state {
 #define USUAL_TRAFFIC(X)
 #endif
 
-/* From element to element, as long as they are alike. Fronts of usual size are on the stack. */
+/* From element to element of a run. Fronts of usual size are on the stack. */
 #define SPECIAL_FUNCTIONS(e, g, b)                                                                 \
     SPECIAL void step_##e##g##b(front_state *f, int first, int last) {                             \
         const traffic t = {e, g, b};                                                               \
@@ -236,46 +236,43 @@ static int kind_of(int code) {
     return (code & ~0x333) != 0 ? 64 : ((code >> 4) & 0x30) + ((code >> 2) & 0xC) + (code & 3);
 }
 
-/* Elements first .. last are alike. */
-static void step_alike(front_state *f, int first, int last) {
-    const int code = f->work->traffic[first];
-    switch (kind_of(code)) {
+static void step_run(front_state *f, const gmi_elastic_run *run) {
+    switch (run->kind) {
 #define CASE(e, g, b)                                                                              \
     case KIND(e, g, b):                                                                            \
-        step_##e##g##b(f, first, last);                                                            \
+        step_##e##g##b(f, run->first, run->last);                                                  \
         return;
         USUAL_TRAFFIC(CASE)
 #undef CASE
     default:
-        any_step(traffic_of(code), f, first, last, f->work->front);
+        any_step(traffic_of(f->work->traffic[run->first]), f, run->first, run->last,
+                 f->work->front);
     }
 }
 
-static void forward_alike(const gmi_elastic_work *work, int first, int last, double *rows) {
-    const int code = work->traffic[first];
-    switch (kind_of(code)) {
+static void forward_run(const gmi_elastic_work *work, const gmi_elastic_run *run, double *rows) {
+    switch (run->kind) {
 #define CASE(e, g, b)                                                                              \
     case KIND(e, g, b):                                                                            \
-        forward_##e##g##b(work, first, last, rows);                                                \
+        forward_##e##g##b(work, run->first, run->last, rows);                                      \
         return;
         USUAL_TRAFFIC(CASE)
 #undef CASE
     default:
-        any_forward(traffic_of(code), work, first, last, rows);
+        any_forward(traffic_of(work->traffic[run->first]), work, run->first, run->last, rows);
     }
 }
 
-static void back_alike(const gmi_elastic_work *work, int first, int last, double *rows) {
-    const int code = work->traffic[first];
-    switch (kind_of(code)) {
+static void back_run(const gmi_elastic_work *work, const gmi_elastic_run *run, double *rows) {
+    switch (run->kind) {
 #define CASE(e, g, b)                                                                              \
     case KIND(e, g, b):                                                                            \
-        back_##e##g##b(work, first, last, rows);                                                   \
+        back_##e##g##b(work, run->first, run->last, rows);                                         \
         return;
         USUAL_TRAFFIC(CASE)
 #undef CASE
     default:
-        any_back(traffic_of(code), work, first, last, rows);
+        any_back(traffic_of(work->traffic[run->first]), work, run->first, run->last, rows);
     }
 }
 
@@ -290,26 +287,22 @@ static int are_alike(const gmi_elastic_work *work, int element, int other) {
            work->low[other] == work->low[element] && work->high[other] == work->high[element];
 }
 
-/* Last element of those that are like this one and follow it; first one of those before it. */
-static int last_alike(const gmi_elastic_work *work, int element) {
-    while (element + 1 < work->end && are_alike(work, element, element + 1)) {
-        ++element;
+void gmi_elastic_find_runs(gmi_elastic_work *work) {
+    work->runs = 0;
+    for (int first = work->begin; first < work->end;) {
+        int last = first;
+        while (last + 1 < work->end && are_alike(work, last, last + 1)) {
+            ++last;
+        }
+        const gmi_elastic_run run = {first, last, kind_of(work->traffic[first])};
+        work->run[work->runs++] = run;
+        first = last + 1;
     }
-    return element;
-}
-
-static int first_alike(const gmi_elastic_work *work, int element) {
-    while (element > work->begin && are_alike(work, element, element - 1)) {
-        --element;
-    }
-    return element;
 }
 
 static void back_all(const gmi_elastic_work *work, double *rows) {
-    for (int last = work->end - 1; last >= work->begin;) {
-        const int first = first_alike(work, last);
-        back_alike(work, first, last, rows);
-        last = first - 1;
+    for (int k = work->runs - 1; k >= 0; --k) {
+        back_run(work, &work->run[k], rows);
     }
 }
 
@@ -318,10 +311,8 @@ double gmi_elastic_factor(const gmi_elastic *law, gmi_elastic_work *work, double
     front_state f = {law, work, rows, work->factor, 0.0};
     work->carry[0] = law->rim.left[work->begin];
     work->carry[1] = rim[work->begin];
-    for (int first = work->begin; first < work->end;) {
-        const int last = last_alike(work, first);
-        step_alike(&f, first, last);
-        first = last + 1;
+    for (int k = 0; k < work->runs; ++k) {
+        step_run(&f, &work->run[k]);
     }
 
     /* The last station has the rim alone. */
@@ -334,10 +325,8 @@ double gmi_elastic_factor(const gmi_elastic *law, gmi_elastic_work *work, double
 }
 
 void gmi_elastic_substitute(const gmi_elastic_work *work, double *rows) {
-    for (int first = work->begin; first < work->end;) {
-        const int last = last_alike(work, first);
-        forward_alike(work, first, last, rows);
-        first = last + 1;
+    for (int k = 0; k < work->runs; ++k) {
+        forward_run(work, &work->run[k], rows);
     }
     rows[work->lines_max * work->stations + work->end] *= work->factor[work->factor_at[work->end]];
     back_all(work, rows);

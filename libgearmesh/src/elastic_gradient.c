@@ -23,13 +23,6 @@
 
 #include <string.h>
 
-#if defined(__GNUC__)
-#define APART                                                                                      \
-    static __attribute__((noinline)) /* inlined, gcc forgets that the arrays do not overlap */
-#else
-#define APART static
-#endif
-
 /* ---------------------------------------------------------------------------------------------
  * All points moved along rho_p, or the line of action
  * ------------------------------------------------------------------------------------------- */

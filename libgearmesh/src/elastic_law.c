@@ -90,9 +90,6 @@ static void set_cell(gmi_elastic_cell *cell, const table_node *from, const table
         cell->value[1][k] = first;
         cell->value[2][k] = square;
         cell->value[3][k] = cube;
-        cell->slope[0][k] = first / length;
-        cell->slope[1][k] = 2.0 * square / length;
-        cell->slope[2][k] = 3.0 * cube / length;
     }
 }
 
@@ -144,6 +141,7 @@ static int set_table(gmi_elastic_gear *table, const tooth_pair *pair, int of, do
     const double length = (end - start) / (double)GMI_ELASTIC_CELLS;
     table->start = start;
     table->per_cell = 1.0 / length;
+    table->last = (double)(GMI_ELASTIC_CELLS + 1);
 
     /* One cell after the other, each from the node behind it. */
     table_node from = {{0.0, 0.0}, {0.0, 0.0}}, to;

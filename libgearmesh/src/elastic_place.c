@@ -15,13 +15,6 @@
 #include <stdint.h>
 #include <string.h>
 
-#if defined(__GNUC__)
-#define APART                                                                                      \
-    static __attribute__((noinline)) /* inlined, gcc forgets that the arrays do not overlap */
-#else
-#define APART static
-#endif
-
 #define LEAST_FACTOR 1e-300
 
 /* Gauss points of a part, as shares of it: (1 -+ 1/sqrt(3)) / 2. */
@@ -60,7 +53,7 @@ size_t gmi_elastic_work_size(int stations, int lines) {
                ((POINT_ARRAYS + 2 * TABLE_ARRAYS) * sizes.points +
                 (GMI_ELASTIC_MATRICES + PART_ARRAYS) * sizes.slots + NODE_ARRAYS * sizes.nodes +
                 sizes.front + sizes.factor + sizes.ends + sizes.carry) +
-           sizeof(int) * INDEX_ARRAYS * (size_t)stations;
+           (sizeof(int) * INDEX_ARRAYS + sizeof(gmi_elastic_run)) * (size_t)stations;
 }
 
 static double *take(double **memory, size_t count) {
@@ -130,6 +123,7 @@ void gmi_elastic_work_init(gmi_elastic_work *work, int stations, int lines, void
     work->low = indices + stations;
     work->high = work->low + stations;
     work->traffic = work->high + stations;
+    work->run = (gmi_elastic_run *)(void *)(work->traffic + stations);
 }
 
 void gmi_elastic_work_reset(gmi_elastic_work *work) {
@@ -250,51 +244,52 @@ static void count_lines(gmi_elastic_work *work) {
  * Teeth
  * ------------------------------------------------------------------------------------------- */
 
-/* Compliance and curvature factor of one gear, and their slopes by its own roll length, in two arrays [count][2]. */
-APART void read_table(const gmi_elastic_gear *gear, int count, int slopes,
-                      const double *restrict roll, double *restrict values,
-                      double *restrict slope) {
-    const double last = (double)(GMI_ELASTIC_CELLS + 1);
+/* Cells of the points, and places 0 .. 1 within them; the cell that holds the value of the begin first. */
+APART void find_cells(int count, double first, double per_cell, double last,
+                      const double *restrict roll, double *restrict cell, double *restrict place) {
     for (int p = 0; p < count; ++p) {
-        /* In cells, the one that holds the value of the begin first. */
-        const double raw = (roll[p] - gear->start) * gear->per_cell + 1.0;
-        const double above = raw > 0.0 ? raw : 0.0;
-        const double u = above < last ? above : last;
-        const int cell = (int)u;
-        const double t = u - (double)cell;
-        const double *restrict c = &gear->cell[cell].value[0][0];
-        const double *restrict d = &gear->cell[cell].slope[0][0];
+        const double u = first + roll[p] * per_cell;
+        const double number = gmi_cell_of(u, last);
+        cell[p] = number;
+        place[p] = u - number;
+    }
+}
+
+/* Both columns of a table, and their slopes by the place, at one point after the other: arrays [count][2]. */
+APART void read_cells(const gmi_elastic_cell *restrict cells, int count,
+                      const double *restrict cell, const double *restrict place,
+                      double *restrict values, double *restrict slopes) {
+    for (int p = 0; p < count; ++p) {
+        const double t = place[p];
+        const double *restrict c = &cells[(ptrdiff_t)cell[p]].value[0][0];
         for (int k = 0; k < 2; ++k) {
-            values[2 * p + k] = c[k] + t * (c[2 + k] + t * (c[4 + k] + t * c[6 + k]));
-        }
-        for (int k = 0; k < 2 && slopes; ++k) {
-            slope[2 * p + k] = d[k] + t * (d[2 + k] + t * d[4 + k]);
+            const double third = c[6 + k];
+            const double second = c[4 + k] + t * third;
+            const double first = c[2 + k] + t * second;
+            values[2 * p + k] = c[k] + t * first;
+            slopes[2 * p + k] = first + t * (second + t * third);
         }
     }
 }
 
-/* Both whole teeth on the line of action of the drawing: s, 1 / (B e^L) and their slopes at once. */
-APART void read_pair(const gmi_elastic_gear *pair, int count, int slopes,
-                     const double *restrict roll, double *restrict tooth, double *restrict rate,
-                     double *restrict tooth_by_roll, double *restrict rate_by_roll) {
-    const double last = (double)(GMI_ELASTIC_CELLS + 1);
+static void read_table(const gmi_elastic_gear *gear, int count, const double *roll, double *cell,
+                       double *place, double *values, double *slopes) {
+    const double first = 1.0 - gear->start * gear->per_cell;
+    find_cells(count, first, gear->per_cell, gear->last, roll, cell, place);
+    read_cells(gear->cell, count, cell, place, values, slopes);
+}
+
+/* Of both whole teeth: s, 1 / (B e^L) and their slopes, that of the rate logarithmic. */
+APART void part_columns(int count, double per_cell, const double *restrict values,
+                        const double *restrict slopes, double *restrict tooth,
+                        double *restrict rate, double *restrict tooth_by_roll,
+                        double *restrict rate_by_roll) {
     for (int p = 0; p < count; ++p) {
-        const double raw = (roll[p] - pair->start) * pair->per_cell + 1.0;
-        const double above = raw > 0.0 ? raw : 0.0;
-        const double u = above < last ? above : last;
-        const int cell = (int)u;
-        const double t = u - (double)cell;
-        const gmi_elastic_cell *c = &pair->cell[cell];
-        tooth[p] =
-            c->value[0][0] + t * (c->value[1][0] + t * (c->value[2][0] + t * c->value[3][0]));
-        rate[p] = c->value[0][1] + t * (c->value[1][1] + t * (c->value[2][1] + t * c->value[3][1]));
-        if (slopes) {
-            tooth_by_roll[p] = c->slope[0][0] + t * (c->slope[1][0] + t * c->slope[2][0]);
-            rate_by_roll[p] = c->slope[0][1] + t * (c->slope[1][1] + t * c->slope[2][1]);
-        }
-    }
-    for (int p = 0; p < count && slopes; ++p) {
-        rate_by_roll[p] /= rate[p] + LEAST_FACTOR; /* logarithmic: none at rho = 0 */
+        const double factor = values[2 * p + 1];
+        tooth[p] = values[2 * p];
+        rate[p] = factor;
+        tooth_by_roll[p] = slopes[2 * p] * per_cell;
+        rate_by_roll[p] = slopes[2 * p + 1] * per_cell / (factor + LEAST_FACTOR); /* at rho = 0 */
     }
 }
 
@@ -316,6 +311,7 @@ typedef struct tooth_pair {
     double softness[2]; /* of pinion and wheel */
     double rim;         /* r^2 */
     double action;      /* T */
+    double per_cell[2]; /* of their tables */
 } tooth_pair;
 
 /* s^2 = c_p + c_w - r^2 and 1 / (B e^L) = 4 h_p h_w / T. */
@@ -336,14 +332,19 @@ APART void join_slopes(int count, const tooth_pair *teeth, const double *restric
                        double *restrict tooth_by_roll, double *restrict tooth_by_action,
                        double *restrict rate_by_roll, double *restrict rate_by_action) {
     const double per_action = 1.0 / teeth->action;
+    const double pinion_rate = teeth->per_cell[0], wheel_rate = teeth->per_cell[1];
+    const double pinion_half = 0.5 * teeth->softness[0] * pinion_rate;
+    const double wheel_half = 0.5 * teeth->softness[1] * wheel_rate;
     for (int k = 0; k < count; ++k) {
-        const double per_tooth = 0.5 / tooth[k];
-        const double by_pinion = teeth->softness[0] * pinion_slope[2 * k] * per_tooth;
-        const double by_wheel = teeth->softness[1] * wheel_slope[2 * k] * per_tooth;
+        const double per_tooth = 1.0 / tooth[k];
+        const double by_pinion = pinion_half * pinion_slope[2 * k] * per_tooth;
+        const double by_wheel = wheel_half * wheel_slope[2 * k] * per_tooth;
         const double factor = pinion[2 * k + 1] * wheel[2 * k + 1] + LEAST_FACTOR;
         const double per_factor = 1.0 / factor;
-        const double of_pinion = pinion_slope[2 * k + 1] * wheel[2 * k + 1] * per_factor;
-        const double of_wheel = wheel_slope[2 * k + 1] * pinion[2 * k + 1] * per_factor;
+        const double of_pinion =
+            pinion_rate * pinion_slope[2 * k + 1] * wheel[2 * k + 1] * per_factor;
+        const double of_wheel =
+            wheel_rate * wheel_slope[2 * k + 1] * pinion[2 * k + 1] * per_factor;
         tooth_by_roll[k] = by_pinion - by_wheel;
         tooth_by_action[k] = by_wheel;
         rate_by_roll[k] = of_pinion - of_wheel;
@@ -355,7 +356,7 @@ APART void join_slopes(int count, const tooth_pair *teeth, const double *restric
 static int place_teeth(const gmi_elastic *law, gmi_elastic_work *work) {
     const gmi_elastic_lines_at *at = &work->at;
     const int slots = work->slots, count = 2 * slots;
-    double *wheel_roll = work->scratch;
+    double *wheel_roll = work->scratch, *cell = work->force, *place = work->stiffness;
     for (int row = 0; row < work->count; ++row) {
         const gmi_elastic_line *line = &work->line[row];
         const double origin = at->origin + (double)line->index * at->pitch;
@@ -368,15 +369,19 @@ static int place_teeth(const gmi_elastic *law, gmi_elastic_work *work) {
     }
     if (at->pinion_softness == NULL && at->wheel_softness == NULL && at->slopes < 2 &&
         at->line_of_action == law->line_of_action) {
-        read_pair(&law->pair, count, at->slopes, work->roll, work->tooth, work->rate,
-                  work->tooth_by_roll, work->rate_by_roll);
+        read_table(&law->pair, count, work->roll, cell, place, work->table[0], work->table[2]);
+        part_columns(count, law->pair.per_cell, work->table[0], work->table[2], work->tooth,
+                     work->rate, work->tooth_by_roll, work->rate_by_roll);
         return 1;
     }
-    read_table(&law->gear[0], count, at->slopes, work->roll, work->table[0], work->table[2]);
-    read_table(&law->gear[1], count, at->slopes, wheel_roll, work->table[1], work->table[3]);
+    read_table(&law->gear[0], count, work->roll, cell, place, work->table[0], work->table[2]);
+    read_table(&law->gear[1], count, wheel_roll, cell, place, work->table[1], work->table[3]);
 
     /* Lines of whole teeth are the same to all that follows. */
-    tooth_pair teeth = {{1.0, 1.0}, law->rim_compliance, at->line_of_action};
+    tooth_pair teeth = {{1.0, 1.0},
+                        law->rim_compliance,
+                        at->line_of_action,
+                        {law->gear[0].per_cell, law->gear[1].per_cell}};
     const int whole = at->pinion_softness == NULL && at->wheel_softness == NULL;
     const int groups = whole ? 2 : 2 * work->count;
     int good = 1;
@@ -492,6 +497,7 @@ int gmi_elastic_place(const gmi_elastic *law, const gmi_elastic_lines_at *at,
     place_slots(law, work, parts);
     const int good = place_teeth(law, work);
     count_lines(work);
+    gmi_elastic_find_runs(work);
     follow_teeth(work);
     return good ? GM_OK : GM_ERR_PARAMETER;
 }
@@ -512,10 +518,12 @@ double gmi_elastic_load_at(const gmi_elastic *law, const gmi_elastic_work *work,
     const tooth_pair teeth = {{at->pinion_softness != NULL ? at->pinion_softness[number] : 1.0,
                                at->wheel_softness != NULL ? at->wheel_softness[number] : 1.0},
                               law->rim_compliance,
-                              at->line_of_action};
+                              at->line_of_action,
+                              {0.0, 0.0}};
     double pinion[2], wheel[2], tooth, rate;
-    read_table(&law->gear[0], 1, 0, &roll, pinion, NULL);
-    read_table(&law->gear[1], 1, 0, &wheel_roll, wheel, NULL);
+    double cell, within, slopes[2];
+    read_table(&law->gear[0], 1, &roll, &cell, &within, pinion, slopes);
+    read_table(&law->gear[1], 1, &wheel_roll, &cell, &within, wheel, slopes);
     join_teeth(1, &teeth, pinion, wheel, &tooth, &rate);
 
     /* Deflections of the element that holds z. */

@@ -13,13 +13,6 @@
 
 #include <string.h>
 
-#if defined(__GNUC__)
-#define APART                                                                                      \
-    static __attribute__((noinline)) /* inlined, gcc forgets that the arrays do not overlap */
-#else
-#define APART static
-#endif
-
 /* Both points of each slot of one line, the second one `other` places behind the first. */
 APART void approach_line(int count, int other, double x, const double *restrict place,
                          const double *restrict tooth, const double *restrict deviation,

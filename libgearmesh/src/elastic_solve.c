@@ -40,13 +40,6 @@
 
 enum { HALVINGS_MAX = 30 };
 
-#if defined(__GNUC__)
-#define APART                                                                                      \
-    static __attribute__((noinline)) /* inlined, gcc forgets that the arrays do not overlap */
-#else
-#define APART static
-#endif
-
 /* ---------------------------------------------------------------------------------------------
  * Residual and energy
  * ------------------------------------------------------------------------------------------- */
@@ -79,11 +72,7 @@ static int begin_at_state(const gmi_elastic *law, gmi_elastic_work *work, double
     gmi_elastic_approach(work, x);
     gmi_elastic_load(law, work);
     gmi_elastic_gather(work, work->force, work->change);
-    double force = 0.0;
-    for (int p = 0; p < 2 * work->slots; ++p) {
-        force += work->force[p];
-    }
-    return force > 0.0;
+    return gmi_elastic_sum(2 * work->slots, work->force) > 0.0;
 }
 
 /* Energy of a layer on stations begin .. end - 1, with what lies beyond them. */

@@ -50,12 +50,30 @@
 #define OWN_STACK
 #endif
 
+/* Loops over arrays that do not overlap, as arguments: inlined, gcc forgets that and does one number at a time. */
+#if defined(__GNUC__)
+#define APART static __attribute__((noinline))
+#else
+#define APART static
+#endif
+
 static inline double gmi_nan(void) {
     return (double)NAN;
 }
 
 static inline int gmi_is_finite(double value) {
     return isfinite(value);
+}
+
+/*
+ * Cell of a table that holds v, from 0 to last, as a number: adding 2^52 rounds to a whole one as a conversion would, but
+ * two at once. Between two cells it is either.
+ */
+static inline double gmi_cell_of(double v, double last) {
+    const double middle = v - 0.5;
+    const double above = middle > 0.0 ? middle : 0.0;
+    const double within = above < last ? above : last;
+    return (within + 0x1p52) - 0x1p52;
 }
 
 /* Whether an object may begin at this address. */

@@ -64,7 +64,7 @@ static gm_line_load_point point_at(const gm_mesh *mesh, const side_lines *found,
     /* Where it is, and how much material both flanks have there. */
     const double roll = found->lines.origin + (double)index * pair->transverse_base_pitch +
                         found->lines.advance * t1;
-    const double material = gmi_line_flanks_at(flanks, t1, roll, found->reach).value;
+    const double material = gmi_line_flanks_at(flanks, found->side, t1, roll, found->reach);
     gm_line_load_point point = {
         .side = found->side,
         .pinion_tooth = flanks->pinion_tooth,

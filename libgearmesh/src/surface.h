@@ -2,67 +2,33 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 
 /*
- * Deviations at single points: of one flank, and of both flanks that meet on a line of contact, with what tilted axes make
- * of it. Where an integral along the line is wanted, line.c has it.
+ * Deviations at points of the lines of contact of a side: of both flanks that meet there, with what tilted axes make of
+ * it. Where an integral along the line is wanted, line.c has it.
  */
 #ifndef GEARMESH_SURFACE_H
 #define GEARMESH_SURFACE_H
 
 #include "internal.h"
 
-typedef struct gmi_surface {
-    double value;   /* material added (m) */
-    double by_t1;   /* its slope along t1 of the common face (m) */
-    double by_roll; /* along the gear's own roll length (1) */
-} gmi_surface;
-
-/* Cell that holds v, clamped into the table. */
-static inline int gmi_surface_cell(double v, int last) {
-    const int cell = v > 0.0 ? (int)v : 0;
-    return cell < last ? cell : last;
-}
-
 /*
- * Table (NULL = none) and ramps of one flank, bilinear as along a line; pitch apart. t1 of the common face; roll: own roll
- * length beyond the start of the flank (m).
+ * Points on lines of one side, t1 = t1_from + per_place place on the common face, and what is found at them: material
+ * added, its slope along the place at fixed rho_p, and along rho_p at a fixed place.
  */
-static inline gmi_surface gmi_surface_at(const gmi_tables *tables, const gmi_grid *grid,
-                                         const double *values, double t1, double roll) {
-    gmi_surface result = {0.0, 0.0, 0.0};
-    const double v1 = grid->face_base + grid->face_rate * t1;
-    const double v2 = roll * grid->per_rho;
+typedef struct gmi_surface_points {
+    int count;
+    double t1_from, per_place;
+    const double *place;
+    const double *roll; /* rho_p (m) */
+    double *value;      /* (m) */
+    double *by_place;
+    double *by_roll; /* (1) */
+} gmi_surface_points;
 
-    /* Within the cell: corner + along_face p + (along_profile + mixed p) q. */
-    if (values != NULL) {
-        const int face = gmi_surface_cell(v1, grid->last_face);
-        const int profile = gmi_surface_cell(v2, grid->last_profile);
-        const double p = v1 - (double)face;
-        const double q = v2 - (double)profile;
-        const double *near = values + face * grid->row + (ptrdiff_t)profile * GMI_NODE_DOUBLES;
-        const double *far = near + grid->row;
-        const double along_profile = near[GMI_NODE_DOUBLES] - near[0];
-        const double along_face = far[0] - near[0];
-        const double mixed = far[GMI_NODE_DOUBLES] - far[0] - along_profile;
-        result.value = near[0] + along_face * p + (along_profile + mixed * p) * q;
-        result.by_t1 = (along_face + mixed * q) * grid->face_rate;
-        result.by_roll = (along_profile + mixed * p) * grid->per_rho;
-    }
-
-    /* Each ramp takes off what it exceeds zero by. */
-    for (int k = 0; k < tables->ramp_count; ++k) {
-        const gm_flank_ramp *ramp = &tables->ramps[k];
-        const double per_profile = ramp->per_t2 / grid->profile_cells;
-        const double height = ramp->offset +
-                              ramp->per_t1 * (grid->face_origin + grid->face_scale * t1) +
-                              per_profile * v2;
-        if (height > 0.0) {
-            result.value -= height;
-            result.by_t1 -= ramp->per_t1 * grid->face_scale;
-            result.by_roll -= per_profile * grid->per_rho;
-        }
-    }
-    return result;
-}
+/* Where points are in a table: first node of the cell, place within the cell, values of its four nodes. */
+typedef struct gmi_surface_cells {
+    double *node, *face, *profile;
+    double *near, *near_next, *far, *far_next;
+} gmi_surface_cells;
 
 /* The flanks that meet on one line of a side. */
 typedef struct gmi_line_flanks {
@@ -103,43 +69,41 @@ static inline gmi_line_flanks gmi_line_flanks_of(const gm_mesh *mesh, int side,
     return line;
 }
 
-/*
- * Material of both flanks, pitch included, at a point: t1 of the common face, rho_p, and reach = rho_p + rho_w. The slopes
- * are by t1 at fixed rho_p, and by rho_p at fixed t1.
- */
-static inline gmi_surface gmi_line_flanks_at(const gmi_line_flanks *line, double t1, double roll,
-                                             double reach) {
-    const gmi_engagement *at = &line->mesh->engagement;
-    const gmi_side *prepared = line->prepared;
-    gmi_surface sum = {line->pinion.pitch + line->wheel.pitch, 0.0, 0.0};
+/* Tables and ramps of one gear as the points see them. The gear's own roll length is from + per_roll rho_p. */
+typedef struct gmi_surface_gear {
+    const gmi_tables *tables;
+    const gmi_grid *grid;
+    double roll_from, per_roll;
+} gmi_surface_gear;
 
-    /* Each flank at its own roll length; the wheel's falls as the pinion's grows. */
-    if (prepared->pinion != NULL) {
-        const gmi_surface flank =
-            gmi_surface_at(prepared->pinion, &prepared->pinion_grid, line->pinion.values, t1,
-                           roll - line->mesh->pair->pinion.start_roll_length);
-        sum.value += flank.value;
-        sum.by_t1 += flank.by_t1;
-        sum.by_roll += flank.by_roll;
-    }
-    if (prepared->wheel != NULL) {
-        const gmi_surface flank =
-            gmi_surface_at(prepared->wheel, &prepared->wheel_grid, line->wheel.values, t1,
-                           reach - roll - at->wheel_profile_start);
-        sum.value += flank.value;
-        sum.by_t1 += flank.by_t1;
-        sum.by_roll -= flank.by_roll;
-    }
-
-    /* Tilted axes: a parabola along the line, on which rho_p grows with t1. */
-    if (at->is_tilted) {
-        const double *shift = line->tilted.shift;
-        const double by_roll = line->tilted.by_origin[0] + line->tilted.by_origin[1] * t1;
-        sum.value += shift[0] + (shift[1] + shift[2] * t1) * t1;
-        sum.by_roll += by_roll;
-        sum.by_t1 += shift[1] + 2.0 * shift[2] * t1 - line->advance * by_roll;
-    }
-    return sum;
+/* reach: rho_p + rho_w of the points (m). tables NULL: an ideal flank. */
+static inline gmi_surface_gear gmi_surface_gear_of(const gm_mesh *mesh, int side, int role,
+                                                   double reach) {
+    const gmi_side *prepared = &mesh->side[side];
+    const gmi_surface_gear pinion = {prepared->pinion, &prepared->pinion_grid,
+                                     -mesh->pair->pinion.start_roll_length, 1.0};
+    const gmi_surface_gear wheel = {prepared->wheel, &prepared->wheel_grid,
+                                    reach - mesh->engagement.wheel_profile_start, -1.0};
+    return role == GM_PINION ? pinion : wheel;
 }
+
+/* The cells of all points; the values of points from .. to - 1 in the table of their tooth, NULL = none; and adds them. */
+void gmi_surface_find(const gmi_surface_points *at, const gmi_surface_gear *gear,
+                      const gmi_surface_cells *cells);
+void gmi_surface_gather(const gmi_surface_cells *cells, const gmi_surface_gear *gear,
+                        const double *table, int from, int to);
+void gmi_surface_add_cells(const gmi_surface_points *at, const gmi_surface_gear *gear,
+                           const gmi_surface_cells *cells);
+
+/* Takes off the ramps of a gear. */
+void gmi_surface_add_ramps(const gmi_surface_points *at, const gmi_surface_gear *gear);
+
+/* Adds what tilted axes make of points from .. to - 1, on one line. */
+void gmi_surface_add_tilt(const gmi_surface_points *at, const gmi_line_flanks *line, int from,
+                          int to);
+
+/* Material of both flanks, pitch included, at one point: t1 of the common face, rho_p, and reach = rho_p + rho_w (m). */
+double gmi_line_flanks_at(const gmi_line_flanks *line, int side, double t1, double roll,
+                          double reach);
 
 #endif
