@@ -1,7 +1,7 @@
 /* SPDX-FileCopyrightText: The gearmesh authors */
 /* SPDX-License-Identifier: BSD-3-Clause */
 
-/* apps/gearsim/model.c, flight.c: equations of motion, their Jacobian, the quasi-static start, free flight. */
+/* apps/gearsim/model.c, flight.c: equations of motion, their tangent, the quasi-static start, free flight. */
 #include "flight.h"
 #include "model.h"
 
@@ -133,19 +133,26 @@ static void jacobian_is_that_of_differences(void) {
             model_init(&model, &conf, &gears);
 
             for (int i = 0; i < 200; ++i) {
-                double state[STATES_MAX], jacobian[STATES_MAX][STATES_MAX], expected[STATES_MAX];
+                double state[STATES_MAX], rates[STATES_MAX], expected[STATES_MAX];
+                model_tangent tangent;
+                enum mesh_contact contact;
                 const double side = i % 4 == 0 ? -1.0 : 1.0;
                 set_state(&model, side * gm_test_uniform(&seed, 45e-6, 60e-6), 0.0,
                           gm_test_uniform(&seed, 0.0, 20.0), 100.0, state);
-                GM_ASSERT_INT(model_jacobian(&model, 0.1, state, jacobian), GM_OK);
+                GM_ASSERT_INT(
+                    model_derivative_and_tangent(&model, 0.1, state, rates, &tangent, &contact),
+                    GM_OK);
 
                 for (int column = 0; column < model.states; ++column) {
                     difference(&model, state, column, 1e-4, expected);
                     for (int row = 0; row < model.states; ++row) {
                         /* Speed rows have the size w0, which is what the solver sees. */
                         const double scale = model.natural_frequency;
+                        /* What the tangent leaves out: lines that grow with x, and friction. */
+                        const double left_out = m == 2 ? 0.1 : m == 1 ? 1e-3 : 0.0;
                         ++compared;
-                        kinks += fabs(jacobian[column][row] - expected[row]) > 1e-6 * scale;
+                        kinks += fabs(tangent.jacobian[column][row] - expected[row]) >
+                                 (1e-6 + left_out) * scale;
                     }
                 }
             }
@@ -162,21 +169,23 @@ static void jacobian_knows_when_flanks_would_pull(void) {
     const config conf = case_config(MODEL_SIMPLE, DRIVE_SPEED);
     const gear_mesh gears = case_mesh(&conf);
     gear_model model;
-    double state[STATES_MAX], jacobian[STATES_MAX][STATES_MAX];
+    double state[STATES_MAX], rates[STATES_MAX];
+    model_tangent tangent;
+    enum mesh_contact contact;
     model_init(&model, &conf, &gears);
 
     /* Parting so fast that the damper would pull: no force, no derivative. */
     set_state(&model, 50.1e-6, -1.0, 0.0, 0.0, state);
-    model_jacobian(&model, 0.0, state, jacobian);
-    GM_ASSERT(jacobian[STATE_OFFSET][STATE_OFFSET_RATE] == 0.0);
-    GM_ASSERT(jacobian[STATE_OFFSET_RATE][STATE_OFFSET_RATE] == 0.0);
+    model_derivative_and_tangent(&model, 0.0, state, rates, &tangent, &contact);
+    GM_ASSERT(tangent.jacobian[STATE_OFFSET][STATE_OFFSET_RATE] == 0.0);
+    GM_ASSERT(tangent.jacobian[STATE_OFFSET_RATE][STATE_OFFSET_RATE] == 0.0);
 
     set_state(&model, 52e-6, 1e-3, 0.0, 0.0, state);
-    model_jacobian(&model, 0.0, state, jacobian);
+    model_derivative_and_tangent(&model, 0.0, state, rates, &tangent, &contact);
     const double mobility = pow(gears.pair.wheel.base_radius, 2) / case_wheel_inertia;
-    GM_ASSERT_REL(jacobian[STATE_OFFSET_RATE][STATE_OFFSET_RATE], -case_damper(&gears) * mobility,
-                  1e-13);
-    GM_ASSERT_REL(jacobian[STATE_OFFSET][STATE_OFFSET_RATE],
+    GM_ASSERT_REL(tangent.jacobian[STATE_OFFSET_RATE][STATE_OFFSET_RATE],
+                  -case_damper(&gears) * mobility, 1e-13);
+    GM_ASSERT_REL(tangent.jacobian[STATE_OFFSET][STATE_OFFSET_RATE],
                   -case_spring(&gears) * mobility / model.natural_frequency, 1e-13);
     model_free(&model);
 }
@@ -269,14 +278,16 @@ static void library_status_is_handed_on(void) {
     const config conf = case_config(MODEL_3D, DRIVE_SPEED);
     const gear_mesh gears = case_mesh(&conf);
     gear_model model;
-    double state[STATES_MAX], derivative[STATES_MAX], jacobian[STATES_MAX][STATES_MAX];
+    double state[STATES_MAX], derivative[STATES_MAX];
+    model_tangent tangent;
     enum mesh_contact contact;
     model_init(&model, &conf, &gears);
 
     set_state(&model, 3e-3, 0.0, 0.0, 0.0, state);
     GM_ASSERT_INT(model_derivative(&model, 0.0, state, derivative, &contact),
                   GM_STATE_OUT_OF_RANGE);
-    GM_ASSERT_INT(model_jacobian(&model, 0.0, state, jacobian), GM_STATE_OUT_OF_RANGE);
+    GM_ASSERT_INT(model_derivative_and_tangent(&model, 0.0, state, derivative, &tangent, &contact),
+                  GM_STATE_OUT_OF_RANGE);
     set_state(&model, (double)NAN, 0.0, 0.0, 0.0, state);
     GM_ASSERT_INT(model_derivative(&model, 0.0, state, derivative, &contact), GM_STATE_NOT_FINITE);
     model_free(&model);

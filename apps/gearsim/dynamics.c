@@ -519,9 +519,9 @@ static void summarize(const dynamic_run *run) {
 
     message_note(run->conf->messages,
                  "gearsim: %.6g s simulated in %.3g s: %ld steps (%ld more repeated), %ld "
-                 "right-hand sides, %ld Jacobians, %ld looks ahead",
+                 "right-hand sides, %ld looks ahead",
                  integrator_time(run->solver), progress_elapsed(&run->progress), counts.steps,
-                 counts.rejected, counts.derivatives, counts.jacobians, counts.looks);
+                 counts.rejected, counts.derivatives, counts.looks);
 }
 
 /* Tells how it went and closes the file; returns the exit code of the run. */

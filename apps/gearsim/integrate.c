@@ -5,6 +5,7 @@
 #include "flight.h"
 #include "integrate_package.h"
 #include "interrupt.h"
+#include "small_vector.h"
 
 #include <float.h>
 #include <math.h>
@@ -124,7 +125,7 @@ static int set_up(integrator *solver, const double start[]) {
         redirect_messages(solver) != 0) {
         return -1;
     }
-    solver->state = N_VNew_Serial(states, solver->context);
+    solver->state = small_vector_create(states, solver->context);
     if (solver->state == NULL) {
         return -1;
     }
@@ -314,7 +315,6 @@ integrator_statistics integrator_counts(const integrator *solver) {
 
     counts.steps += solver->before.steps;
     counts.derivatives += solver->before.derivatives;
-    counts.jacobians += solver->before.jacobians;
     counts.rejected += solver->before.rejected;
     counts.looks = solver->looks;
     return counts;

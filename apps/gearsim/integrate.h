@@ -22,7 +22,6 @@ typedef struct integrator_options {
 typedef struct integrator_statistics {
     long steps;
     long derivatives; /* evaluations of the right-hand side */
-    long jacobians;   /* 0 with explicit methods */
     long looks;       /* evaluations of the mesh ahead of the solver, in free flight */
     long rejected;    /* steps repeated because their error was too large */
 } integrator_statistics;

@@ -2,56 +2,39 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 
 /*
- * CVODE: Adams or BDF formulas of variable order and step, Newton's iteration with the model's own
- * Jacobian.
+ * CVODE: Adams or BDF formulas of variable order and step, with a corrector of its own (integrate_corrector.h).
+ * Values within a step are those of its polynomial, which is read once in each step that somebody asks about.
  */
+#include "integrate_corrector.h"
 #include "integrate_package.h"
 
 #include <cvode/cvode.h>
 #include <stdlib.h>
 #include <string.h>
-#include <sunlinsol/sunlinsol_dense.h>
-#include <sunmatrix/sunmatrix_dense.h>
+
+/* A step is shortened to a quarter so many times in a row, at most: down to 1e-12 of it. */
+enum { SHORTENINGS = 20 };
+
+/* Adams formulas go up to order 12. */
+enum { ORDERS = 12 };
 
 typedef struct cvode_memory {
     void *cvode;
-    SUNMatrix matrix;
-    SUNLinearSolver linear_solver;
-    N_Vector interpolated;
+    SUNNonlinearSolver corrector;
+    N_Vector scratch;
+    int order; /* of the polynomial below, -1: that of the last step has not been read */
+    double polynomial[ORDERS + 1]
+                     [STATES_MAX]; /* over the time from the end of the step (1, 1/s, ...) */
 } cvode_memory;
 
-static int jacobian(sunrealtype time, N_Vector state, N_Vector state_derivative, SUNMatrix result,
-                    void *data, N_Vector scratch1, N_Vector scratch2, N_Vector scratch3) {
+static int derivative(sunrealtype time, N_Vector state, N_Vector result, void *data) {
     integrator *solver = data;
-    const int states = solver->model->states;
-    double columns[STATES_MAX][STATES_MAX];
-    (void)state_derivative;
-    (void)scratch1;
-    (void)scratch2;
-    (void)scratch3;
+    const double seen = integrator_seen_time(solver, time);
 
-    const int status = model_jacobian(solver->model, integrator_seen_time(solver, time),
-                                      NV_DATA_S(state), columns);
-    if (status == GM_OK) {
-        for (int column = 0; column < states; ++column) {
-            memcpy(SM_COLUMN_D(result, column), columns[column],
-                   (size_t)states * sizeof columns[column][0]);
-        }
-    }
-    return integrator_keep_status(solver, status);
-}
-
-static int create_vectors(const integrator *solver, cvode_memory *memory) {
-    const sunindextype states = solver->model->states;
-
-    memory->interpolated = N_VNew_Serial(states, solver->context);
-    memory->matrix = SUNDenseMatrix(states, states, solver->context);
-    if (memory->interpolated == NULL || memory->matrix == NULL) {
-        return -1;
-    }
-    memory->linear_solver = SUNLinSol_Dense(solver->state, memory->matrix, solver->context);
-
-    return memory->linear_solver != NULL ? 0 : -1;
+    return integrator_keep_status(solver,
+                                  model_derivative_and_tangent(solver->model, seen,
+                                                               NV_DATA_S(state), NV_DATA_S(result),
+                                                               &solver->tangent, &solver->contact));
 }
 
 static int set_up(integrator *solver, cvode_memory *memory) {
@@ -66,23 +49,28 @@ static int set_up(integrator *solver, cvode_memory *memory) {
 #endif
     /* -1: any number of steps, as each is asked for by itself; no warnings of short ones, integrate.c
      * watches them. */
-    return memory->cvode == NULL ||
-           CVodeInit(memory->cvode, integrator_derivative, 0.0, solver->state) ||
+    return memory->cvode == NULL || CVodeInit(memory->cvode, derivative, 0.0, solver->state) ||
            CVodeSetUserData(memory->cvode, solver) ||
            CVodeWFtolerances(memory->cvode, integrator_error_weights) ||
-           CVodeSetLinearSolver(memory->cvode, memory->linear_solver, memory->matrix) ||
-           CVodeSetJacFn(memory->cvode, jacobian) || CVodeSetMaxNumSteps(memory->cvode, -1) ||
-           CVodeSetMaxHnilWarns(memory->cvode, -1);
+           CVodeSetNonlinearSolver(memory->cvode, memory->corrector) ||
+           CVodeSetMaxConvFails(memory->cvode, SHORTENINGS) ||
+           CVodeSetMaxNumSteps(memory->cvode, -1) || CVodeSetMaxHnilWarns(memory->cvode, -1);
 }
 
 static int create(integrator *solver) {
     cvode_memory *memory = calloc(1, sizeof *memory);
 
     solver->memory = memory;
-    if (memory == NULL || create_vectors(solver, memory) != 0) {
+    if (memory == NULL) {
         return -1;
     }
-    return set_up(solver, memory);
+    memory->order = -1;
+    memory->scratch = N_VClone(solver->state);
+    if (memory->scratch == NULL) {
+        return -1;
+    }
+    memory->corrector = corrector_create(solver, memory->scratch);
+    return memory->corrector != NULL ? set_up(solver, memory) : -1;
 }
 
 static void destroy(integrator *solver) {
@@ -92,14 +80,11 @@ static void destroy(integrator *solver) {
     }
 
     CVodeFree(&memory->cvode);
-    if (memory->linear_solver != NULL) {
-        SUNLinSolFree(memory->linear_solver);
+    if (memory->corrector != NULL) {
+        SUNNonlinSolFree(memory->corrector);
     }
-    if (memory->matrix != NULL) {
-        SUNMatDestroy(memory->matrix);
-    }
-    if (memory->interpolated != NULL) {
-        N_VDestroy(memory->interpolated);
+    if (memory->scratch != NULL) {
+        N_VDestroy(memory->scratch);
     }
     free(memory);
 }
@@ -107,6 +92,7 @@ static void destroy(integrator *solver) {
 static int step(integrator *solver, double longest, double stop) {
     cvode_memory *memory = solver->memory;
 
+    memory->order = -1;
     CVodeSetMaxStep(memory->cvode, longest);
     CVodeSetStopTime(memory->cvode, stop);
     return CVode(memory->cvode, integrator_first_target(solver), solver->state, &solver->time,
@@ -119,26 +105,51 @@ static int restart(integrator *solver) {
     return CVodeReInit(memory->cvode, solver->time, solver->state);
 }
 
+/* Its derivatives at the end of the step, over the factorials. */
+static int read_polynomial(const integrator *solver, cvode_memory *memory) {
+    const int states = solver->model->states;
+    double factorial = 1.0;
+    int order = 0;
+
+    CVodeGetLastOrder(memory->cvode, &order);
+    for (int k = 0; k <= order; ++k) {
+        if (CVodeGetDky(memory->cvode, solver->time, k, memory->scratch) != CV_SUCCESS) {
+            return -1;
+        }
+        for (int i = 0; i < states; ++i) {
+            memory->polynomial[k][i] = NV_Ith_S(memory->scratch, i) / factorial;
+        }
+        factorial *= k + 1;
+    }
+    memory->order = order;
+    return 0;
+}
+
 static int interpolate(integrator *solver, double time, double state[]) {
     cvode_memory *memory = solver->memory;
+    const double since = time - solver->time;
 
-    if (CVodeGetDky(memory->cvode, time, 0, memory->interpolated) != CV_SUCCESS) {
+    if (memory->order < 0 && read_polynomial(solver, memory) != 0) {
         return -1;
     }
-    memcpy(state, NV_DATA_S(memory->interpolated), (size_t)solver->model->states * sizeof state[0]);
+    for (int i = 0; i < solver->model->states; ++i) {
+        state[i] = memory->polynomial[memory->order][i];
+        for (int k = memory->order - 1; k >= 0; --k) {
+            state[i] = memory->polynomial[k][i] + since * state[i];
+        }
+    }
     return 0;
 }
 
 static integrator_statistics counts(const integrator *solver) {
     const cvode_memory *memory = solver->memory;
-    long int steps = 0, derivatives = 0, jacobians = 0, rejected = 0;
+    long int steps = 0, derivatives = 0, rejected = 0;
 
     CVodeGetNumSteps(memory->cvode, &steps);
     CVodeGetNumRhsEvals(memory->cvode, &derivatives);
-    CVodeGetNumJacEvals(memory->cvode, &jacobians);
     CVodeGetNumErrTestFails(memory->cvode, &rejected);
     const integrator_statistics result = {
-        .steps = steps, .derivatives = derivatives, .jacobians = jacobians, .rejected = rejected};
+        .steps = steps, .derivatives = derivatives, .rejected = rejected};
 
     return result;
 }

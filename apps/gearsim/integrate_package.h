@@ -46,6 +46,7 @@ struct integrator {
     N_Vector state;               /* at the end of the last step */
     sunrealtype time;             /* end of the last step (s) */
     enum mesh_contact contact;    /* in the last evaluation of the model */
+    model_tangent tangent;        /* likewise; of CVODE alone */
     double row_time;              /* next row of the tables, HUGE_VAL = there is none */
     double last_time;             /* before it; nothing is evaluated later until it is reached */
     int is_kink;                  /* the solver starts again there */

@@ -475,57 +475,54 @@ static enum mesh_contact contact_of(const gear_model *model, const gm_mesh_resul
     return mesh->force == 0.0 || touching < light_contact * pairs ? MESH_LIGHT : MESH_CARRIES;
 }
 
-int model_derivative(const gear_model *model, double time, const double state[],
-                     double derivative[], enum mesh_contact *contact) {
+/* Motion and mesh in a state, and what the state changes by with the time. */
+static int evaluate_rates(const gear_model *model, double time, const double state[],
+                          double derivative[], gear_motion *motion, gm_mesh_result *mesh) {
     /* Evaluated once: after the mesh it costs most. */
     const response_value noise = noise_response(model, time);
-    const gear_motion motion = motion_with(model, time, state, &noise);
-    gm_mesh_result mesh;
-    const int status = model_evaluate(model, &motion, GM_WANT_FORCE, &mesh);
+    *motion = motion_with(model, time, state, &noise);
+    const int status = model_evaluate(model, motion, GM_WANT_FORCE, mesh);
     if (status != GM_OK) {
         return status;
     }
 
     const double w0 = model->natural_frequency;
     const double to_state = 1.0 / (w0 * micrometre);
-    const model_torques torques = model_applied(model, time, &motion);
+    const model_torques torques = model_applied(model, time, motion);
     const double applied = applied_acceleration(model, time, &torques, &noise);
-    *contact = contact_of(model, &mesh);
 
     derivative[STATE_OFFSET] = w0 * state[STATE_OFFSET_RATE];
-    derivative[STATE_OFFSET_RATE] = (applied - mesh_acceleration(model, &mesh)) * to_state;
+    derivative[STATE_OFFSET_RATE] = (applied - mesh_acceleration(model, mesh)) * to_state;
 
     if (model->states == STATES_MAX) {
         derivative[STATE_PINION_ARC] = w0 * state[STATE_PINION_SPEED];
         derivative[STATE_PINION_SPEED] =
-            (torques.drive - model->torque_to_pinion * mesh.pinion_torque) * to_state;
+            (torques.drive - model->torque_to_pinion * mesh->pinion_torque) * to_state;
     }
     return GM_OK;
+}
+
+int model_derivative(const gear_model *model, double time, const double state[],
+                     double derivative[], enum mesh_contact *contact) {
+    gear_motion motion;
+    gm_mesh_result mesh;
+    const int status = evaluate_rates(model, time, state, derivative, &motion, &mesh);
+
+    if (status == GM_OK) {
+        *contact = contact_of(model, &mesh);
+    }
+    return status;
 }
 
 /* ---------------------------------------------------------------------------------------------
  * Jacobian
  * ------------------------------------------------------------------------------------------- */
 
-/* Adds what a torque of the mesh does to the row of a speed: x' or r_bp phi_p', of which the torque takes
- * `factor` (1/(kg m)) times itself off. */
-static void add_mesh_torque(double jacobian[STATES_MAX][STATES_MAX], int row,
-                            const gear_model *model, double factor, const gm_gradient *torque_by) {
-    const gm_pair *pair = &model->gears->pair;
-    const double r_bp = pair->pinion.base_radius;
-    const double r_bw = pair->wheel.base_radius;
-    const double w0 = model->natural_frequency;
-
-    /* At fixed phi_p a change of x is one of -phi_w; at fixed x, phi_w follows phi_p by r_bp / r_bw. */
-    const double by_offset = -torque_by->wheel_angle / r_bw;
-    const double by_offset_rate = -torque_by->wheel_speed / r_bw;
-    const double by_arc = torque_by->pinion_angle / r_bp + torque_by->wheel_angle / r_bw;
-    const double by_arc_speed = torque_by->pinion_speed / r_bp + torque_by->wheel_speed / r_bw;
-
-    jacobian[STATE_OFFSET][row] -= factor * by_offset / w0;
-    jacobian[STATE_OFFSET_RATE][row] -= factor * by_offset_rate;
-    jacobian[STATE_PINION_ARC][row] -= factor * by_arc / w0;
-    jacobian[STATE_PINION_SPEED][row] -= factor * by_arc_speed;
+/* Adds what the force does to the row of a speed, x' or r_bp phi_p', of which 1 N takes `mobility` (1/kg) off. */
+static void add_force(double jacobian[STATES_MAX][STATES_MAX], int row, const gear_model *model,
+                      double mobility, double stiffness, double damping) {
+    jacobian[STATE_OFFSET][row] -= mobility * stiffness / model->natural_frequency;
+    jacobian[STATE_OFFSET_RATE][row] -= mobility * damping;
 }
 
 /* What drag and load do to the rows of the speeds, by x' = r_bp phi_p' - r_bw phi_w'. */
@@ -554,27 +551,32 @@ static void add_torques(double jacobian[STATES_MAX][STATES_MAX], const gear_mode
     jacobian[STATE_PINION_SPEED][STATE_PINION_SPEED] -= pinion_slope / pair->pinion.base_radius;
 }
 
-int model_jacobian(const gear_model *model, double time, const double state[],
-                   double jacobian[STATES_MAX][STATES_MAX]) {
-    const gear_motion motion = model_motion(model, time, state);
+int model_derivative_and_tangent(const gear_model *model, double time, const double state[],
+                                 double derivative[], model_tangent *tangent,
+                                 enum mesh_contact *contact) {
+    const gm_mesh *prepared = model->gears->prepared;
+    double(*jacobian)[STATES_MAX] = tangent->jacobian;
+    gear_motion motion;
     gm_mesh_result mesh;
-    const int status = model_evaluate(model, &motion, GM_WANT_DERIVATIVES, &mesh);
+    const int status = evaluate_rates(model, time, state, derivative, &motion, &mesh);
     if (status != GM_OK) {
         return status;
     }
+    *contact = contact_of(model, &mesh);
 
+    /* The flanks that touch are springs and dampers; where they would have to pull they are neither. */
+    const double stiffness = mesh.force != 0.0 ? gm_mesh_touching_stiffness(prepared, &mesh) : 0.0;
+    const double damping =
+        stiffness * (gm_mesh_mean_damping(prepared) / gm_mesh_mean_stiffness(prepared));
     const double w0 = model->natural_frequency;
-    memset(jacobian, 0, STATES_MAX * sizeof jacobian[0]);
+
+    tangent->carried = mesh_acceleration(model, &mesh) / model_speed_unit(model);
+    memset(jacobian, 0, sizeof tangent->jacobian);
     jacobian[STATE_OFFSET_RATE][STATE_OFFSET] = w0;
     jacobian[STATE_PINION_SPEED][STATE_PINION_ARC] = w0;
-    add_mesh_torque(jacobian, STATE_OFFSET_RATE, model, model->torque_to_offset,
-                    &mesh.wheel_torque_by);
-    add_mesh_torque(jacobian, STATE_OFFSET_RATE, model, model->torque_to_pinion,
-                    &mesh.pinion_torque_by);
-    add_mesh_torque(jacobian, STATE_PINION_SPEED, model, model->torque_to_pinion,
-                    &mesh.pinion_torque_by);
+    add_force(jacobian, STATE_OFFSET_RATE, model, mobility(model), stiffness, damping);
+    add_force(jacobian, STATE_PINION_SPEED, model, model->pinion_mobility, stiffness, damping);
     add_torques(jacobian, model, &motion);
-
     return GM_OK;
 }
 

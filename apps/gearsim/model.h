@@ -151,9 +151,20 @@ model_flight model_without_contact(const gear_model *model, double time, const g
 int model_derivative(const gear_model *model, double time, const double state[],
                      double derivative[], enum mesh_contact *contact);
 
-/* jacobian[column][row] = d derivative[row] / d state[column]. Returns a library status. */
-int model_jacobian(const gear_model *model, double time, const double state[],
-                   double jacobian[STATES_MAX][STATES_MAX]);
+/* How the derivative follows the state, from what every evaluation knows. */
+typedef struct model_tangent {
+    double jacobian[STATES_MAX]
+                   [STATES_MAX]; /* [column][row]: d derivative[row] / d state[column] */
+    double carried;              /* what the mesh takes off the derivative of x' */
+} model_tangent;
+
+/*
+ * The same with its tangent. The mesh is in it as the part of the flanks that touches: force by x and x'. How the force
+ * follows the pinion's angle at the same x is left out, and so is what friction adds to the torques: some per cent.
+ */
+int model_derivative_and_tangent(const gear_model *model, double time, const double state[],
+                                 double derivative[], model_tangent *tangent,
+                                 enum mesh_contact *contact);
 
 /* Next row of the tables behind a time, HUGE_VAL = there is none. At a kink the solver has to start again. */
 double model_next_row(const gear_model *model, double time, int *is_kink);
