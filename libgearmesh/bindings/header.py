@@ -9,6 +9,7 @@ from __future__ import annotations
 import dataclasses
 import re
 
+UNIT = re.compile(r"(?:^|[,(] ?|[0-9] )(rad|N/m2|N/m|N s/m|N m|Pa s|m/s|m)(?=[,;:)\] ]|$)")
 TOKEN = re.compile(r'/\*.*?\*/|"[^"]*"|[A-Za-z_]\w*|\d[\w.]*|\.\.\.|\S', re.DOTALL)
 
 
@@ -28,6 +29,12 @@ class Variable:
         """Name of the enum whose members an int takes, as its comment says; None if there is none."""
         found = re.search(r"enum (gm_\w+)", self.doc) if self.type == "int" and not self.pointers else None
         return found and found[1]
+
+    @property
+    def unit(self):
+        """Of a number, as its comment says; "" if there is none."""
+        found = UNIT.search(" ".join(self.doc.split())) if self.type == "double" else None
+        return found[1] if found else ""
 
     @property
     def declaration(self):
@@ -78,6 +85,21 @@ class Header:
             arguments = ", ".join(argument.declaration for argument in function.arguments) or "void"
             lines.append(f"{function.result.declaration}{function.name}({arguments});")
         return "\n".join(lines)
+
+    def parameters(self, struct, name=""):
+        """Fields of a struct of parameters as (name, unit, field), those of a struct within it as `pose.skew`; without arrays, which
+        are left at their default."""
+        unit = ""
+        for field in self.structs[struct].fields:
+            if field.pointers:
+                continue
+            if field.size:
+                raise SyntaxError(f"{struct}.{field.name}: there is no parameter of this kind")
+            if field.type in self.structs:
+                yield from self.parameters(field.type, f"{name}{field.name}.")
+                continue
+            unit = unit if "as for the pinion" in field.doc else field.unit
+            yield f"{name}{field.name}", unit, field
 
     # Tokens, of which comments that document something are kept.
 

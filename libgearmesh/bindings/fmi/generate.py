@@ -16,25 +16,14 @@ folder = pathlib.Path(__file__).resolve().parent
 sys.path.insert(0, str(folder.parent))
 from header import Header  # noqa: E402
 
-UNIT = re.compile(r"(?:^|[,(] ?|[0-9] )(rad|N/m|N s/m|m)(?=[,;)\] ]|$)")
-FMI_UNITS = {"N s/m": "N.s/m"}
+FMI_UNITS = {"N s/m": "N.s/m", "N m": "N.m", "Pa s": "Pa.s"}
 
 
-def rows(header, struct, place, name=""):
-    for field in header.structs[struct].fields:
-        if field.pointers:
-            continue  # arrays, which are left at their default
-        if field.size:
-            raise SyntaxError(f"{struct}.{field.name}: an FMU has no parameter of this kind")
-        if field.type in header.structs:
-            yield from rows(header, field.type, f"{place}.{field.name}", f"{name}{field.name}.")
-            continue
-        doc = " ".join(field.doc.split())
-        unit = UNIT.search(doc)
-        unit = FMI_UNITS.get(unit[1], unit[1]) if unit and field.type == "double" else ""
+def rows(header, struct, place):
+    for name, unit, field in header.parameters(struct):
         kind = {"double": "REAL", "int": "INTEGER"}[field.type]
-        yield (f'{{"{name}{field.name}", {json.dumps(unit)}, {json.dumps(doc)}, KIND_{kind}, ROLE_PARAMETER, '
-               f"offsetof(fmu_values, {place}.{field.name}), 0.0, 0}},")
+        yield (f'{{"{name}", {json.dumps(FMI_UNITS.get(unit, unit))}, {json.dumps(" ".join(field.doc.split()))}, '
+               f"KIND_{kind}, ROLE_PARAMETER, offsetof(fmu_values, {place}.{name}), 0.0, 0}},")
 
 
 def parameters(output):

@@ -91,8 +91,8 @@ static fmu_integrator *start(const fmu_instance *instance) {
         return NULL;
     }
     integrator->values = instance->values;
-    integrator->mesh = instance->mesh;
-    integrator->workspace = instance->workspace;
+    integrator->mesh = instance->made.mesh;
+    integrator->workspace = instance->made.workspace;
     integrator->end = instance->values.time;
 
     SUNContext context = integrator->context;

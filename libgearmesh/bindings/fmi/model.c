@@ -60,15 +60,7 @@ fmu_instance *fmu_new(const char *name, const char *resources) {
 static void discard(fmu_instance *instance) {
     fmu_integrator_free(instance->integrator);
     instance->integrator = NULL;
-    for (int gear = 0; gear < 2; ++gear) {
-        gm_flanks_free(instance->flanks[gear]);
-        instance->flanks[gear] = NULL;
-    }
-    free(instance->memory);
-    instance->memory = NULL;
-    free(instance->workspace_memory);
-    instance->workspace_memory = NULL;
-    instance->workspace = NULL;
+    file_mesh_free(&instance->made);
     instance->is_prepared = 0;
     instance->is_evaluated = 0;
 }
@@ -92,96 +84,21 @@ void fmu_reset(fmu_instance *instance) {
  * Preparation
  * ------------------------------------------------------------------------------------------- */
 
-/* A parameter that the library refuses. */
-static int refused(fmu_instance *instance, int status, const char *field, const char *requirement) {
-    if (field == NULL) {
-        return failed(instance, gm_status_text(status));
+/* Where a file lies: in the resources unless its path is absolute; "" for none. */
+static int locate(fmu_instance *instance, const char *given, char path[2 * TEXT_SIZE]) {
+    const int is_absolute =
+        given[0] == '/' || given[0] == '\\' || (given[0] != '\0' && given[1] == ':');
+    const int length = snprintf(path, 2 * TEXT_SIZE, "%s%s",
+                                is_absolute || given[0] == '\0' ? "" : instance->resources, given);
+    if (length < 0 || length >= 2 * TEXT_SIZE) {
+        return failed(instance, "the path of a file of flanks is too long");
     }
-    snprintf(instance->message, sizeof instance->message, "%s: must be %s", field, requirement);
-    return failed(instance, instance->message);
-}
-
-/* Flanks of a gear from its two files, which lie in the resources unless the path is absolute; ideal without. */
-static int load_flanks(fmu_instance *instance, const gm_pair *pair, int gear) {
-    char path[2][2 * TEXT_SIZE];
-    for (int file = 0; file < 2; ++file) {
-        const char *given = instance->values.text[2 * gear + file];
-        const int is_absolute =
-            given[0] == '/' || given[0] == '\\' || (given[0] != '\0' && given[1] == ':');
-        const int length =
-            snprintf(path[file], sizeof path[file], "%s%s",
-                     is_absolute || given[0] == '\0' ? "" : instance->resources, given);
-        if (length < 0 || length >= (int)sizeof path[file]) {
-            return failed(instance, "the path of a file of flanks is too long");
-        }
-    }
-    if (path[0][0] == '\0' && path[1][0] == '\0') {
-        return 0;
-    }
-
-    const gm_gear *drawn = gear == GM_PINION ? &pair->pinion : &pair->wheel;
-    gm_deviations deviations = {0};
-    gm_pitch pitch = {0};
-    gm_flanks_options options;
-    gm_io_error error;
-    gm_flanks_options_default(&options);
-    options.normal_factor = pair->normal_to_transverse;
-    int status = GM_IO_OK;
-    if (path[0][0] != '\0') {
-        status = gm_deviations_read(&deviations, path[0], drawn->teeth, &error);
-    }
-    if (status == GM_IO_OK && path[1][0] != '\0') {
-        status = gm_pitch_read(&pitch, path[1], drawn->teeth, &error);
-    }
-    if (status == GM_IO_OK) {
-        status = gm_flanks_build(&instance->flanks[gear], drawn->teeth,
-                                 path[0][0] != '\0' ? &deviations : NULL,
-                                 path[1][0] != '\0' ? &pitch : NULL, &options, NULL, &error);
-    }
-    gm_deviations_free(&deviations);
-    gm_pitch_free(&pitch);
-    if (status != GM_IO_OK) {
-        snprintf(instance->message, sizeof instance->message, "%s:%ld: %s", error.file, error.line,
-                 error.text);
-        return failed(instance, instance->message);
-    }
-    return 0;
-}
-
-static int prepare_workspace(fmu_instance *instance) {
-    const size_t size = gm_workspace_size(instance->mesh);
-    if (size > 0) {
-        instance->workspace_memory = malloc(size);
-        if (instance->workspace_memory == NULL) {
-            return failed(instance, "out of memory");
-        }
-        const int status = gm_workspace_init(&instance->workspace, instance->mesh,
-                                             instance->workspace_memory, size);
-        if (status != GM_OK) {
-            return failed(instance, gm_status_text(status));
-        }
-    }
-    instance->is_prepared = 1;
     return 0;
 }
 
 static int prepare(fmu_instance *instance) {
     const fmu_values *values = &instance->values;
     discard(instance);
-
-    /* The parameters, each by its name. */
-    const char *field = NULL;
-    const char *requirement = NULL;
-    gm_pair pair;
-    int status = gm_pair_init(&pair, &values->pair);
-    if (status != GM_OK) {
-        gm_pair_params_check(&values->pair, &field, &requirement);
-        return refused(instance, status, field, requirement);
-    }
-    status = gm_mesh_params_check(&values->mesh, &field, &requirement);
-    if (status != GM_OK) {
-        return refused(instance, status, field, requirement);
-    }
     if (!(values->pinion_inertia > 0.0) || !(values->wheel_inertia > 0.0)) {
         return failed(instance, "pinion_inertia, wheel_inertia: must be above 0");
     }
@@ -189,21 +106,19 @@ static int prepare(fmu_instance *instance) {
         return failed(instance, "relative_tolerance: must be 1e-14 .. 0.1");
     }
 
-    if (load_flanks(instance, &pair, GM_PINION) != 0 ||
-        load_flanks(instance, &pair, GM_WHEEL) != 0) {
-        return -1;
+    char path[TEXTS][2 * TEXT_SIZE];
+    for (int file = 0; file < TEXTS; ++file) {
+        if (locate(instance, values->text[file], path[file]) != 0) {
+            return -1;
+        }
     }
-    const size_t size = gm_mesh_size(&values->mesh, &pair);
-    instance->memory = malloc(size > 0 ? size : 1);
-    if (instance->memory == NULL) {
-        return failed(instance, "out of memory");
+    const file_mesh_paths paths = {{path[0], path[2]}, {path[1], path[3]}};
+    if (file_mesh_init(&instance->made, &values->pair, &values->mesh, &paths, instance->message,
+                       sizeof instance->message) != 0) {
+        return failed(instance, instance->message);
     }
-    status = gm_mesh_init(&instance->mesh, &values->mesh, &pair, instance->flanks[GM_PINION],
-                          instance->flanks[GM_WHEEL], instance->memory, size);
-    if (status != GM_OK) {
-        return failed(instance, gm_status_text(status));
-    }
-    return prepare_workspace(instance);
+    instance->is_prepared = 1;
+    return 0;
 }
 
 /* ---------------------------------------------------------------------------------------------
@@ -216,7 +131,7 @@ static int evaluate(fmu_instance *instance, fmu_jacobian *jacobian) {
         return -1;
     }
     const int status =
-        model.evaluate(&instance->values, instance->mesh, instance->workspace, jacobian);
+        model.evaluate(&instance->values, instance->made.mesh, instance->made.workspace, jacobian);
     if (status != GM_OK) {
         failed(instance, gm_status_text(status));
         return status;
@@ -432,7 +347,8 @@ static int differences(const fmu_instance *instance, int column, unsigned refere
     const double step = step_of(&model.variables[reference]);
     for (int side = 0; side < 2; ++side) {
         aside[side].input[column - model.states] += side == 0 ? -step : step;
-        const int status = model.evaluate(&aside[side], instance->mesh, instance->workspace, NULL);
+        const int status =
+            model.evaluate(&aside[side], instance->made.mesh, instance->made.workspace, NULL);
         if (status != GM_OK) {
             return status;
         }

@@ -9,7 +9,7 @@
 #ifndef MODEL_H
 #define MODEL_H
 
-#include <gearmesh/gearmesh_io.h>
+#include "file_mesh.h"
 
 enum {
     MAX_STATES = 4,
@@ -92,11 +92,7 @@ typedef struct fmu_instance {
     char *resources; /* folder, with a slash at its end */
     int is_prepared; /* 1: mesh and flanks are those of the parameters */
     int is_evaluated; /* 1: derivatives, outputs and indicators are those of states, inputs and time */
-    gm_flanks *flanks[2];
-    void *memory;
-    gm_mesh *mesh;
-    void *workspace_memory; /* and what an iterative law needs; NULL: nothing */
-    gm_workspace *workspace;
+    file_mesh made;
     fmu_integrator *integrator; /* co-simulation, from the first step on */
     char message[1700];         /* why the last call failed */
 

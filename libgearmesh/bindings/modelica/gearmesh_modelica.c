@@ -1,0 +1,161 @@
+/* SPDX-FileCopyrightText: The gearmesh authors */
+/* SPDX-License-Identifier: BSD-3-Clause */
+#include "gearmesh_modelica.h"
+
+#include "file_mesh.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* Of the tool [Modelica specification, utility functions]; does not return. */
+void ModelicaError(const char *text);
+
+enum { MESSAGE_SIZE = 1200 };
+
+/* Beyond every range of a parameter: not given. */
+static const double derived = 1e60;
+
+/* Where the values of the records belong, in their order. */
+typedef struct place {
+    size_t offset;
+    int is_integer;
+} place;
+
+#define REAL(type, field)                                                                          \
+    { offsetof(type, field), 0 }
+#define INTEGER(type, field)                                                                       \
+    { offsetof(type, field), 1 }
+static const place pair_places[] = {
+#include "pair_parameters.inc"
+};
+static const place law_places[] = {
+#include "mesh_parameters.inc"
+};
+
+/* Values that are given; the others stay what they are, the defaults. */
+static void fill(void *params, const place *places, const double *values, size_t count) {
+    for (size_t k = 0; k < count; ++k) {
+        char *field = (char *)params + places[k].offset;
+        if (values[k] >= derived) {
+            continue;
+        }
+        if (places[k].is_integer) {
+            const int value = (int)values[k];
+            memcpy(field, &value, sizeof value);
+        } else {
+            memcpy(field, &values[k], sizeof values[k]);
+        }
+    }
+}
+
+static void need(int condition, const char *what) {
+    if (!condition) {
+        ModelicaError(what);
+    }
+}
+
+static void check(int status) {
+    if (status != GM_OK) {
+        ModelicaError(gm_status_text(status));
+    }
+}
+
+void *gearmesh_modelica_new(const double *pair, size_t pair_size, const double *law,
+                            size_t law_size, const char *pinion_flanks, const char *pinion_pitch,
+                            const char *wheel_flanks, const char *wheel_pitch) {
+    need(pair_size == sizeof pair_places / sizeof pair_places[0] &&
+             law_size == sizeof law_places / sizeof law_places[0],
+         "GearMesh: package and library must be of one version");
+
+    gm_pair_params pair_params;
+    gm_mesh_params law_params;
+    gm_pair_params_default(&pair_params);
+    gm_mesh_params_default(&law_params);
+    fill(&pair_params, pair_places, pair, pair_size);
+    fill(&law_params, law_places, law, law_size);
+
+    /* Nothing is held any more when the tool takes over. */
+    char message[MESSAGE_SIZE] = "out of memory";
+    const file_mesh_paths paths = {{pinion_flanks, wheel_flanks}, {pinion_pitch, wheel_pitch}};
+    file_mesh *object = malloc(sizeof *object);
+    if (object == NULL ||
+        file_mesh_init(object, &pair_params, &law_params, &paths, message, sizeof message) != 0) {
+        free(object);
+        ModelicaError(message);
+    }
+    return object;
+}
+
+void gearmesh_modelica_free(void *object) {
+    if (object != NULL) {
+        file_mesh_free(object);
+        free(object);
+    }
+}
+
+void gearmesh_modelica_base_radii(void *object, double *radii, size_t size) {
+    const file_mesh *made = object;
+    const gm_pair *pair = gm_mesh_pair(made->mesh);
+    need(size == 2, "GearMesh: two radii");
+    radii[0] = pair->pinion.base_radius;
+    radii[1] = pair->wheel.base_radius;
+}
+
+static void evaluate(const file_mesh *made, const double *state, size_t size, int wanted,
+                     gm_mesh_result *result) {
+    need(size == 4, "GearMesh: the state must be two angles and two speeds");
+    const gm_state at = {state[0], state[1], state[2], state[3]};
+    check(gm_mesh_evaluate(made->mesh, &at, wanted, made->workspace, result));
+}
+
+void gearmesh_modelica_evaluate(void *object, const double *state, size_t state_size,
+                                double *result, size_t result_size) {
+    gm_mesh_result found;
+    need(result_size == 3, "GearMesh: the result must be two torques and a force");
+    evaluate(object, state, state_size, GM_WANT_FORCE, &found);
+    result[0] = found.pinion_torque;
+    result[1] = found.wheel_torque;
+    result[2] = found.force;
+}
+
+void gearmesh_modelica_evaluate_der(void *object, const double *state, size_t state_size,
+                                    const double *state_rate, size_t rate_size, double *result_rate,
+                                    size_t result_size) {
+    gm_mesh_result found;
+    need(rate_size == 4 && result_size == 3, "GearMesh: sizes of the derivatives");
+    evaluate(object, state, state_size, GM_WANT_DERIVATIVES, &found);
+
+    const gm_gradient *by[3] = {&found.pinion_torque_by, &found.wheel_torque_by, &found.force_by};
+    for (int k = 0; k < 3; ++k) {
+        result_rate[k] = by[k]->pinion_angle * state_rate[0] + by[k]->wheel_angle * state_rate[1] +
+                         by[k]->pinion_speed * state_rate[2] + by[k]->wheel_speed * state_rate[3];
+    }
+}
+
+void gearmesh_modelica_loads(void *object, const double *pinion, size_t pinion_size,
+                             const double *wheel, size_t wheel_size, double *loads,
+                             size_t loads_size) {
+    const file_mesh *made = object;
+    gm_body bodies[2];
+    gm_load on[2];
+    gm_mesh_result found;
+    need(pinion_size * sizeof(double) == sizeof(gm_body) && wheel_size == pinion_size &&
+             loads_size * sizeof(double) == sizeof on,
+         "GearMesh: a body must have 18 numbers");
+
+    /* The structs are plain numbers in the order of the arrays. */
+    memcpy(&bodies[0], pinion, sizeof bodies[0]);
+    memcpy(&bodies[1], wheel, sizeof bodies[1]);
+    check(gm_mesh_evaluate_bodies(made->mesh, &bodies[0], &bodies[1], GM_WANT_FORCE,
+                                  made->workspace, &found, &on[0], &on[1]));
+    memcpy(loads, on, sizeof on);
+}
+
+double gearmesh_modelica_static_offset(void *object, double pinion_angle, double wheel_torque) {
+    const file_mesh *made = object;
+    double offset;
+    check(gm_static_equilibrium(made->mesh, pinion_angle, wheel_torque, NAN, made->workspace,
+                                &offset, NULL));
+    return offset;
+}
