@@ -126,6 +126,57 @@ static void rows_may_come_in_any_order(void) {
     gm_deviations_free(&deviations);
 }
 
+/* Files are read in buffers of 16 KiB: rows, the comments between them and the last line may end anywhere. */
+static void lines_may_lie_across_what_is_read_at_a_time(void) {
+    static char text[80000];
+    static const char *const last[] = {"5,drive,1,1,-12.625\n", "5,drive,1,1,-12.625",
+                                       "5,drive,1,1,-12.625\r\n", "5,drive,1,1,-12.625\n# end"};
+
+    for (int length = 16200; length < 16420 + 33000; length += length == 16420 ? 32600 : 1) {
+        char *end = text + sprintf(text, "%s#", HEADER);
+        memset(end, 'c', (size_t)length);
+        sprintf(end + length, "\n5,drive,0,0,1\n5,drive,0,1,2.5\n5,drive,1,0,3\n%s",
+                last[length % 4]);
+        gm_test_context("comment of %d characters", length);
+        if (!GM_ASSERT_INT(read_deviations(text), GM_IO_OK) ||
+            !GM_ASSERT_INT(deviations.set_count, 1)) {
+            break;
+        }
+        const double expected[] = {1e-6, 2.5e-6, 3e-6, -12.625e-6};
+        for (int node = 0; node < 4; ++node) {
+            GM_ASSERT(same_bits(deviations.sets[0].values[node], expected[node]));
+        }
+        gm_deviations_free(&deviations);
+
+        /* A wrong row behind it is told with its line. */
+        sprintf(end + length, "\n5,drive,0,0,1\n5,drive,0,1,2x5\n");
+        refused(text, 4, "'2x5'", "must be a number");
+    }
+}
+
+/* Rows take a short way through the reader if they are plain: the bits are those of strtod() on either way. */
+static void a_number_means_the_same_however_its_row_is_written(void) {
+    uint64_t seed = 4;
+    for (int k = 0; k < 2000; ++k) {
+        char number[64], text[400];
+        sprintf(number, "%.*f", gm_test_integer(&seed, 0, 17),
+                gm_test_uniform(&seed, -999.0, 999.0));
+        sprintf(text,
+                HEADER "3,coast,0,0,%s\n3,coast,0,1,%s \n 3 ,coast,1.0,0.0,%s\n3,coast,1,1,%se0\n",
+                number, number, number, number);
+        gm_test_context("%s", number);
+        if (!GM_ASSERT_INT(read_deviations(text), GM_IO_OK)) {
+            break;
+        }
+
+        const double expected = strtod(strcat(number, "e-6"), NULL);
+        for (int node = 0; node < 4; ++node) {
+            GM_ASSERT(same_bits(deviations.sets[0].values[node], expected));
+        }
+        gm_deviations_free(&deviations);
+    }
+}
+
 static void positions_may_be_rounded_to_1e_5(void) {
     /* 1/3 and 2/3 rounded to five digits, and rounding beyond the ends */
     GM_ASSERT_INT(read_deviations(HEADER "*,*,-0.000009,0,1\n*,*,0.33333,0,1\n*,*,0.66667,0,1\n"
@@ -578,6 +629,8 @@ int main(int argc, char **argv) {
         GM_TEST(nodes_are_stored_along_the_face_first_then_along_the_profile),
         GM_TEST(every_kind_of_set_is_kept_apart),
         GM_TEST(rows_may_come_in_any_order),
+        GM_TEST(lines_may_lie_across_what_is_read_at_a_time),
+        GM_TEST(a_number_means_the_same_however_its_row_is_written),
         GM_TEST(positions_may_be_rounded_to_1e_5),
         GM_TEST(a_set_that_serves_all_leaves_no_tooth_ideal),
         GM_TEST(a_missing_node_is_named),

@@ -70,18 +70,73 @@ static void loader_free(loader *load) {
     free(load->row_count);
 }
 
+static int is_position(double position) {
+    return position >= -GMI_POSITION_TOLERANCE && position <= 1.0 + GMI_POSITION_TOLERANCE;
+}
+
 static int read_position(const gmi_table *table, int column, double *position) {
     const int status = gmi_table_number(table, column, 0, position);
     if (status != GM_IO_OK) {
         return status;
     }
-    if (*position < -GMI_POSITION_TOLERANCE || *position > 1.0 + GMI_POSITION_TOLERANCE) {
+    if (!is_position(*position)) {
         char quoted[GMI_QUOTE_SIZE];
         return gmi_error_set(table->error, GM_IO_ERR_FORMAT, table->line,
                              "%s: must be from 0 to 1 (got %s)", columns[column],
                              gmi_quote(quoted, table->fields[column]));
     }
     return GM_IO_OK;
+}
+
+/* What follows a word and a comma at the beginning of a text; NULL if they are not there. */
+static const char *behind_word(const char *text, const char *word) {
+    for (; *word != '\0'; ++word, ++text) {
+        if (*text != *word) {
+            return NULL;
+        }
+    }
+    return *text == ',' ? text + 1 : NULL;
+}
+
+/* The same of a tooth. */
+static const char *behind_tooth(const char *text, int teeth, int *tooth) {
+    const char *begin = text;
+    *tooth = 0;
+    for (; *text >= '0' && *text <= '9' && *tooth < teeth; ++text) {
+        *tooth = 10 * *tooth + (*text - '0');
+    }
+    return text > begin && *tooth < teeth && *text == ',' ? text + 1 : NULL;
+}
+
+/* The same of a plain number and the character behind it; the text may be NULL. */
+static const char *behind_number(const char *text, int exponent, char last, double *value) {
+    const char *end = text != NULL ? gmi_number_short(text, exponent, value) : NULL;
+    return end != NULL && *end == last ? end + 1 : NULL;
+}
+
+/*
+ * A row as programs write it: no blanks, one tooth and flank, plain numbers. Nearly all rows of nearly all files are of
+ * this kind, and read twice as fast as by read_row(). 0: a row of another kind, or a wrong one.
+ */
+static int read_plain_row(const gmi_table *table, int teeth, gmi_row *row) {
+    int tooth = 0;
+    const char *flank = behind_tooth(table->text, teeth, &tooth);
+    if (flank == NULL) {
+        return 0;
+    }
+    const char *coast = behind_word(flank, gmi_side_name(GM_COAST));
+    const char *text = coast != NULL ? coast : behind_word(flank, gmi_side_name(GM_DRIVE));
+
+    text = behind_number(text, 0, ',', &row->position[GMI_FACE]);
+    text = behind_number(text, 0, ',', &row->position[GMI_PROFILE]);
+    text = behind_number(text, MICRO, '\0', &row->value);
+    if (text == NULL || !is_position(row->position[GMI_FACE]) ||
+        !is_position(row->position[GMI_PROFILE])) {
+        return 0;
+    }
+    row->line = table->line;
+    row->slot = gmi_slot(tooth, coast != NULL ? GM_COAST : GM_DRIVE);
+    return 1;
 }
 
 static int read_row(const gmi_table *table, int teeth, gmi_row *row) {
@@ -108,16 +163,20 @@ static int read_row(const gmi_table *table, int teeth, gmi_row *row) {
 
 static int read_rows(loader *load, gmi_table *table) {
     int more = 0;
-    while ((more = gmi_table_next(table)) > 0) {
-        gmi_row row;
-        const int status = read_row(table, load->teeth, &row);
-        if (status != GM_IO_OK) {
-            return status;
-        }
-        if (!gmi_rows_append(&load->rows, &row)) {
+    while ((more = gmi_table_line(table)) > 0) {
+        gmi_row *row = gmi_rows_room(&load->rows);
+        if (row == NULL) {
             return gmi_error_memory(load->error);
         }
-        ++load->row_count[row.slot];
+        if (!read_plain_row(table, load->teeth, row)) {
+            more = gmi_table_split(table);
+            const int status = more > 0 ? read_row(table, load->teeth, row) : more;
+            if (status != GM_IO_OK) {
+                return status;
+            }
+        }
+        gmi_rows_take(&load->rows);
+        ++load->row_count[row->slot];
     }
 
     if (more == 0 && load->rows.first == NULL) {

@@ -10,6 +10,8 @@
 
 #include <float.h>
 #include <math.h>
+#include <stddef.h>
+#include <stdint.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -92,38 +94,66 @@ static int read_decimal(const char *text, decimal *number) {
 #define EXACT_DIGITS   15
 #define EXACT_DECIMALS 22
 
-static int is_short(const decimal *number, int exponent) {
-    return FLT_EVAL_METHOD == 0 && number->count <= EXACT_DIGITS && exponent <= 0 &&
-           exponent >= -EXACT_DECIMALS;
+/* Adds digits to a number, which of too many overflows; returns what follows them. */
+static inline const char *add_digits(const char *text, uint64_t *whole) {
+    for (unsigned digit; (digit = (unsigned)*text - '0') <= 9; ++text) {
+        *whole = 10 * *whole + digit;
+    }
+    return text;
 }
 
-static double short_value(const decimal *number, int exponent) {
+const char *gmi_number_short(const char *text, int exponent, double *value) {
     static const double powers_of_ten[EXACT_DECIMALS + 1] = {
         1e0,  1e1,  1e2,  1e3,  1e4,  1e5,  1e6,  1e7,  1e8,  1e9,  1e10, 1e11,
         1e12, 1e13, 1e14, 1e15, 1e16, 1e17, 1e18, 1e19, 1e20, 1e21, 1e22};
-    double whole = 0.0;
-    for (int i = 1; i <= number->count; ++i) {
-        whole = 10.0 * whole + (number->digits[i] - '0');
+    int negative = 0;
+    const char *begin = read_sign(text, &negative);
+
+    /* Digits, and behind a point more of them. */
+    uint64_t whole = 0;
+    const char *end = add_digits(begin, &whole);
+    ptrdiff_t seen = end - begin, decimals = 0;
+    if (*end == '.') {
+        const char *point = end;
+        end = add_digits(point + 1, &whole);
+        decimals = end - point - 1;
+        seen += decimals;
     }
-    const double value = whole / powers_of_ten[-exponent];
-    return number->negative ? -value : value;
+
+    const ptrdiff_t power = decimals - exponent;
+    if (seen == 0 || seen > EXACT_DIGITS || power < 0 || power > EXACT_DECIMALS ||
+        FLT_EVAL_METHOD != 0) {
+        return NULL;
+    }
+    const double amount = (double)(int64_t)whole / powers_of_ten[power];
+    *value = negative ? -amount : amount;
+    return end;
 }
 
 /* Without a decimal sign every locale reads the same. */
 static double long_value(decimal *number, int exponent) {
+    if (number->count == 0) {
+        return number->negative ? -0.0 : 0.0;
+    }
     number->digits[0] = number->negative ? '-' : '+';
     snprintf(number->digits + 1 + number->count, 16, "e%d", exponent);
     return strtod(number->digits, NULL);
 }
 
 int gmi_number_parse(const char *text, int exponent, double *value) {
+    double parsed = 0.0;
+    const char *end = gmi_number_short(text, exponent, &parsed);
+    if (end != NULL && *end == '\0') {
+        *value = parsed;
+        return GMI_NUMBER_OK;
+    }
+
+    /* Any number. */
     decimal number;
     if (strlen(text) > GMI_NUMBER_LENGTH || !read_decimal(text, &number)) {
         return GMI_NUMBER_WRONG;
     }
-    const int last = number.count > 0 ? number.exponent + exponent : 0;
-    const double parsed =
-        is_short(&number, last) ? short_value(&number, last) : long_value(&number, last);
+    parsed = long_value(&number, number.exponent + exponent);
     if (!isfinite(parsed)) {
         return GMI_NUMBER_TOO_LARGE;
     }

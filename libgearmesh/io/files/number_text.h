@@ -33,6 +33,15 @@ enum gmi_number_status {
 int gmi_number_parse(const char *text, int exponent, double *value);
 
 /**
+ * Reads a number at the beginning of a text if it is a plain one: [+-] digits [. digits], 15 digits at most.
+ *
+ * @param[in]  exponent  as above, <= 7
+ * @param[out] value     the same bits as those of gmi_number_parse(); unchanged if NULL is returned
+ * @return what follows it, whatever that is; NULL if it is no such number
+ */
+const char *gmi_number_short(const char *text, int exponent, double *value);
+
+/**
  * Writes a finite number times 10^exponent.
  *
  * @param[in] digits  significant digits; 0 = the fewest from 15 on that give the same double back

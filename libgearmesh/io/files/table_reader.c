@@ -1,7 +1,7 @@
 /* SPDX-FileCopyrightText: The gearmesh authors */
 /* SPDX-License-Identifier: BSD-3-Clause */
 
-/* Reads tidy CSV. Whatever the file is, no more than one line of it is kept. */
+/* Reads tidy CSV. Whatever the file is, no more than one buffer of it is kept. */
 
 #include "table_reader.h"
 
@@ -28,53 +28,124 @@ static char *skip_blanks(char *text) {
     return text;
 }
 
-static int is_comment(gmi_table *table) {
-    return *skip_blanks(table->text) == '#';
-}
-
 static int fail(const gmi_table *table, const char *message) {
     return gmi_error_set(table->error, GM_IO_ERR_FORMAT, table->line, "%s", message);
 }
 
-/* Takes the characters of a line up to its end; a comment may be longer than what is kept of it. */
-static int read_characters(gmi_table *table, int c, size_t *length) {
-    *length = 0;
-    for (; c != '\n' && c != EOF; c = getc(table->file)) {
-        if (c == '\0') {
-            return fail(
-                table,
-                "the file must be plain UTF-8 text with comma separated values (got a zero byte)");
-        }
-        if (*length < GMI_LINE_LENGTH) {
-            table->text[(*length)++] = (char)c;
-        } else if (!is_comment(table)) {
-            return gmi_error_set(
-                table->error, GM_IO_ERR_FORMAT, table->line,
-                "a line must be one row of at most %d characters, ended by LF or CRLF (got more)",
-                GMI_LINE_LENGTH);
-        }
-    }
+/* Moves what is left to the front of the buffer and reads more behind it: 1 = there is more, 0 = end of the file, < 0 =
+ * gm_io_status. */
+static int refill(gmi_table *table) {
+    const size_t left = table->end - table->begin;
+    memmove(table->buffer, table->buffer + table->begin, left);
+    table->begin = 0;
 
-    return ferror(table->file) ? gmi_error_file(table->error, table->line, "read", errno) : 0;
+    errno = 0;
+    table->end = left + fread(table->buffer + left, 1, GMI_BUFFER_SIZE - left, table->file);
+    if (ferror(table->file)) {
+        return gmi_error_file(table->error, left > 0 ? table->line : 0, "read", errno);
+    }
+    return table->end > left;
 }
 
-static void drop_byte_order_mark(char *text) {
-    if (strncmp(text, "\xEF\xBB\xBF", 3) == 0) {
-        memmove(text, text + 3, strlen(text + 3) + 1);
+/* The end of the line that begins at `begin`, read up to there; NULL at the end of the file, or where the line is longer
+ * than what is kept. */
+static char *find_end(gmi_table *table, int *status) {
+    size_t seen = 0;
+    *status = 1;
+    for (;;) {
+        char *begin = table->buffer + table->begin;
+        char *end = memchr(begin + seen, '\n', table->end - table->begin - seen);
+        seen = table->end - table->begin;
+        if (end != NULL || seen > GMI_LINE_LENGTH + 1) {
+            return end;
+        }
+        *status = refill(table);
+        if (*status <= 0) {
+            return NULL;
+        }
+    }
+}
+
+static int has_zero(const char *text, size_t length) {
+    return memchr(text, '\0', length) != NULL;
+}
+
+static int fail_zero(const gmi_table *table) {
+    return fail(table,
+                "the file must be plain UTF-8 text with comma separated values (got a zero byte)");
+}
+
+/* Reads over the rest of a line whose first characters stay at the front of the buffer. */
+static int skip_rest(gmi_table *table) {
+    const size_t kept = GMI_LINE_LENGTH + 1; /* with its end */
+    memmove(table->buffer, table->text, kept);
+    table->text = table->buffer;
+
+    for (;;) {
+        const char *rest = table->buffer + table->begin;
+        const size_t size = table->end - table->begin;
+        const char *end = memchr(rest, '\n', size);
+        if (has_zero(rest, end != NULL ? (size_t)(end - rest) : size)) {
+            return fail_zero(table);
+        }
+        if (end != NULL) {
+            table->begin += (size_t)(end - rest) + 1;
+            return 1;
+        }
+
+        errno = 0;
+        table->begin = kept;
+        table->end = kept + fread(table->buffer + kept, 1, GMI_BUFFER_SIZE - kept, table->file);
+        if (ferror(table->file)) {
+            return gmi_error_file(table->error, table->line, "read", errno);
+        }
+        if (table->end == kept) {
+            return 1;
+        }
+    }
+}
+
+/* A line of more than what is kept: right if it is a comment, of which the beginning stays. */
+static int read_long_line(gmi_table *table) {
+    if (has_zero(table->text, GMI_LINE_LENGTH + 1)) {
+        return fail_zero(table);
+    }
+    if (*skip_blanks(table->text) != '#') {
+        return gmi_error_set(
+            table->error, GM_IO_ERR_FORMAT, table->line,
+            "a line must be one row of at most %d characters, ended by LF or CRLF (got more)",
+            GMI_LINE_LENGTH);
+    }
+    return skip_rest(table);
+}
+
+static void drop_byte_order_mark(gmi_table *table) {
+    if (strncmp(table->text, "\xEF\xBB\xBF", 3) == 0) {
+        table->text += 3;
     }
 }
 
 int gmi_lines_next(gmi_table *table) {
-    errno = 0;
-    const int first = getc(table->file);
-    if (first == EOF) {
-        return ferror(table->file) ? gmi_error_file(table->error, 0, "read", errno) : 0;
-    }
     ++table->line;
+    int status = 1;
+    const char *end = find_end(table, &status);
+    size_t length = (end != NULL ? (size_t)(end - table->buffer) : table->end) - table->begin;
+    if (status < 0 || (length == 0 && end == NULL)) {
+        --table->line;
+        return status;
+    }
+    table->text = table->buffer + table->begin;
 
-    size_t length = 0;
-    const int status = read_characters(table, first, &length);
-    if (status != 0) {
+    if (length > GMI_LINE_LENGTH) {
+        length = GMI_LINE_LENGTH;
+        status = read_long_line(table);
+    } else if (has_zero(table->text, length)) {
+        status = fail_zero(table);
+    } else {
+        table->begin += length + (end != NULL);
+        status = 1;
+    }
+    if (status < 0) {
         return status;
     }
 
@@ -83,18 +154,18 @@ int gmi_lines_next(gmi_table *table) {
         --length;
     }
     table->text[length] = '\0';
-    if (strchr(table->text, '\r') != NULL) {
+    if (memchr(table->text, '\r', length) != NULL) {
         return fail(table,
                     "lines must end with LF or CRLF (got a carriage return within the line)");
     }
     if (table->line == 1) {
-        drop_byte_order_mark(table->text);
+        drop_byte_order_mark(table);
     }
     return 1;
 }
 
-/* Reads the next line that is neither blank nor a comment. */
-static int read_content(gmi_table *table) {
+/* The next line that is neither blank nor a comment. */
+int gmi_table_line(gmi_table *table) {
     for (;;) {
         const int status = gmi_lines_next(table);
         if (status <= 0) {
@@ -111,13 +182,13 @@ static int read_content(gmi_table *table) {
  * Fields
  * ------------------------------------------------------------------------------------------- */
 
-static char *trim(char *field) {
+/* A field without the blanks around it, which is ended where they begin. */
+static char *trim(char *field, char *end) {
     field = skip_blanks(field);
-    size_t length = strlen(field);
-    while (length > 0 && is_blank(field[length - 1])) {
-        --length;
+    while (end > field && is_blank(end[-1])) {
+        --end;
     }
-    field[length] = '\0';
+    *end = '\0';
     return field;
 }
 
@@ -133,14 +204,13 @@ static char *with_point(char *field) {
 /* Cuts the line at its commas, or semicolons, and returns the number of fields, also where they are too many. */
 static int split_fields(gmi_table *table) {
     const int with_comma = table->style == GM_DECIMAL_COMMA;
+    char *last = table->text + strlen(table->text);
     int count = 0;
     for (char *field = table->text; field != NULL; ++count) {
         char *end = strchr(field, with_comma ? ';' : ',');
-        if (end != NULL) {
-            *end = '\0';
-        }
         if (count < table->column_count) {
-            table->fields[count] = with_comma ? with_point(trim(field)) : trim(field);
+            char *trimmed = trim(field, end != NULL ? end : last);
+            table->fields[count] = with_comma ? with_point(trimmed) : trimmed;
         }
         field = end != NULL ? end + 1 : NULL;
     }
@@ -202,20 +272,18 @@ static int fail_field_count(const gmi_table *table, int count) {
                              : "");
 }
 
-int gmi_table_next(gmi_table *table) {
-    const int status = read_content(table);
-    if (status <= 0) {
-        return status;
-    }
+int gmi_table_split(gmi_table *table) {
     const char *delimiter = other_delimiter(table, table->text);
     if (delimiter != NULL) {
         return fail_delimiter(table, delimiter);
     }
     const int count = split_fields(table);
-    if (count != table->column_count) {
-        return fail_field_count(table, count);
-    }
-    return 1;
+    return count == table->column_count ? 1 : fail_field_count(table, count);
+}
+
+int gmi_table_next(gmi_table *table) {
+    const int status = gmi_table_line(table);
+    return status <= 0 ? status : gmi_table_split(table);
 }
 
 /* ---------------------------------------------------------------------------------------------
@@ -290,7 +358,7 @@ static int has_columns(const gmi_table *table, const char *const *columns) {
 }
 
 static int read_header(gmi_table *table, int *which) {
-    const int status = read_content(table);
+    const int status = gmi_table_line(table);
     if (status < 0) {
         return status;
     }
@@ -318,7 +386,8 @@ static int read_header(gmi_table *table, int *which) {
 int gmi_lines_open(gmi_table *table, const char *path, gm_io_error *error) {
     table->error = error;
     table->line = 0;
-    table->text[GMI_LINE_LENGTH] = '\0';
+    table->begin = table->end = 0;
+    table->text = table->buffer;
 
     errno = 0;
     table->file = fopen(path, "rb");
@@ -376,7 +445,7 @@ static int parse_whole_number(const char *text, int *value) {
 
 int gmi_table_tooth(const gmi_table *table, int column, int teeth, int *tooth) {
     const char *field = table->fields[column];
-    if (strcmp(field, "*") == 0) {
+    if (field[0] == '*' && field[1] == '\0') {
         *tooth = GMI_ALL;
         return GM_IO_OK;
     }
@@ -422,7 +491,8 @@ int gmi_table_word(const gmi_table *table, int column, const char *const *words,
 int gmi_table_flank(const gmi_table *table, int column, int *side) {
     const char *field = table->fields[column];
     for (int candidate = GMI_ALL; candidate <= GM_COAST; ++candidate) {
-        if (strcmp(field, gmi_side_name(candidate)) == 0) {
+        const char *name = gmi_side_name(candidate);
+        if (field[0] == name[0] && strcmp(field, name) == 0) {
             *side = candidate;
             return GM_IO_OK;
         }

@@ -18,6 +18,9 @@
 /** Longest line that is not a comment; real ones are shorter than 80. */
 #define GMI_LINE_LENGTH 1000
 
+/** What is read at a time. */
+#define GMI_BUFFER_SIZE 16384
+
 #define GMI_MAX_COLUMNS 6
 
 typedef struct gmi_table {
@@ -30,7 +33,9 @@ typedef struct gmi_table {
     long line;                     /**< line last read, from 1 */
     int style;                     /**< enum gm_number_style of fields and numbers */
     char *fields[GMI_MAX_COLUMNS]; /**< [column_count] of the row last read, within text */
-    char text[GMI_LINE_LENGTH + 1];
+    char *text;                    /**< the line last read, within the buffer */
+    size_t begin, end;             /**< of what is in the buffer and not read yet */
+    char buffer[GMI_BUFFER_SIZE];
 } gmi_table;
 
 /** Opens a file and reads its header. Needs gmi_table_close() whatever it returns. */
@@ -51,6 +56,12 @@ int gmi_lines_next(gmi_table *table);
 
 /** Reads the next row into fields: 1 = a row, 0 = end of the file, < 0 = gm_io_status. */
 int gmi_table_next(gmi_table *table);
+
+/** The first half of that: the row as one text. */
+int gmi_table_line(gmi_table *table);
+
+/** The second half: cuts the text into fields, 1, or < 0 = gm_io_status. */
+int gmi_table_split(gmi_table *table);
 
 void gmi_table_close(gmi_table *table);
 
