@@ -268,7 +268,7 @@ static void derivatives_are_those_of_differences(void) {
             factors[n + p] = c.work.z[p];
             factors[2 * n + p] = c.work.roll[p];
         }
-        const gmi_elastic_functional functional = {factors, factors + n, factors + 2 * n};
+        const gmi_elastic_functional functional = {factors, factors + n, factors + 2 * n, NULL};
         gmi_elastic_differentiate_functional(&c.law, &c.work, &functional, factors + 3 * n,
                                              &moment);
         GM_ASSERT_REL(moment.value, here.moment, 1e-12);

@@ -202,8 +202,24 @@ class Elastic(unittest.TestCase):
         self.rows(SPUR62 | {"mesh": {"corner_contact": "off"}})
         self.refused(SPUR62 | {"mesh": {"corner_contact": "on"}}, "run.ini:", "mesh.corner_contact: must be off (got on)")
 
-    def test_friction_is_for_other_laws(self):
-        self.refused(SPUR62 | {"mesh": {"friction_coefficient": 0.05}}, "mesh.")
+    def test_rubbing_teeth_lose_what_their_sliding_takes(self):
+        """Loss over power in per coefficient: elastic spur teeth share the load next to equally [Ohlendorf]."""
+        mu, speed = 1e-4, 2 * math.pi / 60 * 1000
+        bracket = 0.811877
+        factor = math.pi * 2 / 62 * bracket
+        rows = self.rows(SPUR62 | {"mesh": {"friction_coefficient": mu, "friction_speed_m_per_s": 1e-6},
+                                   "drive": {"start_rpm": 1000}})
+        self.assertEqual(list(rows[0])[-1], "loss_W")
+        loss = sum(float(row["loss_W"]) for row in rows) / len(rows)
+        ratio = loss / (mu * factor * SPUR62["load"]["mean_Nm"] * speed)
+        self.assertGreater(ratio, 0.85)
+        self.assertLess(ratio, 1.0)
+
+        # At rest there is none, and the curve is that without.
+        still = self.rows(SPUR62 | {"mesh": {"friction_coefficient": 0.1}})
+        self.assertEqual({float(row["loss_W"]) for row in still}, {0.0})
+        plain = self.rows(SPUR62)
+        self.assertEqual([row["te_um"] for row in still], [row["te_um"] for row in plain])
 
     def test_files_of_soft_teeth_are_checked(self):
         for text, message in (("tooth,stiffness\n", "soft.csv:1: the columns must be tooth,factor"),

@@ -164,23 +164,8 @@ static int check_output_is_no_input(const config *conf) {
            check_not_input(conf, conf->load_file, "load.file");
 }
 
-/* Elastic teeth do not know how a line load rubs yet. */
-static int check_friction(const config *conf) {
-    if (conf->law != LAW_ELASTIC || !config_has_friction(conf)) {
-        return 0;
-    }
-    config_complain(
-        conf,
-        conf->friction_law == FRICTION_CONSTANT ? "mesh.friction_coefficient" : "mesh.friction_law",
-        "must not ask for friction with elastic teeth, which have none: take law = "
-        "constant or iso6336 (got %s)",
-        config_text(conf, conf->friction_law == FRICTION_CONSTANT ? "mesh.friction_coefficient"
-                                                                  : "mesh.friction_law"));
-    return 1;
-}
-
 int config_check_together(const config *conf) {
-    int faults = check_profile_window(conf) + check_friction(conf);
+    int faults = check_profile_window(conf);
 
     if (conf->purpose != CONFIG_FOR_RUN) {
         return faults;

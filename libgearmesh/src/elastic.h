@@ -254,7 +254,8 @@ typedef struct gmi_elastic_work {
     double *expected;   /* W q after the step, in first order (N) */
     double *scratch;    /* forces, ... */
 
-    /* [2 slots][2]: values and slopes of pinion and wheel, while they are placed */
+    /* [2 slots][2]: values and slopes of pinion and wheel, while they are placed; then free for the
+       caller */
     double *table[4];
 
     double *pull;          /* m - J lambda */
@@ -335,6 +336,8 @@ typedef struct gmi_elastic_functional {
     const double *factor;         /* over the points */
     const double *factor_by_roll; /* its slope along rho_p at fixed z */
     const double *factor_by_z;    /* its slope along z at fixed rho_p */
+    const double *
+        by_load; /* of a factor m that follows the load, dm / d ln q: factor is then m + dm / d ln q */
 } gmi_elastic_functional;
 
 /* Total derivatives: teeth and contacts stay in balance. */

@@ -138,7 +138,9 @@ static end_effect move_end(const gmi_elastic *law, const gmi_elastic_work *work,
                              force * (tooth_by_z * work->tooth_adjoint[p] + tooth * adjoint_slope +
                                       rim_adjoint_slope);
         const double share = share_of_end(end, half);
-        effect.functional += sign * work->load[p] * pull + share * along;
+        const double by_load =
+            optional(functional->by_load, p, 0.0); /* a weight leaves q as it is */
+        effect.functional += sign * work->load[p] * (pull - by_load) + share * along;
         effect.energy += sign * contact.energy +
                          share * (force * opened - weight * contact.energy_by_L * rate_by_z);
     }
@@ -237,7 +239,7 @@ static void differentiate_energy(const gmi_elastic *law, gmi_elastic_work *work,
 
 void gmi_elastic_differentiate(const gmi_elastic *law, gmi_elastic_work *work,
                                gmi_elastic_gradient *force, gmi_elastic_gradient *energy) {
-    static const gmi_elastic_functional unit = {NULL, NULL, NULL};
+    static const gmi_elastic_functional unit = {NULL, NULL, NULL, NULL};
     memset(force, 0, sizeof *force);
     memset(energy, 0, sizeof *energy);
     if (!work->touching) {

@@ -58,4 +58,11 @@ static inline int gmi_elastic_is_uneven(const gm_mesh *mesh, int role) {
 int gmi_side_sum_by_law(const gm_mesh *mesh, int side, const gm_position *position, int wanted,
                         gm_workspace *workspace, gmi_side_sum *total);
 
+/*
+ * elastic_friction.c: friction of one side, from its last sum in that workspace; mask: of that sum, derivatives with it.
+ */
+void gmi_elastic_friction(const gm_mesh *mesh, int side, double approach_speed,
+                          const gmi_sliding *sliding, const gmi_side_sum *total, int mask,
+                          gm_workspace *workspace, gmi_friction_sum *friction);
+
 #endif

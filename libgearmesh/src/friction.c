@@ -122,34 +122,31 @@ static gmi_varying sliding_speed(const gmi_sliding *s, const gmi_part_force *par
  * ------------------------------------------------------------------------------------------- */
 
 /*
- * [BenedictKelley]: 0.0127 lg(29.66 (F/b) / (eta |v| v_sum^2)) by the load of the part over its touching length, with
- * sqrt(v^2 + v0^2) for |v|. Not below 0, where the formula does not hold.
+ * [BenedictKelley]: 0.0127 lg(29.66 (F/b) / (eta |v| v_sum^2)), with sqrt(v^2 + v0^2) for |v|. Not below 0, where the
+ * formula does not hold.
  */
-static gmi_varying benedict_kelley(const gmi_sliding *s, const gmi_part_force *part,
+static gmi_varying benedict_kelley(const gmi_sliding *s, const gmi_varying *load,
                                    const gmi_varying *speed) {
     const double squared = speed->value * speed->value + s->friction->creep_squared;
-    const double load = part->force.value / part->contact.value;
     const double factor = 0.0127 * per_ln_10;
-    gmi_varying mu = {.value = factor * log(s->friction->factor * load /
+    gmi_varying mu = {.value = factor * log(s->friction->factor * load->value /
                                             (sqrt(squared) * s->rolling.value * s->rolling.value))};
     if (!(mu.value > 0.0)) {
         mu.value = 0.0;
         return mu;
     }
     for (int k = 0; k < GMI_MOTIONS; ++k) {
-        mu.by[k] =
-            factor *
-            (part->force.by[k] / part->force.value - part->contact.by[k] / part->contact.value -
-             speed->value * speed->by[k] / squared - 2.0 * s->rolling.by[k] / s->rolling.value);
+        mu.by[k] = factor * (load->by[k] / load->value - speed->value * speed->by[k] / squared -
+                             2.0 * s->rolling.by[k] / s->rolling.value);
     }
     return mu;
 }
 
-/* What of mu depends on the part; the rest is the same all over the side. */
-static gmi_varying coefficient_of(const gmi_sliding *s, const gmi_part_force *part,
+/* What of mu depends on the place; the rest is the same all over the side. */
+static gmi_varying coefficient_of(const gmi_sliding *s, const gmi_varying *load,
                                   const gmi_varying *speed) {
     if (s->friction->law == GM_FRICTION_BENEDICT_KELLEY) {
-        return benedict_kelley(s, part, speed);
+        return benedict_kelley(s, load, speed);
     }
     const gmi_varying one = {1.0, {0.0, 0.0, 0.0, 0.0}};
     return one;
@@ -174,11 +171,20 @@ static gmi_varying common_coefficient(const gmi_sliding *s, const gmi_varying *f
  * Friction
  * ------------------------------------------------------------------------------------------- */
 
-static void add_product(const gmi_varying *a, const gmi_varying *b, gmi_varying *sum) {
-    sum->value += a->value * b->value;
+/* mu_r / cos(beta_b) with its derivatives: v / sqrt(v^2 + v0^2) changes by v0^2 / sqrt(v^2 + v0^2)^3. */
+static gmi_varying share_of(const gmi_sliding *sliding, const gmi_varying *load,
+                            const gmi_varying *speed) {
+    const gmi_varying mu = coefficient_of(sliding, load, speed);
+    const double creep_squared = sliding->friction->creep_squared;
+    const double squared = speed->value * speed->value + creep_squared;
+    const double per_root = 1.0 / sqrt(squared);
+    const double normal = sliding->friction->normal;
+    gmi_varying share = {.value = normal * mu.value * speed->value * per_root};
     for (int k = 0; k < GMI_MOTIONS; ++k) {
-        sum->by[k] += a->value * b->by[k] + a->by[k] * b->value;
+        share.by[k] = normal * per_root *
+                      (mu.value * creep_squared / squared * speed->by[k] + mu.by[k] * speed->value);
     }
+    return share;
 }
 
 void gmi_friction_add(const gmi_sliding *sliding, const gmi_part_force *part,
@@ -187,23 +193,40 @@ void gmi_friction_add(const gmi_sliding *sliding, const gmi_part_force *part,
         return;
     }
 
-    /* mu_r / cos(beta_b) with its derivatives: v / sqrt(v^2 + v0^2) changes by v0^2 / sqrt(v^2 + v0^2)^3. */
-    const gmi_varying speed = sliding_speed(sliding, part);
-    const gmi_varying mu = coefficient_of(sliding, part, &speed);
-    const double creep_squared = sliding->friction->creep_squared;
-    const double squared = speed.value * speed.value + creep_squared;
-    const double per_root = 1.0 / sqrt(squared);
-    const double normal = sliding->friction->normal;
-    gmi_varying share = {.value = normal * mu.value * speed.value * per_root};
+    /* By the load of the part over its touching length. */
+    const double contact = part->contact.value;
+    gmi_varying load = {.value = part->force.value / contact};
     for (int k = 0; k < GMI_MOTIONS; ++k) {
-        share.by[k] = normal * per_root *
-                      (mu.value * creep_squared / squared * speed.by[k] + mu.by[k] * speed.value);
+        load.by[k] = (part->force.by[k] - load.value * part->contact.by[k]) / contact;
     }
 
-    add_product(&share, &part->force, &total->force);
-    add_product(&share, &part->moment, &total->moment);
+    const gmi_varying speed = sliding_speed(sliding, part);
+    const gmi_varying share = share_of(sliding, &load, &speed);
+    gmi_varying_add_product(&share, &part->force, &total->force);
+    gmi_varying_add_product(&share, &part->moment, &total->moment);
     total->force_t1 += share.value * part->force_t1;
     total->loss += share.value * part->force.value * speed.value;
+}
+
+gmi_point_friction gmi_friction_at(const gmi_sliding *sliding, double rho_p, double load) {
+    enum { BY_ROLL = GMI_PINION_ANGLE, BY_LOAD = GMI_WHEEL_ANGLE }; /* in the place of the angles */
+    const double rho_w = sliding->line_of_action - rho_p;
+    const double pinion = sliding->pinion_speed, wheel = sliding->wheel_speed;
+    const gmi_varying speed = {
+        pinion * rho_p - wheel * rho_w,
+        {[BY_ROLL] = pinion + wheel,
+         [GMI_PINION_SPEED] = rho_p,
+         [GMI_WHEEL_SPEED] = -sliding->wheel_sign * rho_w},
+    };
+    const gmi_varying loaded = {load, {[BY_LOAD] = load}};
+    const gmi_varying share = share_of(sliding, &loaded, &speed);
+    const gmi_point_friction result = {share.value,
+                                       speed.value,
+                                       share.by[BY_ROLL],
+                                       share.by[BY_LOAD],
+                                       share.by[GMI_PINION_SPEED],
+                                       share.by[GMI_WHEEL_SPEED]};
+    return result;
 }
 
 void gmi_friction_finish(const gmi_sliding *sliding, const gmi_varying *force,
@@ -216,8 +239,8 @@ void gmi_friction_finish(const gmi_sliding *sliding, const gmi_varying *force,
     }
 
     const gmi_varying mu = common_coefficient(sliding, force);
-    add_product(&mu, &parts.force, &total->force);
-    add_product(&mu, &parts.moment, &total->moment);
+    gmi_varying_add_product(&mu, &parts.force, &total->force);
+    gmi_varying_add_product(&mu, &parts.moment, &total->moment);
     total->force_t1 = mu.value * parts.force_t1;
     total->loss = mu.value * parts.loss;
 }

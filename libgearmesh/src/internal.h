@@ -724,6 +724,25 @@ typedef struct gmi_varying {
     double by[GMI_MOTIONS];
 } gmi_varying;
 
+static inline void gmi_varying_add_product(const gmi_varying *a, const gmi_varying *b,
+                                           gmi_varying *sum) {
+    sum->value += a->value * b->value;
+    for (int k = 0; k < GMI_MOTIONS; ++k) {
+        sum->by[k] += a->value * b->by[k] + a->by[k] * b->value;
+    }
+}
+
+/* From derivatives by line origin, delta and speed of approach of a side to those by what a solver knows. */
+static inline gmi_varying gmi_varying_of(const gm_pair *pair, int side, double value,
+                                         double by_origin, double by_delta, double by_speed) {
+    const double r_bp = gmi_side_sign(side) * pair->pinion.base_radius;
+    const double r_bw = gmi_side_sign(side) * pair->wheel.base_radius;
+    const gmi_varying result = {
+        value,
+        {r_bp * (by_delta + by_origin), -r_bw * by_delta, r_bp * by_speed, -r_bw * by_speed}};
+    return result;
+}
+
 /* How the flanks of one side slide on each other. */
 typedef struct gmi_sliding {
     const gmi_friction *friction;
@@ -751,6 +770,18 @@ typedef struct gmi_friction_sum {
     double force_t1;    /* times t1 (N) */
     double loss;        /* (W) */
 } gmi_friction_sum;
+
+/* Friction at one point: over the transverse force there, less what is the same all over a side. */
+typedef struct gmi_point_friction {
+    double share; /* mu_r / cos(beta_b) */
+    double speed; /* of sliding (m/s) */
+
+    /* Derivatives of the share: by rho_p, by the logarithm of the load, and by both speeds. */
+    double by_roll, by_load, by_pinion_speed, by_wheel_speed;
+} gmi_point_friction;
+
+/* load: transverse, over the common face width (N). */
+gmi_point_friction gmi_friction_at(const gmi_sliding *sliding, double rho_p, double load);
 
 /* Adds that of one part. */
 void gmi_friction_add(const gmi_sliding *sliding, const gmi_part_force *part,

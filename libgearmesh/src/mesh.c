@@ -72,15 +72,6 @@ static const char *friction_at_fault(const gm_mesh_params *params, const char **
         *wanted = "a coefficient from 0 to 1";
         return "friction_coefficient";
     }
-    if (params->law == GM_LAW_ELASTIC && law == GM_FRICTION_CONSTANT &&
-        params->friction_coefficient > 0.0) {
-        *wanted = "0 with GM_LAW_ELASTIC, which has no friction";
-        return "friction_coefficient";
-    }
-    if (params->law == GM_LAW_ELASTIC && law != GM_FRICTION_CONSTANT) {
-        *wanted = "GM_FRICTION_CONSTANT with GM_LAW_ELASTIC, which has no friction";
-        return "friction_law";
-    }
 
     /* Its numbers, as far as it takes them. */
     if (!is_within(params->friction_speed, 1e-9, 1e3)) {
@@ -538,8 +529,26 @@ static void add_roll(const gm_mesh *mesh, const gmi_side_sum *drive, const gmi_s
     }
 }
 
-static int evaluate_elastic(const gm_mesh *mesh, const gm_position *position, int wanted,
-                            gm_workspace *workspace, gm_mesh_result *result) {
+/* From the sums of elastic teeth to all that a user sees, apart from what has found them. */
+static OWN_STACK void finish_elastic(const gm_mesh *mesh, const gm_position *position,
+                                     const gmi_side_sum sums[2], const double approach[2],
+                                     int wanted, int mask, gm_workspace *workspace,
+                                     gm_mesh_result *result) {
+    gmi_friction_sum friction[2];
+    const int slides = mesh->friction.is_on;
+    for (int side = GM_DRIVE; side <= GM_COAST && slides; ++side) {
+        const gmi_sliding sliding =
+            gmi_sliding_find(&mesh->friction, mesh->pair, &mesh->engagement, position);
+        gmi_elastic_friction(mesh, side, approach[side], &sliding, &sums[side], mask, workspace,
+                             &friction[side]);
+    }
+    set_result(mesh, &sums[GM_DRIVE], &sums[GM_COAST], slides ? friction : NULL, approach, wanted,
+               result);
+    add_roll(mesh, &sums[GM_DRIVE], &sums[GM_COAST], wanted, result);
+}
+
+static OWN_STACK int evaluate_elastic(const gm_mesh *mesh, const gm_position *position, int wanted,
+                                      gm_workspace *workspace, gm_mesh_result *result) {
     gmi_side_sum sums[2];
     const int mask = accumulated(mesh, position->offset_rate != 0.0, wanted) | GMI_ROLL;
     for (int side = GM_DRIVE; side <= GM_COAST; ++side) {
@@ -550,8 +559,7 @@ static int evaluate_elastic(const gm_mesh *mesh, const gm_position *position, in
         }
     }
     const double approach[2] = {position->offset_rate, -position->offset_rate};
-    set_result(mesh, &sums[GM_DRIVE], &sums[GM_COAST], NULL, approach, wanted, result);
-    add_roll(mesh, &sums[GM_DRIVE], &sums[GM_COAST], wanted, result);
+    finish_elastic(mesh, position, sums, approach, wanted, mask, workspace, result);
     return GM_OK;
 }
 
@@ -777,13 +785,12 @@ static int evaluate_moving(const gm_mesh *mesh, const gm_position *position,
     }
 
     /* And what they mean. */
-    if (mesh->friction.is_on) {
-        evaluate_sliding(mesh, position, approach, wanted, result);
-        return GM_OK;
-    }
-    set_result(mesh, &sums[GM_DRIVE], &sums[GM_COAST], NULL, approach, wanted, result);
     if (is_elastic(mesh)) {
-        add_roll(mesh, &sums[GM_DRIVE], &sums[GM_COAST], wanted, result);
+        finish_elastic(mesh, position, sums, approach, wanted, mask, workspace, result);
+    } else if (mesh->friction.is_on) {
+        evaluate_sliding(mesh, position, approach, wanted, result);
+    } else {
+        set_result(mesh, &sums[GM_DRIVE], &sums[GM_COAST], NULL, approach, wanted, result);
     }
     return GM_OK;
 }

@@ -313,18 +313,6 @@ static void set_simple_tangent(const gm_pair *pair, const gmi_engagement *at,
  * Lines with friction: in parts
  * ------------------------------------------------------------------------------------------- */
 
-/* From derivatives by line origin, delta and speed of approach to those by what a solver knows. */
-static gmi_varying varying(const side_view *view, double value, double by_origin, double by_delta,
-                           double by_speed) {
-    const double sign = gmi_side_sign(view->side);
-    const double r_bp = sign * view->pair->pinion.base_radius;
-    const double r_bw = sign * view->pair->wheel.base_radius;
-    const gmi_varying result = {
-        value,
-        {r_bp * (by_delta + by_origin), -r_bw * by_delta, r_bp * by_speed, -r_bw * by_speed}};
-    return result;
-}
-
 /* What the masks of both evaluations mean to the law. */
 enum { SLIDING_SUM = GMI_MOMENTS, SLIDING_ALL = GMI_MOMENTS | GMI_TANGENT };
 static int law_mask(int wanted) {
@@ -355,11 +343,12 @@ static OWN_STACK void add_friction(const side_view *view, double rho_origin, int
     }
 
     const gmi_part_force part_force = {
-        .force = varying(view, force.force, force.by_origin, force.by_delta, force.by_speed),
-        .moment = varying(view, force.force_rho, of_moment.by_origin, of_moment.by_delta,
-                          of_moment.by_speed),
-        .contact =
-            varying(view, part->contact, part->contact_by_origin, part->contact_by_delta, 0.0),
+        .force = gmi_varying_of(view->pair, view->side, force.force, force.by_origin,
+                                force.by_delta, force.by_speed),
+        .moment = gmi_varying_of(view->pair, view->side, force.force_rho, of_moment.by_origin,
+                                 of_moment.by_delta, of_moment.by_speed),
+        .contact = gmi_varying_of(view->pair, view->side, part->contact, part->contact_by_origin,
+                                  part->contact_by_delta, 0.0),
         .force_t1 = force.force_t1};
     gmi_friction_add(view->sliding, &part_force, view->friction);
 }
@@ -556,6 +545,15 @@ static void sum_lines(const gm_pair *pair, const gmi_engagement *at, const gmi_s
     follow_lines(pair, at, prepared, side, position, wanted, 0, &view, total);
 }
 
+static OWN_STACK void finish_friction(const side_view *view, int wanted,
+                                      const gmi_side_sum *total) {
+    gmi_side_force force;
+    gmi_law_force(view->law, total, view->approach_speed, law_mask(wanted), &force);
+    const gmi_varying all = gmi_varying_of(view->pair, view->side, force.force, force.by_origin,
+                                           force.by_delta, force.by_speed);
+    gmi_friction_finish(view->sliding, &all, view->friction);
+}
+
 void gmi_side_sum_sliding(const gm_pair *pair, const gmi_engagement *at, const gmi_side *prepared,
                           int side, const gm_position *position, int with_derivatives,
                           const gmi_law *law, double approach_speed, const gmi_sliding *sliding,
@@ -575,11 +573,7 @@ void gmi_side_sum_sliding(const gm_pair *pair, const gmi_engagement *at, const g
     *friction = none;
     follow_lines(pair, at, prepared, side, position, wanted, 1, &view, total);
 
-    gmi_side_force force;
-    gmi_law_force(law, total, approach_speed, law_mask(wanted), &force);
-    const gmi_varying all =
-        varying(&view, force.force, force.by_origin, force.by_delta, force.by_speed);
-    gmi_friction_finish(sliding, &all, friction);
+    finish_friction(&view, wanted, total);
 }
 
 void gmi_side_sum_tables(const gm_pair *pair, const gmi_engagement *at, const gmi_side *prepared,
