@@ -106,6 +106,24 @@ def gearsim_path(given):
     return os.path.abspath(path)
 
 
+def write_gears(folder, head):
+    """A parameter file of the gears of a result, from what its head says of them; returns its path."""
+    gears = {key.partition(".")[2]: value for key, value in head.items() if key.startswith("gears.")}
+    if "pinion_teeth" not in gears or "wheel_teeth" not in gears:
+        raise InputError("the head must have the gears (# gears.pinion_teeth = ...)")
+    path = os.path.join(folder, "gears.ini")
+    with open(path, "w", encoding="utf-8") as file:
+        file.write("[gears]\n" + "".join(f"{key} = {value}\n" for key, value in gears.items()))
+    return path
+
+
+def gearflanks_path(gearsim):
+    """gearflanks beside gearsim, in a build or installed."""
+    folder = os.path.dirname(gearsim)
+    places = [os.path.join(folder, "gearflanks"), os.path.join(folder, os.pardir, "gearflanks", "gearflanks")]
+    return next(filter(os.path.isfile, places), "gearflanks")
+
+
 def add_arguments(parser):
     """What both scripts take."""
     add = parser.add_argument

@@ -21,7 +21,7 @@ set xlabel (over_time ? 'time / s' : speed_name . ' / rpm')
 set ylabel axis_text noenhanced
 set label 1 title_text at screen 0.095, screen 0.965 left font ',17' noenhanced
 set label 2 method_text at screen 0.095, screen 0.93 left font ',12' textcolor rgb grey noenhanced
-set key at screen 0.965, screen 0.905 right maxrows 3 samplen 2 font ',11' noenhanced
+set key at screen 0.965, screen 0.905 right maxrows 3 samplen 2 width 2 font ',11' noenhanced
 
 do for [format in formats] {
     eval terminal(format, 'orders_tracks', 1400, 900)

@@ -27,7 +27,7 @@ do for [format in formats] {
         set xlabel (row == 1 ? 'pinion speed / rpm' : '')
         set ylabel (column == 0 ? 'force, peak / N' : '')
         set label 2 value(sprintf('panel_%d', k)) at graph 0.02, graph 1.045 left font ',12'
-        if (k == 0) { set key at screen 0.965, screen 0.93 right maxrows 3 samplen 2 font ',11' noenhanced } \
+        if (k == 0) { set key at screen 0.965, screen 0.93 right maxrows 3 samplen 2 width 2 font ',11' noenhanced } \
         else { unset key }
         plot for [i = 0:curves - 1] sprintf('run_%d.dat', i) using 1:k + 2 with lines lw 1.6 dt dash_of(i) \
             lc rgb colour_of(i) title value(sprintf('label_%d', i))

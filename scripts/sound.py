@@ -18,6 +18,7 @@ LOUDNESS_RATE_HZ = 48000  # that of ISO 532-1
 HOUSING = ((650.0, 0.06, 1.0), (1400.0, 0.05, 0.7), (2600.0, 0.04, 0.5))
 LOUDEST_SHARE = 99.9  # percentile of the amounts that becomes PEAK of full scale
 PEAK = 0.9
+TONE_S = 0.5  # of sound for each value of a tonality [ECMA-418-1]
 AUDIBLE_SONE = 0.02  # weaker sounds have no sharpness
 SETTLES_S = 0.2  # what a sudden beginning takes
 
@@ -74,3 +75,16 @@ def loudness(run, kind, pascal_per_N):
     # The sound begins of a sudden, which no run does.
     settled = time_s >= min(SETTLES_S, 0.5 * time_s[-1])
     return run.time_s[0] + time_s[settled], sone[settled], np.where(sone > AUDIBLE_SONE, acum, np.nan)[settled]
+
+
+def tonality(run, kind, pascal_per_N):
+    """(time in s, tone-to-noise ratio in dB) of all tones together, in pieces of TONE_S that overlap by half: ECMA-418-1.
+
+    0 where no tone stands out. Tones that sweep through several bands in a piece are none.
+    """
+    pressure_Pa = pascal_per_N * of_run(run, kind, LOUDNESS_RATE_HZ)
+    if len(pressure_Pa) <= TONE_S * LOUDNESS_RATE_HZ:
+        return np.empty(0), np.empty(0)
+    with np.errstate(all="ignore"):
+        total_dB, _, _, _, time_s = load_mosqito().tnr_ecma_perseg(pressure_Pa, LOUDNESS_RATE_HZ, overlap=0.5)
+    return run.time_s[0] + np.asarray(time_s), np.nan_to_num(np.asarray(total_dB, dtype=float))

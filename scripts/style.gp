@@ -28,5 +28,5 @@ terminal(format, name, width, height) = format eq 'png' \
     ? sprintf("set terminal pngcairo size %d,%d font 'DejaVu Sans,13' fontscale 1.25", width, height) \
     : format eq 'pdf' \
     ? sprintf("set terminal pdfcairo size %f,%f font 'DejaVu Sans,13' fontscale 1.0 linewidth 1.5", width / 100.0, height / 100.0) \
-    : sprintf("set terminal svg size %d,%d font 'DejaVu Sans,13' background '#ffffff' name '%s'", \
+    : sprintf("set terminal svg size %d,%d font 'DejaVu Sans,13' fontscale 1.33 background '#ffffff' name '%s'", \
               width * 0.8, height * 0.8, name)

@@ -22,6 +22,7 @@ program.require("numpy")
 
 import numpy as np  # noqa: E402
 
+import contact_pattern  # noqa: E402
 import script_case  # noqa: E402
 
 GEARSIM = None
@@ -124,27 +125,54 @@ class Pattern(unittest.TestCase):
         moved = FACE * 4 / 12 / single_um * (share_alone + 2 * (1 - share_alone))
         self.assertAlmostEqual(mean - 10, moved, delta=0.03 * moved)  # sums over 17 stations; shares of 40 positions
 
+    def test_a_report_has_the_pattern_and_the_class_of_the_flanks(self):
+        # A slope of 8 um over the active profile of one tooth: f_H_alpha, whose tolerance is that of a class.
+        rows = [f"{tooth},drive,{t1},{t2},{8 * (t2 - 0.5) if tooth == 3 else 0}\n" for tooth in range(TEETH)
+                for t1 in (0, 0.5, 1) for t2 in np.linspace(0, 1, 11)]
+        os.mkdir(self.path("in"))
+        self.write("in/run.ini", PARAMS.replace("stiffness_N_per_m = 2.8e8\n", "stations = 5\n") + "[flanks]\n"
+                   "pinion = <b>.csv\nwheel_pitch = pitch.csv\n[output]\nload_distribution = ../load.csv\n")
+        self.write("in/<b>.csv", "tooth,flank,t1,t2,deviation_um\n" + "".join(rows))
+        self.write("in/pitch.csv", "tooth,flank,deviation_um\n0,drive,1\n")
+        subprocess.run([GEARSIM, "in/run.ini", "--quiet", "--output", "run.csv"], cwd=self.folder, check=True)
+        told = {}
+        for name, more in (("in.html", ["load.csv", "--flanks", "in"]), ("none.html", [])):
+            result = script_case.call("report", "run.csv", "--output", name, "--gearsim", GEARSIM, *more, folder=self.folder)
+            self.assertEqual((result.returncode, result.stderr), (0, ""))
+            with open(self.path(name), encoding="utf-8") as file:
+                told[name] = file.read()
+        self.assertIn("pinion: no class, as &lt;b&gt;.csv is not here (--flanks FOLDER)", told["none.html"])
+        text = told["in.html"]
+        self.assertIn("load: contact pattern", text)
+        self.assertIn("drive flanks at 116.5", text)
+        self.assertEqual(text.count('src="data:image/'), 3)  # static curves, their harmonics, the pattern
+        row = re.search(r"<td>f_H_alpha</td><td>([\d.]+)</td><td>3</td><td>drive</td><td>(\d+)</td><td>([\d.]+)</td>", text)
+        value, class_, tolerance = map(float, row.groups())
+        self.assertTrue(6 < value <= 8 and value <= tolerance, row[0])  # of the evaluation range
+        # ISO 1328-1: a tolerance is that of class 5 times sqrt(2) for each class; f_H_alpha T5 = 0.4 m_n + 0.001 d + 4.
+        unrounded = (0.4 * MODULE + 0.001 * TEETH * MODULE + 4) * math.sqrt(2) ** (class_ - 5)
+        self.assertAlmostEqual(tolerance, unrounded, delta=0.26)
+
     def test_map_is_the_largest_of_all_teeth(self):
         def line_load(tooth, z, rho):
             return 100 + (5 * z if tooth == 0 else 10 * (rho - LINE_MM / 2))
 
         self.known(line_load)
-        pattern = script_case.module_of("pattern")
-        loads = pattern.Loads(self.path("load.csv"), lambda head: pattern._geometry(GEARSIM, head))
-        pinion, wheel = (pattern.Flank(gear, loads) for gear in ("pinion", "wheel"))
+        loads = contact_pattern.Loads(self.path("load.csv"), lambda head: contact_pattern.geometry_of(GEARSIM, head))
+        pinion, wheel = (contact_pattern.Flank(gear, loads) for gear in ("pinion", "wheel"))
         largest = loads.largest("line_load_N_per_mm")
         for flank in (pinion, wheel):
             rho = flank.pinion_roll_length_mm(flank.active_mm)
             own_mm = rho if flank is pinion else LINE_MM - rho
             np.testing.assert_allclose(2 * np.hypot(BASE_MM, own_mm), flank.active_mm)
             there = np.flatnonzero(np.abs(rho - LINE_MM / 2) < 0.75 * PITCH_MM)
-            z = np.linspace(0, FACE, pattern.NODES)
+            z = np.linspace(0, FACE, contact_pattern.NODES)
             expected = 100 + np.maximum(5 * z, 10 * (rho[there, np.newaxis] - LINE_MM / 2))
             drawn = flank.map(largest, loads.stations_mm)[there]
             # Linear between points: exact but for the cells in which the teeth change over, a quarter of 5 * 5 there.
             self.assertLess(np.abs(drawn - expected).max(), 12.5 / 2)
             self.assertLess(np.median(np.abs(drawn - expected)), 1e-5)
-        self.assertEqual(pinion.map(largest, loads.stations_mm).shape, (pattern.NODES, pattern.NODES))
+        self.assertEqual(pinion.map(largest, loads.stations_mm).shape, (contact_pattern.NODES, contact_pattern.NODES))
 
     def test_edge_of_the_pattern_is_where_the_overlap_ends(self):
         edge = 0.62 * FACE

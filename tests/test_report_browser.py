@@ -29,6 +29,7 @@ addEventListener('load', () => {
     setTimeout(() => { document.title = JSON.stringify({
         wrong, images: [...document.images].filter(image => image.naturalWidth > 0).length, all: document.images.length,
         wider: document.documentElement.scrollWidth - innerWidth, duration: audio.duration, top: parseFloat(cursor.style.top),
+        classes: [...document.querySelectorAll('th')].filter(cell => cell.textContent == 'class').length,
         loaded: performance.getEntriesByType('resource').filter(one => !one.name.startsWith('data:')).length }); }, 100);
 });
 </script>"""
@@ -62,8 +63,16 @@ def main(gearsim):
             settings = {"drive.start_rpm": 1000, "drive.end_rpm": 5000, "analysis.duration_s": 2, "mesh.damping_Ns_per_m": damping}
             options = [word for key, value in settings.items() for word in ("--set", f"{key}={value}")]
             subprocess.run([gearsim, params, "--quiet", "--output", run, *options], check=True)
+        # What elastic teeth carry.
+        loads = [os.path.join(folder, name) for name in ("static.csv", "load.csv")]
+        elastic = ("mesh.stiffness_N_per_m=", "mesh.damping_Ns_per_m=", "analysis.type=static", "load.mean_Nm=20",
+                   f"output.load_distribution={loads[1]}")
+        options = [word for setting in elastic for word in ("--set", setting)]
+        subprocess.run([gearsim, params, "--quiet", "--output", loads[0], *options], check=True)
         path = os.path.join(folder, "r.html")
-        subprocess.run([os.path.join(ROOT, "scripts", "report"), *runs, "--output", path], check=True)
+        command = [os.path.join(ROOT, "scripts", "report"), *runs, *loads, "--output", path, "--gearsim", gearsim, "--flanks",
+                   os.path.dirname(params)]
+        subprocess.run(command, check=True)
 
         # Watched, on a wide screen and on a narrow one.
         with open(path, encoding="utf-8") as file:
@@ -74,7 +83,8 @@ def main(gearsim):
             seen = dump(browser, path, folder, width)
             print(width, seen)
             assert seen["wrong"] == [], seen
-            assert seen["images"] == seen["all"] == 6 + 6 + 2, seen
+            assert seen["images"] == seen["all"] == 6 + 6 + 2 + 1 + 2, seen
+            assert seen["classes"] >= 1, seen
             assert seen["wider"] <= 0, seen
             assert seen["loaded"] == 0, seen
             assert abs(seen["duration"] - 2.0) < 0.02, seen

@@ -311,8 +311,32 @@ class Loudness(Case):
         result = subprocess.run(command, cwd=self.folder, capture_output=True, text=True, check=False)
         self.assertEqual((result.returncode, result.stderr), (0, ""))
         with open(os.path.join(self.folder, "a.html"), encoding="utf-8") as file:
-            found = re.search(r"Loudness at most ([0-9.]+) sone", file.read())
+            text = file.read()
+        found = re.search(r"Loudness at most ([0-9.]+) sone", text)
+        self.assertIn("Tone-to-noise ratio at most", text)
         self.assertAlmostEqual(float(found[1]), 1.0, delta=0.05)  # ISO 532-1 allows 5 %
+
+
+@unittest.skipUnless("GEARMESH_WORKBENCH" in os.environ, "mosqito: see check_workbench")
+class Tonality(Case):
+    def test_a_tone_in_white_noise(self):
+        """The noise in the critical band of 1 kHz, 162.2 Hz wide by ECMA-418-1, is all that counts against the tone."""
+        code = """
+import numpy as np, runup, sound
+time_s = np.arange(4 * 48000) / 48000
+noise = np.random.default_rng(1).standard_normal(len(time_s))
+force_N = np.sqrt(2) * np.sin(2 * np.pi * 1000 * time_s) + noise
+at_s, tone_dB = sound.tonality(runup.Run(time_s, 0 * time_s + 60, 2 * np.pi * time_s, force_N), "force", 0.02)
+assert len(tone_dB) == 15 and 0.2 < at_s[0] < 0.3, at_s
+print(tone_dB.mean())
+short = runup.Run(time_s[:9], 0 * time_s[:9] + 60, time_s[:9], time_s[:9])
+assert not len(sound.tonality(short, "force", 1.0)[1])
+"""
+        python = os.path.join(os.environ["GEARMESH_WORKBENCH"], "bin", "python3")
+        result = subprocess.run([python, "-c", code], cwd=script_case.SCRIPTS, capture_output=True, text=True, check=False)
+        self.assertEqual(result.returncode, 0, result.stderr)
+        # 10 lg(24000 / 162.2), as the noise has the power of the tone over 24 kHz.
+        self.assertAlmostEqual(float(result.stdout), 21.7, delta=1.0)
 
 
 if __name__ == "__main__":
