@@ -134,6 +134,11 @@ def run(work, parse):
     return status
 
 
+def parsed(parser):
+    """The command line, where names may also stand between options and behind them."""
+    return parser.parse_args() if "--" in sys.argv else parser.parse_intermixed_args()
+
+
 def first_line_of(error):
     """The first line of an error's text, as libraries tell of a mishap in several."""
     lines = str(error).strip().splitlines()
