@@ -7,6 +7,7 @@ import math
 import os
 import re
 import shutil
+import signal
 import subprocess
 import sys
 import tempfile
@@ -15,7 +16,6 @@ import threading
 import numpy as np
 
 import program
-import results
 from program import InputError, RunFailed
 
 ROOT = os.path.join(os.path.dirname(os.path.realpath(__file__)), os.pardir)
@@ -135,22 +135,95 @@ def add_arguments(parser):
     add("--no-pictures", action="store_true", help="numbers only, gnuplot is not called")
 
 
+def settings_of(values):
+    """What stands behind --set of {section.key: value}."""
+    return [f"{key}={value:.12g}" if isinstance(value, float) else f"{key}={value}" for key, value in values.items()]
+
+
+def command_of(gearsim, path, values, *options):
+    path = os.path.join(".", path) if path.startswith("-") else path  # or it were an option
+    return [gearsim, path, "--quiet", *options, *(f"--set={setting}" for setting in settings_of(values))]
+
+
+def check(status, text):
+    """Raise what an exit status of gearsim means; the text is what it said."""
+    if status in (130, -signal.SIGINT):
+        raise KeyboardInterrupt
+    if status == 2:
+        raise InputError(text.strip())
+    if status != 0 and "no equilibrium" in text:
+        raise NoEquilibrium(text.strip())
+    if status != 0:
+        raise RunFailed(text.strip() or f"gearsim ended with {status}")
+
+
 def call(gearsim, path, values, *options):
     """Call gearsim with {section.key: value}; returns what it prints."""
-    path = os.path.join(".", path) if path.startswith("-") else path  # or it were an option
-    command = [gearsim, path, "--quiet", *options]
-    for key, value in values.items():
-        command += ["--set", f"{key}={value:.12g}" if isinstance(value, float) else f"{key}={value}"]
+    command = command_of(gearsim, path, values, *options)
     result = subprocess.run(command, capture_output=True, text=True, check=False, stdin=subprocess.DEVNULL)
-    if result.returncode == 130:
-        raise KeyboardInterrupt
-    if result.returncode == 2:
-        raise InputError(result.stderr.strip())
-    if result.returncode != 0 and "no equilibrium" in result.stderr:
-        raise NoEquilibrium(result.stderr.strip())
-    if result.returncode != 0:
-        raise RunFailed(result.stderr.strip() or f"gearsim ended with {result.returncode}")
+    check(result.returncode, result.stderr)
     return result.stdout
+
+
+class Runs:
+    """Runs of one parameter file, one after the other, in one process that begins with the first of them."""
+
+    END = re.compile(rb"(?:^|\n)# exit (\d+)\n\Z")
+    MESSAGE = re.compile(rb"^# message: (.*)$", re.MULTILINE)
+
+    def __init__(self, command):
+        self.command = [*command, "--each"]
+        self.process = None
+
+    def run(self, values):
+        """Head lines {key: text} and rows of a run with {section.key: value}."""
+        if self.process is not None and self.process.poll() is not None:  # as after Ctrl-C, between two runs
+            self.close()
+        if self.process is None:
+            self.process = subprocess.Popen(  # pylint: disable=consider-using-with
+                self.command, stdin=subprocess.PIPE, stdout=subprocess.PIPE, stderr=subprocess.PIPE)
+        try:
+            self.process.stdin.write("\t".join(settings_of(values)).encode() + b"\n")
+            self.process.stdin.flush()
+        except BrokenPipeError:
+            pass  # it has ended, and what it has said of that is read below
+        answer, status = self._answer()
+        check(status, b"\n".join(self.MESSAGE.findall(answer)).decode(errors="replace"))
+        return _head_and_rows(answer)
+
+    def _answer(self):
+        """All that a run prints, and its exit status."""
+        answer = bytearray()
+        while not (end := self.END.search(answer, max(0, len(answer) - 32))):
+            piece = self.process.stdout.read1(1 << 20)
+            if not piece:  # the process is gone, as after Ctrl-C
+                said = self.process.stderr.read().decode(errors="replace")
+                status = self.process.wait()
+                self.close()
+                check(status or 1, said)
+            answer += piece
+        return bytes(answer), int(end[1])
+
+    def close(self):
+        if self.process is not None:
+            with self.process as process:
+                process.kill()
+            self.process = None
+
+
+def _head_and_rows(text):
+    """Head lines {key: text} and rows of what gearsim has printed."""
+    head, at = {}, 0
+    while text.startswith(b"#", at):
+        end = text.index(b"\n", at)
+        key, equals, value = text[at + 1 : end].decode(errors="replace").partition("=")
+        if equals:
+            head[key.strip()] = value.strip()
+        at = end + 1
+    end = text.index(b"\n", at)
+    columns = text.count(b",", at, end) + 1
+    rows = text[end + 1 : text.rindex(b"#")].strip().replace(b"\n", b",")
+    return head, np.fromstring(rows, sep=",").reshape(-1, columns)
 
 
 def listing(text):
@@ -160,7 +233,7 @@ def listing(text):
 
 
 class Gears:
-    """A gear pair of a parameter file. Runs go to all cores; close() ends them."""
+    """A gear pair of a parameter file. Runs go to a process of gearsim on each core; close() ends them."""
 
     def __init__(self, path, settings=(), gearsim=None):
         self.path = path
@@ -171,6 +244,7 @@ class Gears:
         self.positions = None  # as the file says
         self.folder = tempfile.TemporaryDirectory(prefix="gearmesh_")
         self.pool = concurrent.futures.ThreadPoolExecutor(os.cpu_count() or 1)
+        self.own, self.all_runs = threading.local(), []
         try:
             self._read()
         except BaseException:
@@ -192,6 +266,8 @@ class Gears:
 
     def close(self):
         self.pool.shutdown(cancel_futures=True)
+        for runs in self.all_runs:
+            runs.close()
         self.folder.cleanup()
 
     def _read(self):
@@ -217,14 +293,18 @@ class Gears:
 
     def _run(self, values):
         """Head lines and rows of a static run."""
-        path = os.path.join(self.folder.name, f"{threading.get_ident()}.csv")
         forced = {"analysis.type": "static", "output.digits": 12,
                   "output.load_distribution": ""}  # one file for runs that go side by side
         if self.positions is not None:
             forced["analysis.positions"] = self.positions
-        self._call({**forced, **values}, "--output", path)
-        head, _, head_lines = results.read_head(path)
-        return head, np.loadtxt(path, delimiter=",", skiprows=head_lines, ndmin=2)
+        return self._runs().run({**forced, **values})
+
+    def _runs(self):
+        """Those of this thread."""
+        if not hasattr(self.own, "runs"):
+            self.own.runs = Runs(command_of(self.gearsim, self.path, self.settings))
+            self.all_runs.append(self.own.runs)
+        return self.own.runs
 
     def load_distribution(self):
         """The CSV with the loads along the lines of contact at mean_Nm; it goes with close()."""
@@ -251,10 +331,22 @@ class Gears:
         try:
             for of_design in futures:
                 yield np.vstack([future.result() for future in of_design])
+        except KeyboardInterrupt:
+            # Of a terminal it goes to all processes: they end, and whoever goes on gets others.
+            self._give_up(futures)
+            for runs in self.all_runs:
+                runs.close()
+            raise
         finally:
-            for of_design in futures:
-                for future in of_design:
-                    future.cancel()
+            self._give_up(futures)
+
+    @staticmethod
+    def _give_up(futures):
+        """Begin none that has not begun, and wait for the others."""
+        flat = [future for of_design in futures for future in of_design]
+        for future in flat:
+            future.cancel()
+        concurrent.futures.wait(flat)
 
     def curves_um(self, designs, torques_Nm):
         """Transmission error of all: [design, torque, position]."""

@@ -14,6 +14,7 @@ import math
 import os
 import re
 import shlex
+import signal
 import subprocess
 import sys
 import tempfile
@@ -140,7 +141,7 @@ class Options(Case):
     def test_help_lists_all_options_exit_codes_and_keys(self):
         text = self.accepted("--help").stdout
         for option in ["--set section.key=value", "--output FILE", "--quiet", "--version", "--help", "--geometry",
-                       "--check"]:
+                       "--check", "--each"]:
             self.assertIn(option, text)
         self.assertRegex(text, r"0 done; 1 .*; 2 .*; 130 interrupted")
         for line in ["helix_angle_deg           [0]", "profile_blend             [0.1]", "relative_tolerance        [1e-4]",
@@ -172,6 +173,9 @@ class Options(Case):
                                     (["run.ini", "other.ini"], "a second INI file"),
                                     (["run.ini", "--quiet=1"], "no value expected: --quiet=1"),
                                     (["run.ini", "--check", "--geometry"], "exclude each other"),
+                                    (["run.ini", "--each", "--check"], "exclude each other"),
+                                    (["run.ini", "--each", "--output", "x.csv"], "not to x.csv"),
+                                    (["-", "--each"], "not the INI file"),
                                     ([""], "the name of the INI file is empty")]:
             with self.subTest(arguments):
                 result = self.run_gearsim(*arguments)
@@ -286,6 +290,35 @@ class Streams(Case):
         done = self.piped("-", text=PARAMS.replace("= 45", "= many"))
         self.assertEqual((done.returncode, done.stdout), (2, ""))
         self.assertIn("-:2: gears.pinion_teeth: must be a number", done.stderr)
+
+    def test_each_line_of_settings_is_a_run_of_its_own(self):
+        """Rows and provenance are those of a call by itself; what is wrong with a line leaves the others."""
+        self.write("run.ini", PARAMS)
+        lines = ["", "load.mean_Nm=30\tanalysis.duration_s=0.002", "analysis.type=static\toutput.columns=te_um\t",
+                 "load.mean_Nm=much", "analysis.type=static\tload.mean_Nm=1e9\toutput.columns=te_um", "drive.end_rpm = 1000"]
+        done = self.piped("run.ini", "--each", "--quiet", "--set", "load.mean_Nm=10", text="\n".join(lines))
+        self.assertEqual((done.returncode, done.stderr), (1, ""))
+        answers = re.split(r"(?m)^# exit (\d+)\n", done.stdout)
+        self.assertEqual((answers[1::2], answers[-1]), (["0", "0", "0", "2", "1", "0"], ""))
+        for line, answer in zip(lines, answers[::2]):
+            with self.subTest(line):
+                settings = [f"--set={setting}" for setting in ["load.mean_Nm=10", *filter(None, line.split("\t"))]]
+                alone = self.run_gearsim("run.ini", "--quiet", "--output", "-", *settings)
+                said = "".join(f"{text}\n" for text in re.findall(r"(?m)^# message: (.*)$", answer))
+                self.assertEqual((re.sub(r"(?m)^# message: .*\n", "", answer), said), (alone.stdout, alone.stderr))
+        self.assertEqual((self.read("run.csv"), sorted(os.listdir(self.folder))), (OLD_RESULT, ["run.csv", "run.ini"]))
+
+    def test_an_interrupt_ends_all_runs(self):
+        self.write("run.ini", PARAMS)
+        with subprocess.Popen([GEARSIM, "run.ini", "--each", "--quiet"], cwd=self.folder, stdin=subprocess.PIPE,
+                              stdout=subprocess.PIPE, text=True) as process:
+            process.stdin.write("analysis.duration_s=1000\n\n")
+            process.stdin.flush()
+            self.assertEqual(process.stdout.readline()[:9], "# gearsim")
+            process.send_signal(signal.SIGINT)
+            said = process.stdout.read()
+            self.assertIn("\n# incomplete: interrupted", said)
+            self.assertEqual((process.wait(), said.count("# exit"), said[-11:]), (130, 1, "# exit 130\n"))
 
     def test_a_stream_that_takes_no_more_fails_the_run(self):
         with open("/dev/full", "w") as full:

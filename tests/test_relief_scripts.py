@@ -128,9 +128,15 @@ class Case(unittest.TestCase):
             self.assertIn(fragment, result.stderr)
         return result
 
+    @staticmethod
+    def reading(task):
+        """A gearsim that does something with each `line` of settings before its run."""
+        return (f'#!/bin/sh\ncase "$*" in *--each*) while IFS= read -r line; do\n{task}\nprintf "%s\\n" "$line"\ndone | '
+                f'"{GEARSIM}" "$@" ;;\n*) exec "{GEARSIM}" "$@" ;; esac\n')
+
     def interrupted(self, script, *arguments, runs):
         """Ctrl-C of a terminal, which goes to the whole group, after so many runs of gearsim."""
-        counted = self.write("counted", f'#!/bin/sh\necho >>"{self.folder}/count"\nexec "{GEARSIM}" "$@"\n')
+        counted = self.write("counted", self.reading(f'echo >>"{self.folder}/count"'))
         os.chmod(counted, 0o755)
         process = subprocess.Popen(
             [sys.executable, os.path.join(SCRIPTS, script), *arguments, "--gearsim", counted],
@@ -469,8 +475,8 @@ class Relief(Case):
         self.assertEqual(self.worst_um(text)[2], math.inf)
 
     def test_an_interruption_of_the_tolerance_leaves_the_design(self):
-        gearsim = self.write("gearsim", '#!/bin/sh\ncase "$*" in *pinion_tip_relief_um=20.123*)\n'
-                             f'trap "" INT; mkdir "{self.folder}/once" && kill -INT 0;; esac\nexec "{GEARSIM}" "$@"\n')
+        gearsim = self.write("gearsim", self.reading('case "$line" in *pinion_tip_relief_um=20.123*)\n'
+                                                     f'mkdir "{self.folder}/once" && kill -INT 0;; esac'))
         os.chmod(gearsim, 0o755)
         result = subprocess.run(
             [os.path.join(SCRIPTS, "relief"), SPUR, *self.AMOUNTS, "--torques", f"{DESIGN_NM}", "--starts", "1",

@@ -11,6 +11,7 @@
 
 static const char usage[] =
     "usage: gearsim PARAMS.ini [--set section.key=value]... [--output FILE] [--quiet]\n"
+    "       gearsim PARAMS.ini --each [--set section.key=value]... [--quiet] <SETTINGS\n"
     "       gearsim PARAMS.ini --check | --geometry [--json]\n"
     "       gearsim --template [KIND]\n"
     "       gearsim --help | --version";
@@ -26,6 +27,13 @@ static const char options_help[] =
     "counts\n"
     "  --output FILE            the result, in place of output.file\n"
     "  --quiet                  no progress, notes and warnings on stderr; errors stay\n"
+    "  --each                   a run for each line of standard input, which has what stands "
+    "behind "
+    "--set, separated\n"
+    "                           by tabs; all results go to standard output as CSV, with "
+    "`# message: TEXT` lines\n"
+    "                           and a last line `# exit CODE` each; the exit code is that of the "
+    "last run that failed\n"
     "  --check                  reads and checks everything, says what a run would do, runs and "
     "writes nothing\n"
     "  --geometry               derived quantities as `name = value` lines on stdout, no run\n"
@@ -95,12 +103,17 @@ static enum option_result take_quiet(parsing *state, const char *value) {
 
 static enum option_result take_task(parsing *state, enum task task) {
     if (state->args->task != TASK_RUN && state->args->task != task) {
-        (void)command_line_refuse(&state->line,
-                                  "--check, --geometry and --template exclude each other", "");
+        (void)command_line_refuse(
+            &state->line, "--each, --check, --geometry and --template exclude each other", "");
         return OPTION_FAULT;
     }
     state->args->task = task;
     return OPTION_TAKEN;
+}
+
+static enum option_result take_each(parsing *state, const char *value) {
+    (void)value;
+    return take_task(state, TASK_EACH);
 }
 
 static enum option_result take_check(parsing *state, const char *value) {
@@ -143,6 +156,7 @@ static const struct {
     {{"--set", "section.key=value"}, take_override},
     {{"--output", "a file name"}, take_output},
     {{"--quiet", NULL}, take_quiet},
+    {{"--each", NULL}, take_each},
     {{"--check", NULL}, take_check},
     {{"--geometry", NULL}, take_geometry},
     {{"--json", NULL}, take_json},
@@ -193,8 +207,17 @@ static int check_together(parsing *state) {
         if (state->line.file == NULL) {
             return command_line_refuse(&state->line, "no INI file given", "");
         }
-        return args->as_json && args->task == TASK_RUN
-                   ? command_line_refuse(&state->line, "--json goes with --check or --geometry", "")
+        if (args->as_json && args->task != TASK_CHECK && args->task != TASK_GEOMETRY) {
+            return command_line_refuse(&state->line, "--json goes with --check or --geometry", "");
+        }
+        if (args->task == TASK_EACH && args->request.output_file != NULL) {
+            return command_line_refuse(&state->line, "--each writes to standard output, not to ",
+                                       args->request.output_file);
+        }
+        return args->task == TASK_EACH && strcmp(state->line.file, "-") == 0
+                   ? command_line_refuse(&state->line,
+                                         "--each reads its settings from standard input, not ",
+                                         "the INI file")
                    : 0;
     }
 }

@@ -7,7 +7,15 @@
 
 #include "config.h"
 
-enum task { TASK_RUN, TASK_CHECK, TASK_GEOMETRY, TASK_TEMPLATE, TASK_HELP, TASK_VERSION };
+enum task {
+    TASK_RUN,
+    TASK_EACH,
+    TASK_CHECK,
+    TASK_GEOMETRY,
+    TASK_TEMPLATE,
+    TASK_HELP,
+    TASK_VERSION
+};
 
 typedef struct arguments {
     enum task task;

@@ -12,6 +12,7 @@
 #include "arguments.h"
 #include "dynamic_columns.h"
 #include "dynamics.h"
+#include "each.h"
 #include "forecast.h"
 #include "gear_mesh.h"
 #include "geometry_listing.h"
@@ -93,6 +94,8 @@ static int do_task(const arguments *args) {
         return EXIT_DONE;
     case TASK_TEMPLATE:
         return key_template_print(args->template_kind, stdout, args->request.messages);
+    case TASK_EACH:
+        return each_run(args, load_and_perform);
     default:
         return load_and_perform(args);
     }

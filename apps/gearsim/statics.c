@@ -64,22 +64,49 @@ typedef struct static_results {
     load_file *distribution;    /* NULL = none */
     gm_line_load_point *points; /* of one position */
     int capacity;
+    int columns;             /* that are asked for */
+    int column[COLUMNS_MAX]; /* their rows in static_columns */
+    int place[COLUMNS_MAX];  /* where output_row() takes their values from */
+    unsigned needs;          /* bits 1 << enum static_column_taking of all that is written */
 } static_results;
 
+/* What of a position goes to the result, and what has to be found for it beyond the equilibrium. */
+static void choose_columns(static_results *results, const config *conf) {
+    results->needs = results->distribution != NULL ? 1u << TAKES_FACES : 0;
+    for (int i = 0, place = 0; i < static_column_count; ++i) {
+        if (!static_column_is_there(conf, i)) {
+            continue;
+        }
+        if (output_wants(results->output, place)) {
+            results->column[results->columns] = i;
+            results->place[results->columns++] = place;
+            results->needs |= 1u << static_columns[i].taking;
+        }
+        ++place;
+    }
+    if (conf->law != LAW_ELASTIC && results->distribution == NULL) {
+        results->needs &= ~(1u << TAKES_FACES); /* the sums tell the length of contact */
+    }
+}
+
 /* The equilibrium itself has neither wrench nor line loads. */
-static int find_needed(const static_results *results, unsigned needs, static_position *at) {
+static int find_needed(const static_results *results, static_position *at) {
+    const unsigned wrench = 1u << TAKES_WRENCH, faces = 1u << TAKES_FACES;
     gm_position position;
     gm_mesh_result result;
+    if ((results->needs & (wrench | faces)) == 0) {
+        return GM_OK;
+    }
     int status = gm_position_from_pinion_angle(&at->gears->pair, at->pinion_angle, at->offset, 0.0,
                                                &position);
 
     position.pinion_speed = at->conf->start_speed;
-    if (status == GM_OK && (needs & 1u << TAKES_WRENCH)) {
+    if (status == GM_OK && (results->needs & wrench)) {
         status = gm_mesh_evaluate_at(at->gears->prepared, &position, GM_WANT_WRENCH,
                                      at->gears->workspace, &result);
         at->mesh.wrench = result.wrench;
     }
-    if (status == GM_OK && (needs & 1u << TAKES_FACES)) {
+    if (status == GM_OK && (results->needs & faces)) {
         status = gm_mesh_line_loads(at->gears->prepared, &position, at->gears->workspace,
                                     results->points, results->capacity, &at->faces);
     }
@@ -106,27 +133,13 @@ static int write_position(const config *conf, const gear_mesh *gears, double ang
                                                    position.mesh.wheel_torque_by.pinion_angle /
                                                    position.mesh.wheel_torque_by.wheel_angle;
 
-    /* What the columns that are asked for, and the other file, take beyond the equilibrium. */
-    unsigned needs = results->distribution != NULL ? 1u << TAKES_FACES : 0;
-    for (int i = 0, count = 0; i < static_column_count; ++i) {
-        if (static_column_is_there(conf, i)) {
-            needs |= output_wants(results->output, count) ? 1u << static_columns[i].taking : 0;
-            ++count;
-        }
-    }
-    if (conf->law != LAW_ELASTIC && results->distribution == NULL) {
-        needs &= ~(1u << TAKES_FACES); /* the sums tell the length of contact */
-    }
-    *status = find_needed(results, needs, &position);
+    *status = find_needed(results, &position);
     if (*status != GM_OK) {
         return EXIT_RUN_FAILED;
     }
     double values[COLUMNS_MAX];
-    int count = 0;
-    for (int i = 0; i < static_column_count; ++i) {
-        if (static_column_is_there(conf, i)) {
-            values[count++] = static_columns[i].value(&position);
-        }
+    for (int i = 0; i < results->columns; ++i) {
+        values[results->place[i]] = static_columns[results->column[i]].value(&position);
     }
     if (load_file_rows(results->distribution, angle, before->load, results->points,
                        position.faces.points) != 0) {
@@ -241,6 +254,7 @@ int statics_run(const config *conf, const gear_mesh *gears) {
     interrupt_watch(SECOND_KILLS);
     results.output = output_open(conf, names.name, names.count, &exit_code);
     if (results.output != NULL) {
+        choose_columns(&results, conf);
         exit_code = write_all(conf, gears, &results);
     } else {
         (void)load_file_close(results.distribution, "there is no result");
