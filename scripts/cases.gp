@@ -6,8 +6,9 @@
 load 'style.gp'
 
 colours = "#0072b2 #d55e00 #009e73 #767676"
-top = 0.85
-bottom = 0.11
+px = 1.0 / pixels # of the png, as a share of its height
+top = 1 - 150 * px
+bottom = 110 * px
 height = (top - bottom) / panels
 set lmargin at screen 0.105
 set rmargin at screen 0.965
@@ -20,7 +21,7 @@ set key at graph 1, graph 1 bottom right maxrows 1 samplen 2 font ',12'
 look = " lc rgb word(colours, i - first_curve + 1) title value(sprintf('label_%d', i)) noenhanced"
 
 do for [format in formats] {
-    eval terminal(format, 'cases', 1400, 1000)
+    eval terminal(format, 'cases', 1400, pixels)
     set output picture . '.' . format
     set multiplot
     do for [k = 0:panels - 1] {
@@ -31,8 +32,8 @@ do for [format in formats] {
         unset label
         unset arrow
         if (k == 0) {
-            set label title_text at screen 0.025, screen 0.96 left font ',17' noenhanced
-            set label subtitle at screen 0.025, screen 0.92 left font ',12' textcolor rgb grey noenhanced
+            set label title_text at screen 0.025, screen 1 - 40 * px left font ',17' noenhanced
+            set label subtitle at screen 0.025, screen 1 - 80 * px left font ',12' textcolor rgb grey noenhanced
         }
         if (bounds ne 'none') {
             do for [i = 1:words(bounds)] {
@@ -40,7 +41,7 @@ do for [format in formats] {
                     dt 2 lw 1 lc rgb grey
             }
         }
-        set tmargin at screen top - k * height - (k > 0 ? 0.05 : 0)
+        set tmargin at screen top - k * height - (k > 0 ? 50 * px : 0)
         set bmargin at screen top - (k + 1) * height
         set xlabel (k == panels - 1 ? xlabel_text : '') noenhanced
         if (k == panels - 1) { set format x '%g' } else { set format x '' }
