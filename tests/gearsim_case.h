@@ -19,6 +19,7 @@ static inline config case_config(enum mesh_model model, enum drive_kind drive) {
         .model = model,
         .stiffness = REFERENCE_STIFFNESS,
         .simple_stiffness = (double)NAN,
+        .double_helical_gap = (double)NAN,
         .pinion_bore_radius = (double)NAN,
         .wheel_bore_radius = (double)NAN,
         .pinion_youngs_modulus = 206e9,

@@ -80,7 +80,8 @@ class Completion(unittest.TestCase):
         self.assertLessEqual({"--set", "--template", "--json", "--check"}, set(complete("gearsim", "--")))
         self.assertIn("--traces", complete("gearflanks", "--"))
         self.assertEqual(complete("gearsim", "--set", "flanks.wh"),
-                         ["flanks.wheel=", "flanks.wheel_pitch=", "flanks.wheel_tooth_stiffness="])
+                         ["flanks.wheel=", "flanks.wheel_pitch=", "flanks.wheel_second_half=", "flanks.wheel_second_half_pitch=",
+                          "flanks.wheel_tooth_stiffness="])
         self.assertEqual(complete("gearsim", "--template", "st"), ["static"])
 
     def test_bash(self):

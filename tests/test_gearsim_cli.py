@@ -900,6 +900,39 @@ class Geometry(Case):
         self.refused_value("gears", "axial_offset_mm", "17.5", "faces of both gears overlap")
         self.refused_value("gears", "axial_offset_mm", "-1e13", "from -1e+12 to 1e+12")
 
+    def test_double_helical_pairs(self):
+        halves = ["--set", "gears.double_helical_gap_mm=2.5"]
+        whole, half = self.listing(), self.listing(*halves)
+        self.assertEqual(half["face_width_mm"], 17.5)
+        self.assertAlmostEqual(half["half_face_width_mm"], 7.5, delta=1e-13)
+        self.assertAlmostEqual(half["overlap_ratio"], whole["overlap_ratio"] * 7.5 / 17.5, delta=1e-13)
+        for name in ("mean_mesh_stiffness_N_per_um", "eigenfrequency_Hz"):
+            self.assertAlmostEqual(half[name] / whole[name], 1, delta=1e-14)
+        self.assertNotIn("half_face_width_mm", whole)
+
+        # What cannot be.
+        key = "--set gears.double_helical_gap_mm: "
+        self.refused(key, "must be less than the common face width, 17.5 (got 17.5)",
+                     arguments=["--set", "gears.double_helical_gap_mm=17.5"])
+        self.refused_value("gears", "double_helical_gap_mm", "-1", "from 0 to 1e+12")
+        self.refused("--set gears.axial_offset_mm: ", "must be 0 with gears.double_helical_gap_mm", "(got 1)",
+                     arguments=[*halves, "--set", "gears.axial_offset_mm=1"])
+        self.refused("--set gears.helix_angle_deg: ", "must not be 0 with gears.double_helical_gap_mm",
+                     arguments=[*halves, "--set", "gears.helix_angle_deg=0", "--set", "gears.center_distance_mm=71.5",
+                                "--set", "gears.pinion_tip_diameter_mm=77.6", "--set", "gears.wheel_tip_diameter_mm=71"])
+        self.refused("--set solver.lookup: ", "must be off for double-helical pairs", arguments=[*halves, "--set", "solver.lookup=on"])
+        self.refused("flanks.wheel_second_half_pitch: ", "names this file",
+                     arguments=[*halves, "--set", "flanks.wheel_second_half_pitch=none.csv"])
+        self.refused("flanks.pinion_second_half: ", "names this file",
+                     arguments=[*halves, "--set", "flanks.pinion_second_half=none.csv"])
+
+        # What does nothing.
+        self.write("run.ini", PARAMS)
+        text = self.accepted("run.ini", "--check", *halves, "--set", "pose.axial_shift_um=5").stderr
+        self.assertIn("--set pose.axial_shift_um: warning: changes nothing with gears.double_helical_gap_mm", text)
+        text = self.accepted("run.ini", "--geometry", "--set", "flanks.pinion_second_half=none.csv").stderr
+        self.assertIn("--set flanks.pinion_second_half: warning: not used with one helix", text)
+
     def test_pose_out_of_mesh(self):
         for key, amount in [("center_distance_change_um", 6000), ("center_distance_change_um", -2000), ("offset_um", 40000),
                             ("axial_shift_um", -17500), ("skew_mrad", 60), ("inclination_mrad", -60)]:
@@ -1469,8 +1502,8 @@ class Example(Case):
         text = re.sub(r"(?m)^file = (speed|load).csv", r"; \g<0>", text)  # in the place of numbers that are there
         text = text.replace("damping_ratio = ", "; damping_ratio = ")
         folder = os.path.dirname(EXAMPLE)
-        text = re.sub(r"(?m)^(wheel_pitch|pinion_pitch|pinion|wheel) = (\S+)", rf"\1 = {folder}/\2", text)
-        self.write("run.ini", text.replace("wheel_pitch = ", "; wheel_pitch = "))  # a pitch file of 45 teeth
+        text = re.sub(r"(?m)^((?:pinion|wheel)(?:_second_half)?(?:_pitch)?) = (\S+)", rf"\1 = {folder}/\2", text)
+        self.write("run.ini", re.sub(r"(?m)^wheel\w*_pitch = ", r"; \g<0>", text))  # a pitch file of 45 teeth
         result = self.accepted("run.ini", "--check")
         self.assertNotIn("unknown", result.stderr)
 

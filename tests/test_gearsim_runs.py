@@ -69,6 +69,7 @@ RIPPLE = ["drive.ripple=2:3:0, 4.5:2:60", "load.ripple=3:8:0, 1:2:-45"]
 ROOT = os.path.join(os.path.dirname(os.path.abspath(__file__)), "..")
 DATA = os.path.join(ROOT, "data", "paper")
 README = os.path.join(ROOT, "README.md")
+RESULTS = os.path.join(ROOT, "apps", "gearsim", "docs", "results.md")
 MEASURED = [f"flanks.{gear}{key}={DATA}/{gear}_{file}.csv" for gear in ("pinion", "wheel")
             for key, file in (("", "flanks"), ("_pitch", "pitch"))]
 
@@ -175,7 +176,7 @@ class Rows(Case):
     def test_wrench_is_there_on_request_and_in_balance(self):
         names = [f"{gear}_{kind}_{axis}_{unit}" for gear in ("pinion", "wheel")
                  for kind, unit in (("force", "N"), ("moment", "Nm")) for axis in "xyz"]
-        with open(README, encoding="utf-8") as file:
+        with open(RESULTS, encoding="utf-8") as file:
             self.assertIn("`" + ", ".join(names) + "`", " ".join(file.read().split()))
         alpha_t = math.atan(math.tan(math.radians(16)) / math.cos(math.radians(33)))
         m_t = 1.65e-3 / math.cos(math.radians(33))
@@ -1232,6 +1233,116 @@ class Progress(Case):
                 self.assertLessEqual(len(updates), 10)
             else:
                 self.assertEqual(updates, [])
+
+
+class DoubleHelical(Case):
+    """17.5 mm with a gap of 2.5 mm: two halves of 7.5 mm."""
+
+    HALVES = ["gears.double_helical_gap_mm=2.5"]
+    TAN_BASE_HELIX = math.tan(math.radians(33)) * math.cos(math.atan(math.tan(math.radians(16)) / math.cos(math.radians(33))))
+
+    def half(self, law):
+        """A pair of one half alone, under half of the load."""
+        own = [f"mesh.stiffness_N_per_m={K / 2!r}"] if law == "constant" else ["mesh.stiffness_N_per_m=", f"mesh.law={law}"]
+        return ["gears.face_width_mm=7.5", f"load.mean_Nm={LOAD / 2!r}", f"mesh.damping_Ns_per_m={D / 2!r}",
+                f"bodies.wheel_inertia_kg_m2={I_W / 2!r}", *own]
+
+    def whole(self, law):
+        return [*self.HALVES, *([] if law == "constant" else ["mesh.stiffness_N_per_m=", f"mesh.law={law}"])]
+
+    def pitch(self, name, tooth_deviations):
+        with open(self.path(name), "w") as file:
+            file.write("tooth,flank,deviation_um\n" + "".join(f"{k},drive,{f!r}\n" for k, f in tooth_deviations))
+        return name
+
+    def test_without_deviations_it_is_two_of_its_halves(self):
+        for law in ("constant", "iso6336", "elastic"):
+            both = self.run_columns([*STATIC, *self.whole(law), "output.wrench=on"])
+            one = self.run_columns([*STATIC, *self.half(law), "output.wrench=on"])
+            # Halves of 7.5 mm to a rounding of their widths; elastic teeth to what their balance is found to.
+            relative = 1e-8 if law == "elastic" else 1e-12
+            self.assert_all_close(both["te_um"], one["te_um"], relative)
+            for name, factor in [("mesh_stiffness_N_per_um", 2), ("contact_length_mm", 2), ("pairs_in_contact", 2),
+                                 ("pinion_force_y_N", 2), ("wheel_moment_z_Nm", 2)]:
+                self.assert_all_close(both[name], [factor * value for value in one[name]], 100 * relative)
+            for name in ("pinion_force_z_N", "wheel_force_z_N", "pinion_moment_x_Nm", "wheel_moment_y_Nm", "apex_shift_um"):
+                self.assert_all_close(both[name], [0] * len(both[name]), absolute=1e-6)
+            self.assertGreater(abs(one["pinion_force_z_N"][0]), 100)
+
+    def test_a_run_without_deviations_is_that_of_its_halves(self):
+        for kind in ([], TORQUE):
+            both = self.run_columns([*self.whole("constant"), *TIGHT, *kind])
+            half = self.half("constant")
+            if kind:
+                half += ["drive.torque_Nm=11", f"bodies.pinion_inertia_kg_m2={I_P / 2!r}"]
+            one = self.run_columns([*half, *TIGHT, *kind[:1], *([] if not kind else half[-2:])])
+            self.assertEqual(list(both), [*one, "apex_shift_um"])
+            # Solvers to 1e-9 at each step.
+            self.assert_all_close(both["dte_um"], one["dte_um"], absolute=1e-4)
+            self.assert_all_close(both["contact_force_N"], [2 * force for force in one["contact_force_N"]], absolute=0.1)
+
+    def test_the_pinion_floats_to_where_both_halves_carry_the_same(self):
+        everywhere = [(tooth, 6.0) for tooth in range(45)]
+        first = [f"flanks.pinion_pitch={self.pitch('first.csv', everywhere)}",
+                 f"flanks.pinion_second_half_pitch={self.pitch('none.csv', [(0, 0.0)])}"]
+        second = [f"flanks.pinion_second_half_pitch={self.pitch('second.csv', everywhere)}"]
+        ideal = self.run_columns([*STATIC, *self.HALVES])
+        for law in ("constant", "elastic"):
+            for settings, sign in ((first, 1), (second, -1)):
+                c = self.run_columns([*STATIC, *self.whole(law), *settings, "output.wrench=on"])
+                # Ends of the path follow x, not the thickness: 6 um of 5 mm, twice.
+                for value in c["apex_shift_um"]:
+                    self.assert_close(value, sign * 3.0 / self.TAN_BASE_HELIX, 2.5e-3)
+                self.assert_all_close(c["pinion_force_z_N"], [0] * 60, absolute=1e-6)
+                if law == "constant":
+                    self.assert_all_close(c["te_um"], [te + 3.0 for te in ideal["te_um"]], absolute=0.02)
+
+        # In a run it floats within what one tooth asks for, and the axial forces cancel.
+        one_tooth = self.pitch("one.csv", [(0, 6.0)])
+        run = self.run_columns([*self.HALVES, *PLAIN, f"flanks.wheel_second_half_pitch={one_tooth}", "output.wrench=on",
+                                "analysis.duration_s=0.08"])
+        shift = run["apex_shift_um"]
+        self.assertGreater(max(map(abs, shift)), 1)
+        self.assertLess(max(map(abs, shift)), 3.0 / self.TAN_BASE_HELIX)
+        self.assert_all_close(run["wheel_force_z_N"], [0] * len(shift), absolute=1e-5)
+
+    def test_flanks_of_the_second_half_are_mirrored_or_its_own(self):
+        rows = [f"{tooth},drive,{t1},{t2},{4 * t1 * t1 + t2}" for tooth in range(45) for t1 in (0, 0.5, 1) for t2 in (0, 1)]
+        with open(self.path("flanks.csv"), "w") as file:
+            file.write("tooth,flank,t1,t2,deviation_um\n" + "\n".join(rows) + "\n")
+        mirrored = self.run_columns([*STATIC, *self.HALVES, "flanks.pinion=flanks.csv"])
+        given = self.run_columns([*STATIC, *self.HALVES, "flanks.pinion=flanks.csv", "flanks.pinion_second_half=flanks.csv"])
+        self.assertEqual(mirrored, given)
+        self.assert_all_close(mirrored["apex_shift_um"], [0] * 60, absolute=1e-9)
+
+        # Only one half with it: the other way round the pinion floats the other way.
+        with open(self.path("ideal.csv"), "w") as file:
+            file.write("tooth,flank,t1,t2,deviation_um\n" + "".join(f"0,drive,{t1},{t2},0\n" for t1 in (0, 1) for t2 in (0, 1)))
+        one = self.run_columns([*STATIC, *self.HALVES, "flanks.pinion=flanks.csv", "flanks.pinion_second_half=ideal.csv"])
+        other = self.run_columns([*STATIC, *self.HALVES, "flanks.pinion=ideal.csv", "flanks.pinion_second_half=flanks.csv"])
+        self.assert_all_close(one["te_um"], other["te_um"], 1e-9)
+        self.assert_all_close(one["apex_shift_um"], [-shift for shift in other["apex_shift_um"]], 1e-6)
+        self.assertGreater(min(map(abs, one["apex_shift_um"])), 0.5)
+
+    def test_line_loads_lie_on_both_halves(self):
+        self.run_columns([*STATIC, "analysis.positions=3", *self.whole("elastic"), "output.load_distribution=load.csv",
+                          f"flanks.pinion_second_half_pitch={self.pitch('one.csv', [(0, 3.0)])}"])
+        lines = [line for line in self.text("load.csv").splitlines() if not line.startswith("#")]
+        rows = [dict(zip(lines[0].split(","), line.split(","))) for line in lines[1:]]
+        z = [float(row["z_mm"]) for row in rows]
+        self.assertLess(min(z), 1)
+        self.assertGreater(max(z), 16.5)
+        self.assertFalse([value for value in z if 7.5 + 1e-9 < value < 10 - 1e-9])
+
+        # Trapezia along z of each line: both halves carry the same, to what 17 stations tell of it.
+        force = [0.0, 0.0]
+        for a, b in zip(rows, rows[1:]):
+            if a["pinion_angle_rad"] == b["pinion_angle_rad"] and a["pair"] == b["pair"]:
+                dz = abs(float(b["z_mm"]) - float(a["z_mm"]))
+                if dz < 2:
+                    mean = 0.5 * (float(a["line_load_N_per_mm"]) + float(b["line_load_N_per_mm"]))
+                    force[float(a["z_mm"]) > 8.75] += mean * dz
+        self.assert_close(force[0] / force[1], 1, 0.05)
 
 
 if __name__ == "__main__":

@@ -120,8 +120,8 @@ static double simple_acceleration(const gear_mesh *gears, const load_signal *loa
                                   double x, double v) {
     const double r_bw = gears->pair.wheel.base_radius;
     const double over = fabs(x) - 0.5 * gears->pair.backlash, sign = x > 0.0 ? 1.0 : -1.0;
-    const double spring = gm_mesh_mean_stiffness(gears->prepared) * over +
-                          sign * gm_mesh_mean_damping(gears->prepared) * v;
+    const double spring = gm_mesh_mean_stiffness(gears->prepared[0]) * over +
+                          sign * gm_mesh_mean_damping(gears->prepared[0]) * v;
     const double force = over > 0.0 ? sign * fmax(spring, 0.0) : 0.0;
 
     return (r_bw * load_torque(load, t) - r_bw * r_bw * force) / case_wheel_inertia;

@@ -43,6 +43,12 @@ typedef struct flank_files {
     char *tooth_stiffness; /* factors of single teeth, NULL = 1 */
 } flank_files;
 
+/* Of the second half of a double-helical gear, NULL = as in the first. */
+typedef struct second_flank_files {
+    char *deviations;
+    char *pitch;
+} second_flank_files;
+
 /* Keys of one modification; MODIFICATION_SHAPE is the only one that is no number. */
 enum modification_field {
     MODIFICATION_AMOUNT,
@@ -65,9 +71,12 @@ typedef struct config {
     gm_pair_params gears;
     double pinion_bore_radius; /* of a disc that winds up, m; NaN: rigid body */
     double wheel_bore_radius;
+    double double_helical_gap; /* between two halves of opposite hand, m; NaN: one helix */
 
     flank_files pinion_flanks;
     flank_files wheel_flanks;
+    second_flank_files pinion_second_flanks;
+    second_flank_files wheel_second_flanks;
     double flank_scale;
     enum deviation_direction deviation_direction;
     double profile_from, profile_to, profile_blend;

@@ -156,6 +156,13 @@ static int check_output_is_no_input(const config *conf) {
            check_not_input(conf, conf->wheel_flanks.deviations, "flanks.wheel") +
            check_not_input(conf, conf->pinion_flanks.pitch, "flanks.pinion_pitch") +
            check_not_input(conf, conf->wheel_flanks.pitch, "flanks.wheel_pitch") +
+           check_not_input(conf, conf->pinion_second_flanks.deviations,
+                           "flanks.pinion_second_half") +
+           check_not_input(conf, conf->wheel_second_flanks.deviations, "flanks.wheel_second_half") +
+           check_not_input(conf, conf->pinion_second_flanks.pitch,
+                           "flanks.pinion_second_half_pitch") +
+           check_not_input(conf, conf->wheel_second_flanks.pitch,
+                           "flanks.wheel_second_half_pitch") +
            check_not_input(conf, conf->pinion_flanks.tooth_stiffness,
                            "flanks.pinion_tooth_stiffness") +
            check_not_input(conf, conf->wheel_flanks.tooth_stiffness,
@@ -200,6 +207,10 @@ void config_warn_of_unused(const config *conf) {
     warn_without_table(conf, "drive.file", "drive.repeat");
     warn_without_table(conf, "load.file", "load.interpolation");
     warn_without_table(conf, "load.file", "load.repeat");
+    if (!isnan(conf->double_helical_gap) && conf->pose.axial_shift != 0.0) {
+        config_warn(conf, "pose.axial_shift_um",
+                    "changes nothing with gears.double_helical_gap_mm: the pinion follows");
+    }
     if (conf->model == MODEL_3D) {
         modification_keys_warn(conf);
     }

@@ -78,9 +78,39 @@ static int refuse_geometry(const config *conf, int status) {
     return EXIT_BAD_INPUT;
 }
 
-int drawing_derive(gm_pair *pair, const config *conf) {
-    const int status = gm_pair_init(pair, &conf->gears);
+/* What keeps a pair from being double-helical. */
+static int refuse_double_helical(const config *conf, const gm_pair *pair) {
+    if (pair->helix_angle == 0.0) {
+        config_complain(conf, "gears.helix_angle_deg",
+                        "must not be 0 with gears.double_helical_gap_mm (got 0)");
+    } else if (conf->gears.axial_offset != 0.0) {
+        config_complain(conf, "gears.axial_offset_mm",
+                        "must be 0 with gears.double_helical_gap_mm, as the pinion floats to "
+                        "where both halves carry the same (got %.9g)",
+                        1e3 * conf->gears.axial_offset);
+    } else {
+        config_complain(conf, "gears.double_helical_gap_mm",
+                        "must be less than the common face width, %.9g (got %.9g)",
+                        1e3 * pair->face_width, 1e3 * conf->double_helical_gap);
+    }
+    return EXIT_BAD_INPUT;
+}
 
+int drawing_derive(gm_pair *pair, const config *conf) {
+    int status = gm_pair_init(pair, &conf->gears);
+    if (status != GM_OK) {
+        return refuse_geometry(conf, status);
+    }
+    if (isnan(conf->double_helical_gap)) {
+        return 0;
+    }
+
+    /* Of a double-helical pair one half. */
+    gm_pair_params half;
+    if (gm_double_helical_half(&conf->gears, conf->double_helical_gap, &half) != GM_OK) {
+        return refuse_double_helical(conf, pair);
+    }
+    status = gm_pair_init(pair, &half);
     return status == GM_OK ? 0 : refuse_geometry(conf, status);
 }
 

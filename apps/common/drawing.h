@@ -7,7 +7,7 @@
 
 #include "config.h"
 
-/* Derives the pair. Returns 0, or EXIT_BAD_INPUT after a message that names the key at fault. */
+/* Derives the pair, or one half of a double-helical one. Returns 0, or EXIT_BAD_INPUT after a message that names the key at fault. */
 int drawing_derive(gm_pair *pair, const config *conf);
 
 /* Warns of undercut, thin tips, small tip clearance, root fillets in contact, small contact ratio and negative backlash;

@@ -10,20 +10,41 @@
 
 /* One gear's part of [flanks]. */
 typedef struct flank_task {
-    const char *deviations_key;
-    const char *pitch_key;
-    const flank_files *files;
+    const char *deviations_key, *pitch_key;
+    const char *deviations, *pitch; /* files, NULL = none */
     enum gm_role gear;
     int teeth;
 } flank_task;
 
-static flank_task task_of(const config *conf, const gm_pair *pair, enum gm_role gear) {
-    const flank_task pinion = {"flanks.pinion", "flanks.pinion_pitch", &conf->pinion_flanks,
-                               GM_PINION, pair->pinion.teeth};
-    const flank_task wheel = {"flanks.wheel", "flanks.wheel_pitch", &conf->wheel_flanks, GM_WHEEL,
-                              pair->wheel.teeth};
+int gear_flanks_has_second(const config *conf, enum gm_role gear) {
+    const second_flank_files *files =
+        gear == GM_PINION ? &conf->pinion_second_flanks : &conf->wheel_second_flanks;
 
-    return gear == GM_PINION ? pinion : wheel;
+    return files->deviations != NULL || files->pitch != NULL;
+}
+
+/* What the second half has no file for is as in the first. */
+static flank_task task_of(const config *conf, const gm_pair *pair, enum gm_role gear, int half) {
+    const int is_pinion = gear == GM_PINION;
+    const flank_files *files = is_pinion ? &conf->pinion_flanks : &conf->wheel_flanks;
+    flank_task task = {.deviations_key = is_pinion ? "flanks.pinion" : "flanks.wheel",
+                       .pitch_key = is_pinion ? "flanks.pinion_pitch" : "flanks.wheel_pitch",
+                       .deviations = files->deviations,
+                       .pitch = files->pitch,
+                       .gear = gear,
+                       .teeth = is_pinion ? pair->pinion.teeth : pair->wheel.teeth};
+    const second_flank_files *second =
+        is_pinion ? &conf->pinion_second_flanks : &conf->wheel_second_flanks;
+    if (half == 1 && second->deviations != NULL) {
+        task.deviations_key = is_pinion ? "flanks.pinion_second_half" : "flanks.wheel_second_half";
+        task.deviations = second->deviations;
+    }
+    if (half == 1 && second->pitch != NULL) {
+        task.pitch_key =
+            is_pinion ? "flanks.pinion_second_half_pitch" : "flanks.wheel_second_half_pitch";
+        task.pitch = second->pitch;
+    }
+    return task;
 }
 
 /* The file is at fault, and the key that names it tells where it came from. */
@@ -51,7 +72,7 @@ static void note_ideal_teeth(const config *conf, const char *file, int drive, in
 
 static int read_deviations(const config *conf, const flank_task *task, gm_deviations *deviations) {
     gm_io_error error = {0};
-    const int status = gm_deviations_read(deviations, task->files->deviations, task->teeth, &error);
+    const int status = gm_deviations_read(deviations, task->deviations, task->teeth, &error);
 
     if (status == GM_IO_ERR_MEMORY) {
         return message_no_memory(conf->messages);
@@ -59,14 +80,14 @@ static int read_deviations(const config *conf, const flank_task *task, gm_deviat
     if (status != GM_IO_OK) {
         return refuse_file(conf, task->deviations_key, &error);
     }
-    note_ideal_teeth(conf, task->files->deviations, gm_deviations_ideal_teeth(deviations, GM_DRIVE),
+    note_ideal_teeth(conf, task->deviations, gm_deviations_ideal_teeth(deviations, GM_DRIVE),
                      gm_deviations_ideal_teeth(deviations, GM_COAST), task->teeth);
     return 0;
 }
 
 static int read_pitch(const config *conf, const flank_task *task, gm_pitch *pitch) {
     gm_io_error error = {0};
-    const int status = gm_pitch_read(pitch, task->files->pitch, task->teeth, &error);
+    const int status = gm_pitch_read(pitch, task->pitch, task->teeth, &error);
 
     if (status == GM_IO_ERR_MEMORY) {
         return message_no_memory(conf->messages);
@@ -74,7 +95,7 @@ static int read_pitch(const config *conf, const flank_task *task, gm_pitch *pitc
     if (status != GM_IO_OK) {
         return refuse_file(conf, task->pitch_key, &error);
     }
-    note_ideal_teeth(conf, task->files->pitch, gm_pitch_ideal_teeth(pitch, GM_DRIVE),
+    note_ideal_teeth(conf, task->pitch, gm_pitch_ideal_teeth(pitch, GM_DRIVE),
                      gm_pitch_ideal_teeth(pitch, GM_COAST), task->teeth);
     return 0;
 }
@@ -132,10 +153,10 @@ static int refuse_flanks(const config *conf, const flank_task *task, int status,
     if (status == GM_IO_ERR_MEMORY) {
         return message_no_memory(conf->messages);
     }
-    if (task->files->deviations != NULL) {
+    if (task->deviations != NULL) {
         return refuse_file(conf, task->deviations_key, error);
     }
-    if (task->files->pitch != NULL) {
+    if (task->pitch != NULL) {
         return refuse_file(conf, task->pitch_key, error);
     }
     message_error(conf->messages, "%s: [modifications]: %s", conf->path, error->text);
@@ -163,10 +184,10 @@ static int build_flanks(gear_flanks *flanks, const config *conf, const gm_pair *
 }
 
 int gear_flanks_load(gear_flanks *flanks, const config *conf, const gm_pair *pair,
-                     enum gm_role gear) {
-    const flank_task task = task_of(conf, pair, gear);
-    const int has_deviations = task.files->deviations != NULL;
-    const int has_pitch = task.files->pitch != NULL;
+                     enum gm_role gear, int half) {
+    const flank_task task = task_of(conf, pair, gear, half);
+    const int has_deviations = task.deviations != NULL;
+    const int has_pitch = task.pitch != NULL;
     gm_deviations deviations = {0};
     gm_pitch pitch = {0};
 

@@ -16,9 +16,13 @@ typedef struct gear_flanks {
 } gear_flanks;
 
 /* Files and design of one gear (0 = pinion, 1 = wheel) become prepared flanks, if there are any; `flanks` is all zero
- * before. Returns 0 or an exit code after a message. */
+ * before. `half` 1: the second half of a double-helical pair, which has the design of the first. Returns 0 or an exit code
+ * after a message. */
 int gear_flanks_load(gear_flanks *flanks, const config *conf, const gm_pair *pair,
-                     enum gm_role gear);
+                     enum gm_role gear, int half);
+
+/* Whether the second half of a gear has files of its own. */
+int gear_flanks_has_second(const config *conf, enum gm_role gear);
 void gear_flanks_free(gear_flanks *flanks);
 
 /* Notes for the head of the output what holds the designs of a gear. Returns 0 or EXIT_RUN_FAILED (no memory). */

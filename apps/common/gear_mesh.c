@@ -3,25 +3,36 @@
 
 #include "gear_mesh.h"
 #include "drawing.h"
+#include "memory.h"
 #include "tooth_stiffness.h"
 
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
-static int load_flanks(gear_mesh *mesh, const config *conf) {
-    int status = gear_flanks_load(&mesh->flanks[GM_PINION], conf, &mesh->pair, GM_PINION);
+static gm_gear *gear_of(gear_mesh *mesh, enum gm_role role) {
+    return role == GM_PINION ? &mesh->pair.pinion : &mesh->pair.wheel;
+}
 
-    if (status == 0) {
-        status = gear_flanks_load(&mesh->flanks[GM_WHEEL], conf, &mesh->pair, GM_WHEEL);
+/* The second half has the flanks of the first, unless files are given for it. */
+static int load_flanks(gear_mesh *mesh, const config *conf) {
+    int status = 0;
+    for (int half = 0; half < mesh->halves; ++half) {
+        for (enum gm_role role = GM_PINION; role <= GM_WHEEL && status == 0; ++role) {
+            gear_flanks *flanks = &mesh->flanks[half][role];
+            if (half > 0 && !gear_flanks_has_second(conf, role)) {
+                *flanks = mesh->flanks[0][role];
+            } else {
+                status = gear_flanks_load(flanks, conf, &mesh->pair, role, half);
+            }
+        }
     }
-    if (status == 0 && conf->law == LAW_ELASTIC) {
-        status = tooth_stiffness_load(&mesh->tooth_stiffness[GM_PINION], conf, GM_PINION,
-                                      mesh->pair.pinion.teeth);
-    }
-    if (status == 0 && conf->law == LAW_ELASTIC) {
-        status = tooth_stiffness_load(&mesh->tooth_stiffness[GM_WHEEL], conf, GM_WHEEL,
-                                      mesh->pair.wheel.teeth);
+
+    for (enum gm_role role = GM_PINION; role <= GM_WHEEL && status == 0; ++role) {
+        if (conf->law == LAW_ELASTIC) {
+            status = tooth_stiffness_load(&mesh->tooth_stiffness[role], conf, role,
+                                          gear_of(mesh, role)->teeth);
+        }
     }
     return status;
 }
@@ -60,15 +71,16 @@ static gm_mesh_params params_of(const config *conf, const gear_mesh *mesh) {
     static const int laws[] = {[LAW_CONSTANT] = GM_LAW_CONSTANT,
                                [LAW_ISO6336] = GM_LAW_ISO6336,
                                [LAW_ELASTIC] = GM_LAW_ELASTIC};
+    const double share = 1.0 / mesh->halves; /* of stiffness, damping and load in each half */
     gm_mesh_params params;
 
     gm_mesh_params_default(&params);
     params.model = conf->model == MODEL_SIMPLE ? GM_MODEL_SIMPLE : GM_MODEL_3D;
     params.law = laws[conf->law];
-    params.stiffness = conf->stiffness;
+    params.stiffness = share * conf->stiffness;
     params.iso_blank_factor = conf->iso_blank_factor;
-    params.damping = isnan(conf->damping) ? 0.0 : conf->damping;
-    params.simple_stiffness = conf->simple_stiffness;
+    params.damping = isnan(conf->damping) ? 0.0 : share * conf->damping;
+    params.simple_stiffness = share * conf->simple_stiffness;
     params.pose = conf->pose;
 
     /* What elastic teeth are made of, and the load that their stiffness is stated at. */
@@ -82,7 +94,7 @@ static gm_mesh_params params_of(const config *conf, const gear_mesh *mesh) {
     params.wheel_tooth_stiffness = mesh->tooth_stiffness[GM_WHEEL];
     params.stations = conf->stations;
     if (fabs(conf->mean_load) > 0) {
-        params.reference_torque = fabs(conf->mean_load);
+        params.reference_torque = share * fabs(conf->mean_load);
     }
 
     const int friction_laws[] = {GM_FRICTION_CONSTANT, GM_FRICTION_ISO14179,
@@ -120,10 +132,11 @@ static void warn_of_iso6336(const config *conf, const gm_pair *pair) {
 }
 
 /* The standard's stiffness is that of teeth under a good load: F_t / b at the reference circle. */
-static void warn_of_light_load(const config *conf, const gm_pair *pair) {
+static void warn_of_light_load(const config *conf, const gear_mesh *mesh) {
     const double least = 100e3, most = 1600e3; /* N/m */
+    const gm_pair *pair = &mesh->pair;
     const double line_load =
-        fabs(conf->mean_load) / (pair->wheel.reference_radius * pair->face_width);
+        fabs(conf->mean_load) / (pair->wheel.reference_radius * mesh->halves * pair->face_width);
 
     if (line_load > 0 && line_load < least) {
         config_warn(conf, "mesh.law",
@@ -188,10 +201,11 @@ static int refuse_iso6336(const config *conf) {
     return EXIT_BAD_INPUT;
 }
 
-/* D of a pair of teeth that gives both bodies on the mean mesh the damping ratio: 2 zeta K_mean / w0 for all pairs. */
+/* D of a pair of teeth, in each half, that gives both bodies on the mean mesh the damping ratio: 2 zeta K_mean / w0 for all
+ * pairs. */
 static double damping_of_ratio(const gear_mesh *mesh, const config *conf) {
     const double w0 = 2 * 3.14159265358979323846 * gear_mesh_eigenfrequency(mesh, conf);
-    const double damping = 2 * conf->damping_ratio * gm_mesh_mean_stiffness(mesh->prepared) / w0;
+    const double damping = 2 * conf->damping_ratio * gm_mesh_mean_stiffness(mesh->prepared[0]) / w0;
 
     return isfinite(damping) ? damping / mesh->pair.transverse_contact_ratio : 0.0;
 }
@@ -222,26 +236,21 @@ static int refuse_without_size(const config *conf, const gm_pair *pair) {
 }
 
 /* Memory in which elastic teeth keep their last balance. */
-static int make_workspace(gear_mesh *mesh, const config *conf) {
-    const size_t size = gm_workspace_size(mesh->prepared);
+static int make_workspace(gear_mesh *mesh, const config *conf, int half) {
+    const size_t size = gm_workspace_size(mesh->prepared[half]);
     void *memory = size > 0 ? malloc(size) : NULL;
 
     if (size > 0 && memory == NULL) {
         return message_no_memory(conf->messages);
     }
-    return gm_workspace_init(&mesh->workspace, mesh->prepared, memory, size) == GM_OK
+    return gm_workspace_init(&mesh->workspace[half], mesh->prepared[half], memory, size) == GM_OK
                ? 0
                : EXIT_RUN_FAILED;
 }
 
-/* Pair, flanks and law as one object; none without a stiffness, which only a run requires. */
-static int prepare(gear_mesh *mesh, const config *conf) {
-    gm_mesh_params params = params_of(conf, mesh);
-
-    if (gm_mesh_params_check(&params, NULL, NULL) != GM_OK) {
-        return 0;
-    }
-    const size_t size = gm_mesh_size(&params, &mesh->pair);
+/* Pair, flanks and law of one half, or of all, as one object. */
+static int prepare_half(gear_mesh *mesh, const config *conf, gm_mesh_params *params, int half) {
+    const size_t size = gm_mesh_size(params, &mesh->pair);
     if (size == 0) {
         return refuse_without_size(conf, &mesh->pair);
     }
@@ -249,26 +258,65 @@ static int prepare(gear_mesh *mesh, const config *conf) {
     if (memory == NULL) {
         return message_no_memory(conf->messages);
     }
-    const gm_flanks *pinion = mesh->flanks[GM_PINION].prepared;
-    const gm_flanks *wheel = mesh->flanks[GM_WHEEL].prepared;
-    int status = gm_mesh_init(&mesh->prepared, &params, &mesh->pair, pinion, wheel, memory, size);
+    gm_mesh **prepared = &mesh->prepared[half];
+    const gm_flanks *pinion = mesh->flanks[half][GM_PINION].prepared;
+    const gm_flanks *wheel = mesh->flanks[half][GM_WHEEL].prepared;
+    int status = gm_mesh_init(prepared, params, &mesh->pair, pinion, wheel, memory, size);
 
     /* What a damping ratio means is known once there is a mesh without damping. */
     if (status == GM_OK && !isnan(conf->damping_ratio)) {
-        params.damping = damping_of_ratio(mesh, conf);
-        status = gm_mesh_init(&mesh->prepared, &params, &mesh->pair, pinion, wheel, memory, size);
+        params->damping = damping_of_ratio(mesh, conf);
+        status = gm_mesh_init(prepared, params, &mesh->pair, pinion, wheel, memory, size);
     }
     if (status == GM_OK) {
-        return make_workspace(mesh, conf);
+        return make_workspace(mesh, conf, half);
     }
-    const int exit_code = refuse(conf, mesh, &params, status, memory, size);
+    const int exit_code = refuse(conf, mesh, params, status, memory, size);
     free(memory);
     return exit_code;
 }
 
+/* Two halves with a pinion that floats between them. */
+static int join_halves(gear_mesh *mesh, const config *conf) {
+    pinion_float *floating = allocate(1, sizeof *floating);
+    if (floating == NULL) {
+        return message_no_memory(conf->messages);
+    }
+    floating->gears.gap = mesh->gap;
+    for (int half = 0; half < 2; ++half) {
+        floating->gears.half[half] = mesh->prepared[half];
+        floating->gears.workspace[half] = mesh->workspace[half];
+    }
+    mesh->floating = floating;
+    return 0;
+}
+
+/* All of it; none without a stiffness, which only a run requires. */
+static int prepare(gear_mesh *mesh, const config *conf) {
+    gm_mesh_params params = params_of(conf, mesh);
+    if (gm_mesh_params_check(&params, NULL, NULL) != GM_OK) {
+        return 0;
+    }
+    if (mesh->halves == 1) {
+        return prepare_half(mesh, conf, &params, 0);
+    }
+
+    gm_pose poses[2];
+    (void)gm_double_helical_pose(&mesh->pair, mesh->gap, &conf->pose, poses);
+    int status = 0;
+    for (int half = 0; half < 2 && status == 0; ++half) {
+        params.pose = poses[half];
+        status = prepare_half(mesh, conf, &params, half);
+    }
+    return status == 0 && mesh->prepared[1] != NULL ? join_halves(mesh, conf) : status;
+}
+
 int gear_mesh_open(gear_mesh *mesh, const config *conf) {
     memset(mesh, 0, sizeof *mesh);
-    mesh->wheel_shift = conf->pose.axial_shift;
+    const int is_double = !isnan(conf->double_helical_gap);
+    mesh->halves = is_double ? 2 : 1;
+    mesh->gap = is_double ? conf->double_helical_gap : 0.0;
+    mesh->wheel_shift = is_double ? 0.0 : conf->pose.axial_shift;
 
     int status = drawing_derive(&mesh->pair, conf);
     if (status != 0) {
@@ -278,7 +326,7 @@ int gear_mesh_open(gear_mesh *mesh, const config *conf) {
         drawing_warn(conf, &mesh->pair);
         if (conf->law == LAW_ISO6336) {
             warn_of_iso6336(conf, &mesh->pair);
-            warn_of_light_load(conf, &mesh->pair);
+            warn_of_light_load(conf, mesh);
         }
     }
 
@@ -295,19 +343,31 @@ int gear_mesh_open(gear_mesh *mesh, const config *conf) {
 }
 
 void gear_mesh_close(gear_mesh *mesh) {
-    free(mesh->prepared); /* they begin at their memory */
-    free(mesh->workspace);
+    for (int half = 1; half >= 0; --half) {
+        free(mesh->prepared[half]); /* they begin at their memory */
+        free(mesh->workspace[half]);
+        for (enum gm_role role = GM_PINION; role <= GM_WHEEL; ++role) {
+            gear_flanks *flanks = &mesh->flanks[half][role];
+            if (half == 0 || flanks->prepared != mesh->flanks[0][role].prepared) {
+                gear_flanks_free(flanks);
+            }
+        }
+    }
+    free(mesh->floating);
     free(mesh->tooth_stiffness[GM_PINION]);
     free(mesh->tooth_stiffness[GM_WHEEL]);
-    gear_flanks_free(&mesh->flanks[GM_PINION]);
-    gear_flanks_free(&mesh->flanks[GM_WHEEL]);
     memset(mesh, 0, sizeof *mesh);
 }
 
 double gear_mesh_eigenfrequency(const gear_mesh *mesh, const config *conf) {
     const double pinion_inertia = conf->drive == DRIVE_TORQUE ? conf->pinion_inertia : HUGE_VAL;
 
-    return gm_mesh_eigenfrequency(mesh->prepared, pinion_inertia, conf->wheel_inertia);
+    return sqrt(mesh->halves) *
+           gm_mesh_eigenfrequency(mesh->prepared[0], pinion_inertia, conf->wheel_inertia);
+}
+
+double gear_mesh_face_width(const gear_mesh *mesh, const gm_gear *gear) {
+    return mesh->halves * gear->face_width + mesh->gap;
 }
 
 int gear_mesh_note(const gear_mesh *mesh, config *conf) {
@@ -315,7 +375,7 @@ int gear_mesh_note(const gear_mesh *mesh, config *conf) {
     int status = 0;
 
     for (enum gm_role gear = GM_PINION; gear <= GM_WHEEL && status == 0; ++gear) {
-        status = gear_flanks_note(&mesh->flanks[gear], conf, gear);
+        status = gear_flanks_note(&mesh->flanks[0][gear], conf, gear);
     }
     if (status == 0 && isfinite(frequency)) {
         status = config_note(conf, "eigenfrequency_Hz", frequency);

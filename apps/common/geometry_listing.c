@@ -2,6 +2,7 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 
 #include "geometry_listing.h"
+#include "gear_contact.h"
 #include "json.h"
 
 #include <math.h>
@@ -77,7 +78,8 @@ static void print_pair(const gm_pair *pair, const listing *to) {
     print_value(to, "backlash_um", 1e6 * pair->backlash);
 }
 
-static void print_teeth(const gm_pair *pair, const listing *to) {
+static void print_teeth(const gear_mesh *mesh, const listing *to) {
+    const gm_pair *pair = &mesh->pair;
     const gm_gear *pinion = &pair->pinion;
     const gm_gear *wheel = &pair->wheel;
 
@@ -93,7 +95,10 @@ static void print_teeth(const gm_pair *pair, const listing *to) {
     print_value(to, "pinion_tip_alteration", pinion->tip_alteration);
     print_value(to, "wheel_tip_alteration", wheel->tip_alteration);
     print_value(to, "gear_ratio", wheel->sign * wheel->teeth / pinion->teeth);
-    print_value(to, "face_width_mm", millimetres(pair->face_width));
+    print_value(to, "face_width_mm", millimetres(mesh->halves * pair->face_width + mesh->gap));
+    if (mesh->halves > 1) {
+        print_value(to, "half_face_width_mm", millimetres(pair->face_width));
+    }
 }
 
 /* What the law derived from the gears; 1 N/(mm um) is 1e9 N/m2. */
@@ -108,11 +113,12 @@ static void print_law(const gear_mesh *mesh, const config *conf, const listing *
                     1e-9 * gm_iso6336_mesh_stiffness(pair, factor));
     }
     gm_mesh_stiffness elastic;
-    if (gm_mesh_elastic_stiffness(mesh->prepared, &elastic) == GM_OK) {
-        const double single[] = {1e-6 * elastic.single_mean, 1e-6 * elastic.single_smallest,
-                                 1e-6 * elastic.single_largest};
-        const double all[] = {1e-6 * elastic.mesh_mean, 1e-6 * elastic.mesh_smallest,
-                              1e-6 * elastic.mesh_largest};
+    if (gm_mesh_elastic_stiffness(mesh->prepared[0], &elastic) == GM_OK) {
+        const double per_um = 1e-6 * mesh->halves;
+        const double single[] = {per_um * elastic.single_mean, per_um * elastic.single_smallest,
+                                 per_um * elastic.single_largest};
+        const double all[] = {per_um * elastic.mesh_mean, per_um * elastic.mesh_smallest,
+                              per_um * elastic.mesh_largest};
         print_spread(to, "single_stiffness_N_per_um", single);
         print_spread(to, "mesh_stiffness_N_per_um", all);
     }
@@ -120,9 +126,9 @@ static void print_law(const gear_mesh *mesh, const config *conf, const listing *
 
 static void print_all(const gear_mesh *mesh, const config *conf, const listing *to) {
     print_pair(&mesh->pair, to);
-    print_teeth(&mesh->pair, to);
+    print_teeth(mesh, to);
     print_law(mesh, conf, to);
-    print_value(to, "mean_mesh_stiffness_N_per_um", 1e-6 * gm_mesh_mean_stiffness(mesh->prepared));
+    print_value(to, "mean_mesh_stiffness_N_per_um", 1e-6 * gear_contact_mean_stiffness(mesh));
     print_value(to, "eigenfrequency_Hz", gear_mesh_eigenfrequency(mesh, conf));
     print_value(to, "mesh_frequency_per_rpm_Hz", mesh->pair.pinion.teeth / 60.0);
 }

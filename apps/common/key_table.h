@@ -57,7 +57,8 @@ enum key_situation {
     FOR_ELASTIC = 1 << 10,
     FOR_COEFFICIENT = 1 << 11, /* of friction; else from the oil, */
     FOR_OIL = 1 << 12,
-    FOR_ROUGHNESS = 1 << 13 /* and from that of the flanks */
+    FOR_ROUGHNESS = 1 << 13, /* and from that of the flanks */
+    FOR_DOUBLE_HELICAL = 1 << 14
 };
 
 typedef struct key_spec {

@@ -46,6 +46,8 @@ static const key_spec keys[] = {
      .derived = "as face_width_mm", .help = "of the wheel alone"},
     {NAME("gears", "axial_offset_mm"), NUMBER(UNIT_MM, UP_TO(1e12)), INTO_GEARS(axial_offset),
      .standard = "0", .help = "middle of the wheel's face less that of the pinion's, along +z"},
+    {NAME("gears", "double_helical_gap_mm"), NUMBER(UNIT_MM, BETWEEN(0, 1e12)), INTO(double_helical_gap),
+     .derived = "one helix", .help = "two halves of opposite hand on the face width, with this between them; the pinion floats axially"},
     {NAME("gears", "pinion_profile_shift"), NUMBER(UNIT_SI, UP_TO(1000)), INTO_GEARS(pinion_profile_shift),
      .derived = "half, or rest, of the zero-backlash sum", .help = "profile shift coefficient"},
     {NAME("gears", "wheel_profile_shift"), NUMBER(UNIT_SI, UP_TO(1000)), INTO_GEARS(wheel_profile_shift),
@@ -96,6 +98,14 @@ static const key_spec keys[] = {
      .derived = "ideal", .used = FOR_3D, .help = "file of pitch deviations"},
     {NAME("flanks", "wheel_pitch"), .kind = KEY_PATH, INTO(wheel_flanks.pitch),
      .derived = "ideal", .used = FOR_3D, .help = "file of pitch deviations"},
+    {NAME("flanks", "pinion_second_half"), .kind = KEY_PATH, INTO(pinion_second_flanks.deviations),
+     .derived = "as pinion, mirrored", .used = FOR_3D | FOR_DOUBLE_HELICAL, .help = "the half at face II; t1 = 0 there, 1 at the gap"},
+    {NAME("flanks", "wheel_second_half"), .kind = KEY_PATH, INTO(wheel_second_flanks.deviations),
+     .derived = "as wheel, mirrored", .used = FOR_3D | FOR_DOUBLE_HELICAL, .help = "the half at face II; t1 = 0 there, 1 at the gap"},
+    {NAME("flanks", "pinion_second_half_pitch"), .kind = KEY_PATH, INTO(pinion_second_flanks.pitch),
+     .derived = "as pinion_pitch", .used = FOR_3D | FOR_DOUBLE_HELICAL, .help = "file of pitch deviations of that half"},
+    {NAME("flanks", "wheel_second_half_pitch"), .kind = KEY_PATH, INTO(wheel_second_flanks.pitch),
+     .derived = "as wheel_pitch", .used = FOR_3D | FOR_DOUBLE_HELICAL, .help = "file of pitch deviations of that half"},
     {NAME("flanks", "pinion_tooth_stiffness"), .kind = KEY_PATH, INTO(pinion_flanks.tooth_stiffness),
      .derived = "all teeth alike", .used = FOR_3D | FOR_ELASTIC, .help = "file tooth,factor: teeth softer by a crack or spall"},
     {NAME("flanks", "wheel_tooth_stiffness"), .kind = KEY_PATH, INTO(wheel_flanks.tooth_stiffness),
@@ -281,6 +291,7 @@ static unsigned situation_of(const config *conf) {
     return (unsigned)(conf->model == MODEL_3D ? FOR_3D : FOR_SIMPLE) | law_situation[conf->law] |
            (unsigned)(conf->friction_law == FRICTION_CONSTANT ? FOR_COEFFICIENT : FOR_OIL) |
            (unsigned)(conf->friction_law == FRICTION_ISO14179 ? FOR_ROUGHNESS : 0) |
+           (unsigned)(isnan(conf->double_helical_gap) ? 0 : FOR_DOUBLE_HELICAL) |
            (unsigned)(conf->drive == DRIVE_SPEED ? FOR_SPEED : FOR_TORQUE) |
            (unsigned)(conf->analysis == ANALYSIS_DYNAMIC ? FOR_DYNAMIC : FOR_STATIC);
 }
@@ -306,6 +317,8 @@ int key_is_used(const key_spec *key, const config *conf, const char **reason) {
         *reason = conf->law == LAW_CONSTANT  ? "mesh.law = constant"
                   : conf->law == LAW_ISO6336 ? "mesh.law = iso6336"
                                              : "mesh.law = elastic";
+    } else if (lacking & FOR_DOUBLE_HELICAL) {
+        *reason = "one helix, without gears.double_helical_gap_mm";
     } else if (lacking) {
         *reason = conf->model == MODEL_3D ? "mesh.model = 3d" : "mesh.model = simple";
     }

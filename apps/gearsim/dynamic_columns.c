@@ -4,6 +4,7 @@
 #include "dynamic_columns.h"
 #include "wrench_columns.h"
 
+#include <math.h>
 #include <stddef.h>
 
 static const double rpm = 60.0 / 6.283185307179586; /* of 1 rad/s */
@@ -66,6 +67,10 @@ static double pairs_in_contact(const dynamic_sample *sample) {
     return sample->mesh.contact.drive_pairs + sample->mesh.contact.coast_pairs;
 }
 
+static double apex(const dynamic_sample *sample) {
+    return sample->apex * micro;
+}
+
 #define COMPONENT(name, component)                                                                 \
     static double name(const dynamic_sample *sample) {                                             \
         return wrench_component(sample->model->gears, &sample->mesh.wrench, component);            \
@@ -89,14 +94,16 @@ const dynamic_column dynamic_columns[] = {
 #define ROW(name, component) {#name, 1, NEEDS_WRENCH, name, NULL},
     WRENCH_COLUMNS(ROW)
 #undef ROW
+        {"apex_shift_um", 1, NEEDS_MESH, apex, NULL},
 };
 
 const int dynamic_column_count = sizeof dynamic_columns / sizeof dynamic_columns[0];
 
-column_names dynamic_column_names(void) {
-    column_names names = {.count = dynamic_column_count};
+column_names dynamic_column_names(const config *conf) {
+    const int is_double_helical = !isnan(conf->double_helical_gap);
+    column_names names = {.count = dynamic_column_count - !is_double_helical};
 
-    for (int i = 0; i < dynamic_column_count; ++i) {
+    for (int i = 0; i < names.count; ++i) {
         names.name[i] = dynamic_columns[i].name;
     }
     return names;

@@ -16,6 +16,7 @@ typedef struct dynamic_sample {
     double time; /* s */
     gear_motion motion;
     gm_mesh_result mesh; /* only where some column asked for needs it */
+    double apex;         /* likewise, float of a double-helical pinion (m) */
     double mean_force;   /* about the time, only where samples are filtered (N) */
     double mean_load;    /* likewise (N m) */
 } dynamic_sample;
@@ -42,6 +43,7 @@ typedef struct dynamic_column {
 extern const dynamic_column dynamic_columns[];
 extern const int dynamic_column_count; /* at most COLUMNS_MAX */
 
-column_names dynamic_column_names(void);
+/* Those of the gears, in the order of dynamic_columns: single-helical ones do not have the last. */
+column_names dynamic_column_names(const config *conf);
 
 #endif

@@ -8,6 +8,7 @@
 #include "dynamics.h"
 #include "decimate.h"
 #include "dynamic_columns.h"
+#include "gear_contact.h"
 #include "integrate.h"
 #include "interrupt.h"
 #include "model.h"
@@ -60,6 +61,7 @@ static int see_mesh(dynamic_run *run, enum column_need need) {
                        : need == NEEDS_PAIRS ? GM_WANT_PAIRS
                                              : GM_WANT_FORCE;
     const int status = model_evaluate(&run->model, &sample->motion, wanted, &sample->mesh);
+    sample->apex = gear_contact_apex(run->model.gears);
     if (status != GM_OK) {
         snprintf(run->why, sizeof run->why, "no contact force at t = %.9g s; the gears: %s",
                  sample->time, gm_status_text(status));
@@ -509,7 +511,7 @@ static int start_run(dynamic_run *run, const gear_mesh *gears) {
         return exit_code;
     }
 
-    const column_names names = dynamic_column_names();
+    const column_names names = dynamic_column_names(run->conf);
     run->output = output_open(run->conf, names.name, names.count, &exit_code);
     return exit_code != 0 ? exit_code : start_filter(run);
 }

@@ -28,7 +28,8 @@
 #include <string.h>
 
 static column_names names_of(const config *conf) {
-    return conf->analysis == ANALYSIS_STATIC ? static_column_names(conf) : dynamic_column_names();
+    return conf->analysis == ANALYSIS_STATIC ? static_column_names(conf)
+                                             : dynamic_column_names(conf);
 }
 
 static int run(const config *conf, const gear_mesh *mesh) {

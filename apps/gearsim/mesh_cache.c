@@ -33,6 +33,11 @@ int mesh_cache_check(const config *conf, const gear_mesh *gears) {
                         "must be off for spur gears, whose sum of penetrations jumps (got on)");
         return EXIT_BAD_INPUT;
     }
+    if (gears->halves > 1) {
+        config_complain(conf, "solver.lookup",
+                        "must be off for double-helical pairs, whose pinion floats (got on)");
+        return EXIT_BAD_INPUT;
+    }
     if (config_has_friction(conf)) {
         config_complain(conf, "solver.lookup",
                         "must be off with friction, which the tables do not hold (got on)");
@@ -55,21 +60,21 @@ int mesh_cache_create(gm_cache **cache, const config *conf, const gear_mesh *gea
         return 0;
     }
 
-    const size_t size = gm_cache_size(&params, gears->prepared);
+    const size_t size = gm_cache_size(&params, gears->prepared[0]);
     void *memory = size > 0 ? malloc(size) : NULL;
     if (memory == NULL) {
         return EXIT_RUN_FAILED;
     }
-    if (gm_cache_init(cache, &params, gears->prepared, memory, size) != GM_OK) {
+    if (gm_cache_init(cache, &params, gears->prepared[0], memory, size) != GM_OK) {
         free(memory);
         return EXIT_RUN_FAILED;
     }
-    return gm_mesh_use_cache(gears->prepared, *cache) == GM_OK ? 0 : EXIT_RUN_FAILED;
+    return gm_mesh_use_cache(gears->prepared[0], *cache) == GM_OK ? 0 : EXIT_RUN_FAILED;
 }
 
 void mesh_cache_free(gm_cache *cache, const gear_mesh *gears) {
     if (cache != NULL) {
-        (void)gm_mesh_use_cache(gears->prepared, NULL);
+        (void)gm_mesh_use_cache(gears->prepared[0], NULL);
     }
     free(cache); /* it begins at its memory */
 }

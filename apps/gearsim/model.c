@@ -1,6 +1,7 @@
 /* SPDX-FileCopyrightText: The gearmesh authors */
 /* SPDX-License-Identifier: BSD-3-Clause */
 #include "model.h"
+#include "gear_contact.h"
 
 #include <math.h>
 #include <string.h>
@@ -77,28 +78,15 @@ static void init_bodies(gear_model *model, const config *conf) {
     model->wheel_drag = conf->wheel_drag;
 }
 
-/* Adds what the flanks of one gear can do to meet their mates. */
-static void add_flanks(gear_model *model, int side, const gm_flanks *flanks, const gm_gear *gear) {
-    if (flanks == NULL) {
-        return;
-    }
-    model->is_ideal[side] = 0;
-    model->reach[side] += gm_flanks_peak(flanks, side);
-    model->slope[side] += gm_flanks_profile_slope(flanks, side) /
-                          fabs(gear->tip_roll_length - gear->start_roll_length);
-}
-
 /* Bounds of the flanks for the look ahead in free flight; the simple model has ideal flanks. */
 static void init_flanks(gear_model *model) {
     const gear_mesh *gears = model->gears;
+    const int has_flanks = model->mesh == MODEL_3D && !gear_contact_is_ideal(gears);
 
     for (int side = GM_DRIVE; side <= GM_COAST; ++side) {
-        model->is_ideal[side] = 1;
-        model->reach[side] = model->slope[side] = 0.0;
-        if (model->mesh == MODEL_3D) {
-            add_flanks(model, side, gears->flanks[GM_PINION].prepared, &gears->pair.pinion);
-            add_flanks(model, side, gears->flanks[GM_WHEEL].prepared, &gears->pair.wheel);
-        }
+        model->is_ideal[side] = !has_flanks;
+        model->reach[side] = has_flanks ? gear_contact_peak(gears, side) : 0.0;
+        model->slope[side] = has_flanks ? gear_contact_slope(gears, side) : 0.0;
     }
 }
 
@@ -109,7 +97,7 @@ static double mobility(const gear_model *model) {
 /* Response with the damping of the mesh itself, so that as little as possible is left to the solver. */
 static int init_response(gear_model *model) {
     const double w0 = model->natural_frequency;
-    const double damping = gm_mesh_mean_damping(model->gears->prepared);
+    const double damping = gear_contact_mean_damping(model->gears);
     const double ratio = 0.5 * damping * mobility(model) / w0;
     const double bounded = fmin(fmax(ratio, smallest_ratio), largest_ratio);
 
@@ -139,7 +127,7 @@ int model_init(gear_model *model, const config *conf, const gear_mesh *gears) {
     init_bodies(model, conf);
     init_flanks(model);
 
-    model->natural_frequency = sqrt(gm_mesh_mean_stiffness(gears->prepared) * mobility(model));
+    model->natural_frequency = sqrt(gear_contact_mean_stiffness(gears) * mobility(model));
     if (init_response(model) != 0 || mesh_cache_create(&model->cache, conf, gears) != 0) {
         model_free(model);
         return EXIT_RUN_FAILED;
@@ -183,8 +171,7 @@ static int equilibrium(const gear_model *model, double speed, double applied, do
     }
     for (int k = 0; k < CORRECTIONS && status == GM_OK; ++k) {
         gm_mesh_result mesh;
-        status = gm_rolling_equilibrium(gears->prepared, 0.0, speed, torque, guess,
-                                        gears->workspace, offset, &mesh);
+        status = gear_contact_equilibrium(gears, 0.0, speed, torque, guess, offset, &mesh);
         const double share = mesh_acceleration(model, &mesh) / applied;
         if (fabs(share - 1.0) < 1e-12 || !(share > 0.0)) {
             break;
@@ -286,8 +273,7 @@ int model_evaluate(const gear_model *model, const gear_motion *motion, int wante
 
     position.pinion_speed = motion->pinion_speed;
     return status != GM_OK ? status
-                           : gm_mesh_evaluate_at(model->gears->prepared, &position, wanted,
-                                                 model->gears->workspace, result);
+                           : gear_contact_evaluate(model->gears, &position, wanted, result);
 }
 
 /* From x' = r_bp phi_p' - r_bw phi_w'. */
@@ -554,7 +540,7 @@ static void add_torques(double jacobian[STATES_MAX][STATES_MAX], const gear_mode
 int model_derivative_and_tangent(const gear_model *model, double time, const double state[],
                                  double derivative[], model_tangent *tangent,
                                  enum mesh_contact *contact) {
-    const gm_mesh *prepared = model->gears->prepared;
+    const gear_mesh *gears = model->gears;
     double(*jacobian)[STATES_MAX] = tangent->jacobian;
     gear_motion motion;
     gm_mesh_result mesh;
@@ -565,9 +551,10 @@ int model_derivative_and_tangent(const gear_model *model, double time, const dou
     *contact = contact_of(model, &mesh);
 
     /* The flanks that touch are springs and dampers; where they would have to pull they are neither. */
-    const double stiffness = mesh.force != 0.0 ? gm_mesh_touching_stiffness(prepared, &mesh) : 0.0;
+    const double stiffness =
+        mesh.force != 0.0 ? gear_contact_touching_stiffness(gears, &mesh) : 0.0;
     const double damping =
-        stiffness * (gm_mesh_mean_damping(prepared) / gm_mesh_mean_stiffness(prepared));
+        stiffness * (gear_contact_mean_damping(gears) / gear_contact_mean_stiffness(gears));
     const double w0 = model->natural_frequency;
 
     tangent->carried = mesh_acceleration(model, &mesh) / model_speed_unit(model);

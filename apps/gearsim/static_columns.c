@@ -2,6 +2,7 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 
 #include "static_columns.h"
+#include "gear_contact.h"
 #include "wrench_columns.h"
 
 #include <math.h>
@@ -18,7 +19,7 @@ static double transmission_error(const static_position *position) {
 }
 
 static double mesh_stiffness(const static_position *position) {
-    return gm_mesh_touching_stiffness(position->gears->prepared, &position->mesh) * 1e-6;
+    return gear_contact_touching_stiffness(position->gears, &position->mesh) * 1e-6;
 }
 
 /* Along the lines of contact, which lie at the base helix angle to the face width. */
@@ -27,7 +28,8 @@ static double contact_length(const static_position *position) {
     const gm_penetration *contact = &position->mesh.contact;
     const double width = position->conf->law == LAW_ELASTIC
                              ? position->faces.touching_width
-                             : (contact->drive_contact + contact->coast_contact) * pair->face_width;
+                             : (contact->drive_contact + contact->coast_contact) *
+                                   position->gears->halves * pair->face_width;
 
     return width / cos(pair->base_helix_angle) * 1e3;
 }
@@ -49,6 +51,10 @@ WRENCH_COLUMNS(COMPONENT)
 
 static double loss(const static_position *position) {
     return position->mesh.loss;
+}
+
+static double apex(const static_position *position) {
+    return position->apex * micro;
 }
 
 static double face_load_factor(const static_position *position) {
@@ -77,6 +83,7 @@ const static_column static_columns[] = {
     {"largest_line_load_N_per_mm", OF_ELASTIC_TEETH, TAKES_FACES, largest_line_load},
     {"largest_pressure_N_per_mm2", OF_ELASTIC_TEETH, TAKES_FACES, largest_pressure},
     WRENCH_COLUMNS(ROW)
+    {"apex_shift_um", OF_DOUBLE_HELICAL, TAKES_NOTHING, apex},
     {"loss_W", OF_FRICTION, TAKES_NOTHING, loss},
 };
 #undef ROW
@@ -92,6 +99,8 @@ int static_column_is_there(const config *conf, int column) {
         return conf->law == LAW_ELASTIC;
     case OF_FRICTION:
         return config_has_friction(conf);
+    case OF_DOUBLE_HELICAL:
+        return !isnan(conf->double_helical_gap);
     case ALWAYS:
     default:
         return 1;

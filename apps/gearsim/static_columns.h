@@ -18,11 +18,18 @@ typedef struct static_position {
     double load;         /* N m */
     double offset;       /* x (m) */
     gm_mesh_result mesh; /* there */
+    double apex;         /* float of a double-helical pinion there (m) */
     gm_line_loads faces; /* how the flanks are loaded */
 } static_position;
 
 /* When there is a column. */
-enum static_column_use { ALWAYS, OF_SEVERAL_LOADS, OF_ELASTIC_TEETH, OF_FRICTION };
+enum static_column_use {
+    ALWAYS,
+    OF_SEVERAL_LOADS,
+    OF_ELASTIC_TEETH,
+    OF_FRICTION,
+    OF_DOUBLE_HELICAL
+};
 
 /* What a column takes from static_position that is only found where a column is asked for. */
 enum static_column_taking { TAKES_NOTHING, TAKES_WRENCH, TAKES_FACES };

@@ -5,6 +5,7 @@
  * Loaded transmission error: at each pinion angle the position in which the flanks carry the mean load.
  */
 #include "statics.h"
+#include "gear_contact.h"
 #include "interrupt.h"
 #include "load_file.h"
 #include "memory.h"
@@ -102,13 +103,12 @@ static int find_needed(const static_results *results, static_position *at) {
 
     position.pinion_speed = at->conf->start_speed;
     if (status == GM_OK && (results->needs & wrench)) {
-        status = gm_mesh_evaluate_at(at->gears->prepared, &position, GM_WANT_WRENCH,
-                                     at->gears->workspace, &result);
+        status = gear_contact_evaluate(at->gears, &position, GM_WANT_WRENCH, &result);
         at->mesh.wrench = result.wrench;
     }
     if (status == GM_OK && (results->needs & faces)) {
-        status = gm_mesh_line_loads(at->gears->prepared, &position, at->gears->workspace,
-                                    results->points, results->capacity, &at->faces);
+        status = gear_contact_line_loads(at->gears, &position, results->points, results->capacity,
+                                         &at->faces);
     }
     return status;
 }
@@ -120,11 +120,13 @@ static int write_position(const config *conf, const gear_mesh *gears, double ang
     static_position position = {
         .conf = conf, .gears = gears, .pinion_angle = angle, .load = before->load};
 
-    *status = gm_rolling_equilibrium(gears->prepared, angle, conf->start_speed, before->load, guess,
-                                     gears->workspace, &position.offset, &position.mesh);
+    *status = gear_contact_equilibrium(gears, angle, conf->start_speed, before->load, guess,
+                                       &position.offset, &position.mesh);
     if (*status != GM_OK) {
         return EXIT_RUN_FAILED;
     }
+
+    position.apex = gear_contact_apex(gears);
 
     /* Along the curve of constant torque, for the guess at the next position. */
     before->angle = angle;
@@ -242,7 +244,7 @@ int statics_run(const config *conf, const gear_mesh *gears) {
 
     /* Points of a position are kept where a file takes them. */
     if (exit_code == 0 && results.distribution != NULL) {
-        results.capacity = gm_mesh_line_load_points(gears->prepared);
+        results.capacity = gear_contact_line_load_points(gears);
         results.points = allocate((size_t)results.capacity, sizeof *results.points);
         exit_code = results.points != NULL ? 0 : message_no_memory(conf->messages);
     }

@@ -29,9 +29,11 @@ double wrench_component(const gear_mesh *gears, const gm_wrench *wrench, int com
         return is_wheel ? wrench->wheel_force[k] : wrench->pinion_force[k];
     }
     if (!is_wheel) {
-        return moment_at(wrench->pinion_force, wrench->pinion_moment, 0.5 * pinion->face_width, k);
+        const double middle = 0.5 * gear_mesh_face_width(gears, pinion);
+        return moment_at(wrench->pinion_force, wrench->pinion_moment, middle, k);
     }
-    const double middle = wheel->face_start + 0.5 * wheel->face_width + gears->wheel_shift;
+    const double middle =
+        wheel->face_start + 0.5 * gear_mesh_face_width(gears, wheel) + gears->wheel_shift;
     return moment_at(wrench->wheel_force, wrench->wheel_moment, middle, k);
 }
 

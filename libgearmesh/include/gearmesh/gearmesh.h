@@ -1249,6 +1249,106 @@ GM_API int gm_mesh_line_loads(const gm_mesh *mesh, const gm_position *position,
                               gm_line_loads *load);
 
 /* ---------------------------------------------------------------------------------------------
+ * Double-helical pairs: two halves of opposite hand, a pinion that floats along its axis
+ * ------------------------------------------------------------------------------------------- */
+
+/**
+ * Two meshes of one pair, that of gm_double_helical_half(). The first half begins at the pinion's face I and ends at the gap;
+ * the second is the first in a mirror half-way along the face: t1 of its flanks runs from the outer face to the gap too. Each
+ * may have flanks of its own. Stiffness and damping of each mesh are those of its half.
+ *
+ * The pinion floats along its axis without inertia, to where both halves carry the same force: their axial forces cancel.
+ * The wheel stands. A float changes which overlap the flanks of each half have; that it moves the common faces by as much, some
+ * micrometres of millimetres, is left out, and so is its own speed in the damping.
+ */
+typedef struct gm_double_helical {
+    const gm_mesh
+        *half[2]; /**< without cache, of the same pair; in the poses of gm_double_helical_pose() */
+    gm_workspace *workspace[2]; /**< of each mesh; NULL where its law needs none */
+    double gap;                 /**< between the halves, >= 0 (m) */
+} gm_double_helical;
+
+/**
+ * The pair of one half, for gm_pair_init(): both faces without the gap halved, ending together at the gap. The hand is that of
+ * the half at the pinion's face I.
+ *
+ * @param[in]  whole  the drawing; axial_offset 0, since the pinion floats; not spur gears
+ * @param[in]  gap    between the halves of both gears, 0 <= gap < the narrower face (m)
+ * @param[out] half   the drawing of a half; as gm_pair_params_default() on an error
+ * @return GM_OK, GM_ERR_NULL, GM_ERR_PARAMETER (gap), GM_ERR_GEOMETRY (too wide a gap, spur gears, an axial offset)
+ */
+GM_API int gm_double_helical_half(const gm_pair_params *whole, double gap, gm_pair_params *half);
+
+/**
+ * The poses of both halves, of which the second counts in its mirror, where the whole wheel has a pose: a tilt, about the
+ * middle of the whole face, moves each half. Exact. The axial shift has no effect, the pinion follows it.
+ *
+ * @param[in]  half   the pair of a half
+ * @param[in]  gap    between the halves (m)
+ * @param[in]  whole  pose of the wheel
+ * @param[out] pose   [2] for gm_mesh_params of each half
+ * @return GM_OK, GM_ERR_NULL
+ */
+GM_API int gm_double_helical_pose(const gm_pair *half, double gap, const gm_pose *whole,
+                                  gm_pose pose[2]);
+
+/**
+ * Both halves at one position: force, torques and what else is wanted are the sums of both, derivatives are those with the
+ * pinion floating. Overlap and touching part in result->contact are means of both halves, so that the stiffness of both
+ * together times them is the force; pairs are counted in each half. Damping takes dx/dt alone.
+ *
+ * @param[in]     gears     two meshes
+ * @param[in]     position  where the gears are
+ * @param[in]     wanted    a sum of enum gm_wanted
+ * @param[in,out] apex      how far the pinion has floated along +z against the wheel (m). On entry where to begin, any number,
+ *                          which changes nothing beyond the accuracy; it stays where nothing touches
+ * @param[out]    each      [2] of the halves, with derivatives; the second as it is in its mirror. NaN on an error
+ * @param[out]    result    of the pair; moments about the axes as gm_wrench says, z = 0 at the pinion's face I. NaN on an error
+ * @return as gm_mesh_evaluate_at(); GM_ERR_GEOMETRY (halves of different pairs, spur gears), GM_NO_EQUILIBRIUM (no float
+ *         makes the halves carry the same)
+ *
+ * Accuracy: both forces agree to 1e-12 p_bt of overlap. Cost: some six evaluations with derivatives from a good apex.
+ * Source: docs/equations.md.
+ */
+GM_API int gm_double_helical_evaluate_at(const gm_double_helical *gears,
+                                         const gm_position *position, int wanted, double *apex,
+                                         gm_mesh_result each[2], gm_mesh_result *result);
+
+/**
+ * Quasi-static equilibrium of both halves while the gears roll on each other, see gm_rolling_equilibrium().
+ *
+ * @param[in]     gears         two meshes
+ * @param[in]     pinion_angle  phi_p (rad)
+ * @param[in]     pinion_speed  d phi_p / dt (rad/s)
+ * @param[in]     wheel_torque  load on the wheel, carried by both halves (N m)
+ * @param[in]     guess         x to begin with, NaN = none (m)
+ * @param[out]    offset        x (m); NaN on an error
+ * @param[in,out] apex          as gm_double_helical_evaluate_at()
+ * @param[out]    each          [2] of the halves there, with derivatives; NaN on an error
+ * @param[out]    result        of the pair there, with derivatives; NaN on an error
+ * @return as gm_rolling_equilibrium(), and GM_ERR_GEOMETRY as gm_double_helical_evaluate_at()
+ */
+GM_API int gm_double_helical_equilibrium(const gm_double_helical *gears, double pinion_angle,
+                                         double pinion_speed, double wheel_torque, double guess,
+                                         double *offset, double *apex, gm_mesh_result each[2],
+                                         gm_mesh_result *result);
+
+/**
+ * Line loads of both halves, z as in the whole pair; see gm_mesh_line_loads(), of which this takes the points of both meshes.
+ *
+ * @param[in]  gears     two meshes
+ * @param[in]  position  where the gears are
+ * @param[in]  apex      of gm_double_helical_evaluate_at() there (m)
+ * @param[out] points    [capacity] those of the first half, then those of the second; NULL: not wanted
+ * @param[in]  capacity  twice gm_mesh_line_load_points() is always enough
+ * @param[out] load      of both halves; NaN and 0 on an error
+ * @return as gm_mesh_line_loads(), and GM_ERR_GEOMETRY as gm_double_helical_evaluate_at()
+ */
+GM_API int gm_double_helical_line_loads(const gm_double_helical *gears, const gm_position *position,
+                                        double apex, gm_line_load_point *points, int capacity,
+                                        gm_line_loads *load);
+
+/* ---------------------------------------------------------------------------------------------
  * Cache of the 3D model, for long sweeps
  * ------------------------------------------------------------------------------------------- */
 
