@@ -397,6 +397,61 @@ static void power_is_force_times_speed_of_approach(void) {
     GM_ASSERT(touching > POSES / 2);
 }
 
+/*
+ * Friction takes its loss and nothing else, whatever the bodies do: also as one axis moves and begins to tilt, where each
+ * point slides by another speed.
+ */
+static void friction_takes_its_loss(void) {
+    uint64_t seed = UINT64_C(208);
+    int touching = 0, slow = 0;
+    for (int i = 0; i < 2 * POSES; ++i) {
+        random_case c;
+        gm_body bodies[2];
+        double power[2] = {0.0, 0.0}, loss = 0.0, force = 0.0;
+        int status = GM_OK;
+        gm_test_context("case %d", i);
+        GM_ASSERT_INT(random_mixed_case_make(&c, &seed, i), GM_OK);
+        motion_plan plan = random_plan(&c.pair, &seed, 0.0);
+        if (i % 2 == 0) { /* next to the creep speed, where the movement of the axes counts */
+            plan.speed[0] *= 1e-2;
+            plan.speed[1] *= 1e-2;
+        }
+        moving_bodies(&c.pair, &plan, bodies);
+        for (int rubs = 0; rubs < 2; ++rubs) {
+            plain_mesh room;
+            gm_mesh *mesh;
+            gm_mesh_params law;
+            gm_load loads[2];
+            gm_mesh_result r;
+            gm_mesh_params_default(&law);
+            law.stiffness = 1e8;
+            law.friction_coefficient = 0.3 * rubs;
+            law.friction_law =
+                rubs && i % 3 == 2 ? GM_FRICTION_BENEDICT_KELLEY : GM_FRICTION_CONSTANT;
+            law.oil_viscosity = 0.05;
+            GM_ASSERT_INT(gm_mesh_init(&mesh, &law, &c.pair, c.use[0], c.use[1], room.memory,
+                                       sizeof room.memory),
+                          GM_OK);
+            status |= gm_mesh_evaluate_bodies(mesh, &bodies[0], &bodies[1], GM_WANT_FORCE, NULL, &r,
+                                              &loads[0], &loads[1]);
+            power[rubs] = power_of(&loads[0], &bodies[0]) + power_of(&loads[1], &bodies[1]);
+            loss = r.loss;
+            force = r.drive_force + r.coast_force;
+        }
+        if (status == GM_OK && force > 0.0) {
+            const double size = force * (2.0 + c.pair.center_distance);
+            GM_ASSERT(loss >= 0.0);
+            GM_ASSERT_ABS(power[1] - power[0], -loss, 1e-12 * size);
+            ++touching;
+            slow += loss > 1e-6 * size && i % 2 == 0;
+        }
+        random_case_free(&c);
+    }
+    gm_test_context("all cases");
+    GM_ASSERT(touching > POSES / 2);
+    GM_ASSERT(slow > POSES / 10);
+}
+
 /* ---------------------------------------------------------------------------------------------
  * A pose at every call
  * ------------------------------------------------------------------------------------------- */
@@ -638,6 +693,7 @@ int main(int argc, char **argv) {
         GM_TEST(any_teeth_may_meet),
         GM_TEST(loads_are_in_balance_and_turn_with_the_frame),
         GM_TEST(power_is_force_times_speed_of_approach),
+        GM_TEST(friction_takes_its_loss),
         GM_TEST(no_pose_is_the_plain_evaluation_to_the_last_bit),
         GM_TEST(a_pose_of_the_call_is_one_of_the_mesh),
         GM_TEST(elastic_teeth_follow_a_pose_too),

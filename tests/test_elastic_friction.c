@@ -190,6 +190,51 @@ static void what_friction_takes_is_lost(void) {
     }
 }
 
+static double power_of(const gm_load *load, const gm_body *body) {
+    double power = 0.0;
+    for (int k = 0; k < 3; ++k) {
+        power += load->force[k] * body->velocity[k] + load->moment[k] * body->angular_velocity[k];
+    }
+    return power;
+}
+
+/* Between bodies whose axes move and begin to tilt the power that friction takes is its loss. */
+static void friction_between_bodies_takes_its_loss(void) {
+    for (int k = 0; k < 6; ++k) {
+        variant v;
+        gm_test_context("variant %d", k);
+        variant_make(&v, k, k);
+        const gm_pair *pair = &v.rubbing.pair;
+        gm_body bodies[2] = {
+            {.angular_velocity = {0.1, -0.2, 0.01 * v.state.pinion_speed}},
+            {.position = {pair->center_distance, 0.0,
+                          pair->wheel.face_start + 0.5 * pair->wheel.face_width -
+                              0.5 * pair->pinion.face_width},
+             .velocity = {3e-3, 2e-3, -1e-3},
+             .angular_velocity = {0.2, 0.1, -0.01 * v.state.wheel_speed}},
+        };
+        const double turns[2] = {v.state.pinion_angle, -v.state.wheel_angle};
+        for (int gear = 0; gear < 2; ++gear) {
+            const double c = cos(turns[gear]), s = sin(turns[gear]);
+            const double rotation[9] = {c, -s, 0.0, s, c, 0.0, 0.0, 0.0, 1.0};
+            memcpy(bodies[gear].rotation, rotation, sizeof rotation);
+        }
+        gm_load rubbing[2], smooth[2];
+        gm_mesh_result r, s;
+        GM_ASSERT_INT(gm_mesh_evaluate_bodies(v.rubbing.mesh, &bodies[0], &bodies[1], GM_WANT_FORCE,
+                                              v.rubbing.workspace, &r, &rubbing[0], &rubbing[1]),
+                      GM_OK);
+        GM_ASSERT_INT(gm_mesh_evaluate_bodies(v.smooth.mesh, &bodies[0], &bodies[1], GM_WANT_FORCE,
+                                              v.smooth.workspace, &s, &smooth[0], &smooth[1]),
+                      GM_OK);
+        const double taken = power_of(&rubbing[0], &bodies[0]) + power_of(&rubbing[1], &bodies[1]) -
+                             power_of(&smooth[0], &bodies[0]) - power_of(&smooth[1], &bodies[1]);
+        GM_ASSERT(r.loss > 0.0);
+        GM_ASSERT_ABS(taken, -r.loss, 1e-9 * r.loss);
+        variant_free(&v);
+    }
+}
+
 /* ---------------------------------------------------------------------------------------------
  * The formula along the lines
  * ------------------------------------------------------------------------------------------- */
@@ -461,6 +506,7 @@ static void gears_at_rest_have_none(void) {
 int main(int argc, char **argv) {
     static const gm_test tests[] = {
         GM_TEST(what_friction_takes_is_lost),
+        GM_TEST(friction_between_bodies_takes_its_loss),
         GM_TEST(torques_are_those_of_the_formula_along_the_lines),
         GM_TEST(gradients_are_those_of_differences),
         GM_TEST(a_mesh_cycle_gives_back_what_it_does_not_lose),

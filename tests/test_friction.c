@@ -515,6 +515,65 @@ static void touching_part_moves_the_friction_too(void) {
     GM_ASSERT(compared > 1000);
 }
 
+/* While the axes move and tilt each point slides by another speed, and the torques still have exact derivatives. */
+static void gradients_hold_while_the_axes_tilt(void) {
+    uint64_t seed = UINT64_C(908);
+    int compared = 0, kinks = 0;
+    for (int i = 0; i < 300; ++i) {
+        moving_case c;
+        gm_test_context("case %d", i);
+        moving_case_make(&c, &seed, i);
+        const gm_pair *pair = &c.gears.pair;
+        const double m = pair->normal_module;
+        c.params.damping =
+            0.0; /* its mean speed of approach moves too, which derivatives leave out */
+        c.params.friction_speed = 1e-3;
+        c.mesh = mesh_with(&c.room, &c.params, pair, c.gears.use[0], c.gears.use[1]);
+        c.state.pinion_speed *= 1e-3;
+        c.state.wheel_speed *= 1e-3;
+        const gm_pose rate = {gm_test_uniform(&seed, -1.0, 1.0) * m, 1e-1 * m, 0.0,
+                              gm_test_uniform(&seed, -1.0, 1.0) * 0.1,
+                              gm_test_uniform(&seed, -1.0, 1.0) * 0.1};
+        const double radii[2] = {pair->pinion.base_radius, pair->wheel.base_radius};
+        gm_mesh_result at[3];
+        for (int which = 0; which < 4; ++which) {
+            const double h = which < 2 ? 1e-7 * m / radii[which] : 1e-6;
+            int status = GM_OK;
+            for (int k = 0; k < 3; ++k) {
+                gm_state state = c.state;
+                double *const places[4] = {&state.pinion_angle, &state.wheel_angle,
+                                           &state.pinion_speed, &state.wheel_speed};
+                *places[which] += (k - 1) * h;
+                gm_motion motion = {.pose_rate = rate};
+                status |= gm_position_from_state(pair, &state, &motion.position);
+                status |=
+                    gm_mesh_evaluate_posed(c.mesh, &motion, GM_WANT_DERIVATIVES, NULL, &at[k]);
+            }
+            if (status != GM_OK || at[1].drive_force + at[1].coast_force == 0.0) {
+                continue;
+            }
+            const gm_gradient *by = &at[1].pinion_torque_by;
+            const double exact[4] = {by->pinion_angle, by->wheel_angle, by->pinion_speed,
+                                     by->wheel_speed};
+            const double forward = (at[2].pinion_torque - at[1].pinion_torque) / h;
+            const double backward = (at[1].pinion_torque - at[0].pinion_torque) / h;
+            const double size =
+                which < 2 ? stiffness_of_all * radii[0] * radii[which] : fabs(exact[which]) + 1e-3;
+            if (fabs(forward - backward) > 1e-4 * size) {
+                ++kinks;
+                continue;
+            }
+            ++compared;
+            GM_ASSERT_ABS(0.5 * (forward + backward), exact[which],
+                          1e-5 * size + 0.51 * fabs(forward - backward));
+        }
+        random_case_free(&c.gears);
+    }
+    gm_test_context("all cases: %d compared, %d kinks", compared, kinks);
+    GM_ASSERT(compared > 300);
+    GM_ASSERT(kinks < compared);
+}
+
 /* ---------------------------------------------------------------------------------------------
  * Known limits
  * ------------------------------------------------------------------------------------------- */
@@ -667,6 +726,15 @@ static void there_is_no_friction_at_rest_and_in_the_simple_model(void) {
                   GM_STATE_NOT_FINITE);
     GM_ASSERT_NAN(r.pinion_torque);
     GM_ASSERT_NAN(r.loss);
+
+    /* Nor a number in a pose of the call; and no tangent. */
+    const gm_motion motion = {.position = position, .pose = {.skew = 1e-5}};
+    gm_tangent tangent;
+    GM_ASSERT_INT(gm_mesh_evaluate_posed(mesh, &motion, GM_WANT_FORCE, NULL, &r),
+                  GM_STATE_NOT_FINITE);
+    GM_ASSERT_NAN(r.force);
+    GM_ASSERT_INT(gm_mesh_tangent(mesh, &motion, &tangent), GM_ERR_PARAMETER);
+    GM_ASSERT_NAN(tangent.force_by[GM_SKEW]);
 }
 
 /* ---------------------------------------------------------------------------------------------
@@ -742,6 +810,7 @@ int main(int argc, char **argv) {
         GM_TEST(gears_may_exchange_their_roles),
         GM_TEST(gradients_of_the_torques_are_those_of_differences),
         GM_TEST(touching_part_moves_the_friction_too),
+        GM_TEST(gradients_hold_while_the_axes_tilt),
         GM_TEST(equal_sharing_gives_the_loss_factor_of_ohlendorf),
         GM_TEST(uniform_line_load_gives_its_loss_factor),
         GM_TEST(coefficients_are_those_of_their_laws),

@@ -21,7 +21,8 @@ typedef struct point_sums {
 
 static gmi_point_friction friction_at(const gm_mesh *mesh, const gmi_sliding *sliding,
                                       const gmi_elastic_work *work, int p) {
-    return gmi_friction_at(sliding, work->roll[p], work->load[p] * mesh->pair->face_width);
+    const double t1 = mesh->engagement.face_from + work->z[p] / mesh->pair->face_width;
+    return gmi_friction_at(sliding, work->roll[p], t1, work->load[p] * mesh->pair->face_width);
 }
 
 static point_sums sum_points(const gm_mesh *mesh, const gmi_sliding *sliding,
@@ -48,17 +49,19 @@ static point_sums sum_points(const gm_mesh *mesh, const gmi_sliding *sliding,
 /* Derivatives of the friction, or of its moment, by x of the teeth and by their roll. */
 static gmi_elastic_gradient differentiate(const gm_mesh *mesh, const gmi_sliding *sliding,
                                           int is_moment, gmi_elastic_work *work) {
-    double *factor = work->table[0], *by_roll = work->table[1], *by_load = work->table[2];
+    double *factor = work->table[0], *by_deviation = work->table[0] + 2 * work->slots;
+    double *by_roll = work->table[1], *by_z = work->table[2], *by_load = work->table[3];
     for (int p = 0; p < 2 * work->slots; ++p) {
         const gmi_point_friction at = friction_at(mesh, sliding, work, p);
         const double arm = is_moment ? work->roll[p] : 1.0;
         factor[p] = arm * (at.share + at.by_load);
         by_roll[p] = arm * at.by_roll + (is_moment ? at.share : 0.0);
+        by_z[p] = arm * at.by_t1 / mesh->pair->face_width;
         by_load[p] = arm * at.by_load;
     }
-    const gmi_elastic_functional functional = {factor, by_roll, NULL, by_load};
+    const gmi_elastic_functional functional = {factor, by_roll, by_z, by_load};
     gmi_elastic_gradient gradient;
-    gmi_elastic_differentiate_functional(&mesh->elastic->law, work, &functional, work->table[3],
+    gmi_elastic_differentiate_functional(&mesh->elastic->law, work, &functional, by_deviation,
                                          &gradient);
     return gradient;
 }

@@ -6,7 +6,8 @@
  *
  *     v = omega_p rho_p - omega_w rho_w,     rho_w = T - rho_p      (in the signs of ISO 21771, a ring's below 0),
  *
- * which at constant x is (omega_p + omega_w) (rho_p - rho_C), zero in the pitch point C. Friction mu_r times the normal
+ * which at constant x is (omega_p + omega_w) (rho_p - rho_C), zero in the pitch point C, and less what the wheel's body
+ * moves across the line of action, where its axis moves. Friction mu_r times the normal
  * force acts across the line of action, with mu_r = mu v / sqrt(v^2 + v0^2): it turns round in the pitch point without a
  * jump.
  *
@@ -85,13 +86,17 @@ gmi_friction gmi_friction_of(const gm_mesh_params *params, const gm_pair *pair,
  * ------------------------------------------------------------------------------------------- */
 
 gmi_sliding gmi_sliding_find(const gmi_friction *friction, const gm_pair *pair,
-                             const gmi_engagement *at, const gm_position *position) {
+                             const gmi_engagement *at, const gm_position *position,
+                             const gmi_rates *rates) {
     gmi_sliding s = {.friction = friction};
     s.pinion_speed = position->pinion_speed;
     s.wheel_speed = (pair->pinion.base_radius * position->pinion_speed - position->offset_rate) /
                     at->wheel_base_radius;
     s.wheel_sign = pair->wheel.sign;
     s.line_of_action = at->line_of_action;
+    for (int k = 0; k < 2 && rates != NULL; ++k) {
+        s.sideways[k] = rates->sideways[k];
+    }
 
     /* In the pitch point; v0 keeps the coefficients finite at rest. */
     const double rho_p = friction->pitch_point;
@@ -103,14 +108,23 @@ gmi_sliding gmi_sliding_find(const gmi_friction *friction, const gm_pair *pair,
     return s;
 }
 
-/* Mean sliding speed of a part, at its mean rho_p. */
+/* Where a point slides by. */
+static double sliding_at(const gmi_sliding *s, double rho_p, double t1) {
+    return s->pinion_speed * rho_p - s->wheel_speed * (s->line_of_action - rho_p) - s->sideways[0] -
+           s->sideways[1] * t1;
+}
+
+/* Mean sliding speed of a part, at its mean rho_p and t1. */
 static gmi_varying sliding_speed(const gmi_sliding *s, const gmi_part_force *part) {
     const double rho_p = part->moment.value / part->force.value;
     const double rho_w = s->line_of_action - rho_p;
-    gmi_varying speed = {.value = s->pinion_speed * rho_p - s->wheel_speed * rho_w};
+    const double t1 = part->force_t1.value / part->force.value;
+    gmi_varying speed = {.value = sliding_at(s, rho_p, t1)};
     for (int k = 0; k < GMI_MOTIONS; ++k) {
-        const double rho_by = (part->moment.by[k] - rho_p * part->force.by[k]) / part->force.value;
-        speed.by[k] = (s->pinion_speed + s->wheel_speed) * rho_by;
+        const double force_by = part->force.by[k];
+        const double rho_by = (part->moment.by[k] - rho_p * force_by) / part->force.value;
+        const double t1_by = (part->force_t1.by[k] - t1 * force_by) / part->force.value;
+        speed.by[k] = (s->pinion_speed + s->wheel_speed) * rho_by - s->sideways[1] * t1_by;
     }
     speed.by[GMI_PINION_SPEED] += rho_p;
     speed.by[GMI_WHEEL_SPEED] -= s->wheel_sign * rho_w;
@@ -204,28 +218,32 @@ void gmi_friction_add(const gmi_sliding *sliding, const gmi_part_force *part,
     const gmi_varying share = share_of(sliding, &load, &speed);
     gmi_varying_add_product(&share, &part->force, &total->force);
     gmi_varying_add_product(&share, &part->moment, &total->moment);
-    total->force_t1 += share.value * part->force_t1;
+    total->force_t1 += share.value * part->force_t1.value;
     total->loss += share.value * part->force.value * speed.value;
 }
 
-gmi_point_friction gmi_friction_at(const gmi_sliding *sliding, double rho_p, double load) {
-    enum { BY_ROLL = GMI_PINION_ANGLE, BY_LOAD = GMI_WHEEL_ANGLE }; /* in the place of the angles */
+gmi_point_friction gmi_friction_at(const gmi_sliding *sliding, double rho_p, double t1,
+                                   double load) {
+    enum { BY_SLIDING = GMI_PINION_ANGLE, BY_LOAD = GMI_WHEEL_ANGLE }; /* in place of the angles */
     const double rho_w = sliding->line_of_action - rho_p;
-    const double pinion = sliding->pinion_speed, wheel = sliding->wheel_speed;
     const gmi_varying speed = {
-        pinion * rho_p - wheel * rho_w,
-        {[BY_ROLL] = pinion + wheel,
+        sliding_at(sliding, rho_p, t1),
+        {[BY_SLIDING] = 1.0,
          [GMI_PINION_SPEED] = rho_p,
          [GMI_WHEEL_SPEED] = -sliding->wheel_sign * rho_w},
     };
     const gmi_varying loaded = {load, {[BY_LOAD] = load}};
     const gmi_varying share = share_of(sliding, &loaded, &speed);
-    const gmi_point_friction result = {share.value,
-                                       speed.value,
-                                       share.by[BY_ROLL],
-                                       share.by[BY_LOAD],
-                                       share.by[GMI_PINION_SPEED],
-                                       share.by[GMI_WHEEL_SPEED]};
+    const double by_sliding = share.by[BY_SLIDING];
+    const gmi_point_friction result = {
+        .share = share.value,
+        .speed = speed.value,
+        .by_roll = by_sliding * (sliding->pinion_speed + sliding->wheel_speed),
+        .by_t1 = -by_sliding * sliding->sideways[1],
+        .by_load = share.by[BY_LOAD],
+        .by_pinion_speed = share.by[GMI_PINION_SPEED],
+        .by_wheel_speed = share.by[GMI_WHEEL_SPEED],
+    };
     return result;
 }
 

@@ -187,6 +187,9 @@ typedef struct gmi_engagement {
 typedef struct gmi_rates {
     double delta;         /* of parallel axes (m/s) */
     double along, across; /* d gmi_engagement.along / dt, d across / dt (rad/s) */
+
+    /* Of the wheel's body across the line of action, as friction has it, at t1 = 0 and more of it per t1 (m/s). */
+    double sideways[2];
 } gmi_rates;
 
 void gmi_rates_find(const gm_pair *pair, const gmi_engagement *at, double offset_rate,
@@ -749,18 +752,22 @@ typedef struct gmi_sliding {
     double pinion_speed, wheel_speed; /* in the signs of ISO 21771 (rad/s) */
     double wheel_sign;
     double line_of_action; /* T (m) */
-    gmi_varying rolling;   /* sum of both speeds of rolling in the pitch point, v0 included (m/s) */
+    double sideways
+        [2]; /* of gmi_rates: where the wheel's axis moves, the flanks slide by less (m/s) */
+    gmi_varying rolling; /* sum of both speeds of rolling in the pitch point, v0 included (m/s) */
 } gmi_sliding;
 
+/* rates: of the side, NULL = the axes stand still. */
 gmi_sliding gmi_sliding_find(const gmi_friction *friction, const gm_pair *pair,
-                             const gmi_engagement *at, const gm_position *position);
+                             const gmi_engagement *at, const gm_position *position,
+                             const gmi_rates *rates);
 
 /* The normal force of a part of a line, in the transverse section. */
 typedef struct gmi_part_force {
-    gmi_varying force;   /* (N) */
-    gmi_varying moment;  /* times mean rho_p (N m) */
-    gmi_varying contact; /* touching part (1) */
-    double force_t1;     /* times mean t1 (N) */
+    gmi_varying force;    /* (N) */
+    gmi_varying moment;   /* times mean rho_p (N m) */
+    gmi_varying contact;  /* touching part (1) */
+    gmi_varying force_t1; /* times mean t1 (N) */
 } gmi_part_force;
 
 /* Friction on the wheel, in the sense in which the pinion's flank moves; on the pinion the other way. */
@@ -776,12 +783,13 @@ typedef struct gmi_point_friction {
     double share; /* mu_r / cos(beta_b) */
     double speed; /* of sliding (m/s) */
 
-    /* Derivatives of the share: by rho_p, by the logarithm of the load, and by both speeds. */
-    double by_roll, by_load, by_pinion_speed, by_wheel_speed;
+    /* Derivatives of the share: by rho_p, t1, the logarithm of the load, and by both speeds. */
+    double by_roll, by_t1, by_load, by_pinion_speed, by_wheel_speed;
 } gmi_point_friction;
 
 /* load: transverse, over the common face width (N). */
-gmi_point_friction gmi_friction_at(const gmi_sliding *sliding, double rho_p, double load);
+gmi_point_friction gmi_friction_at(const gmi_sliding *sliding, double rho_p, double t1,
+                                   double load);
 
 /* Adds that of one part. */
 void gmi_friction_add(const gmi_sliding *sliding, const gmi_part_force *part,

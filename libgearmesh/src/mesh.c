@@ -529,16 +529,16 @@ static void add_roll(const gm_mesh *mesh, const gmi_side_sum *drive, const gmi_s
     }
 }
 
-/* From the sums of elastic teeth to all that a user sees, apart from what has found them. */
+/* From the sums of elastic teeth to all that a user sees, apart from what has found them. rates: [side], NULL = axes at rest. */
 static OWN_STACK void finish_elastic(const gm_mesh *mesh, const gm_position *position,
                                      const gmi_side_sum sums[2], const double approach[2],
-                                     int wanted, int mask, gm_workspace *workspace,
-                                     gm_mesh_result *result) {
+                                     const gmi_rates *rates, int wanted, int mask,
+                                     gm_workspace *workspace, gm_mesh_result *result) {
     gmi_friction_sum friction[2];
     const int slides = mesh->friction.is_on;
     for (int side = GM_DRIVE; side <= GM_COAST && slides; ++side) {
-        const gmi_sliding sliding =
-            gmi_sliding_find(&mesh->friction, mesh->pair, &mesh->engagement, position);
+        const gmi_sliding sliding = gmi_sliding_find(&mesh->friction, mesh->pair, &mesh->engagement,
+                                                     position, rates == NULL ? NULL : &rates[side]);
         gmi_elastic_friction(mesh, side, approach[side], &sliding, &sums[side], mask, workspace,
                              &friction[side]);
     }
@@ -559,7 +559,7 @@ static OWN_STACK int evaluate_elastic(const gm_mesh *mesh, const gm_position *po
         }
     }
     const double approach[2] = {position->offset_rate, -position->offset_rate};
-    finish_elastic(mesh, position, sums, approach, wanted, mask, workspace, result);
+    finish_elastic(mesh, position, sums, approach, NULL, wanted, mask, workspace, result);
     return GM_OK;
 }
 
@@ -574,12 +574,11 @@ static OWN_STACK void evaluate_any(const gm_mesh *mesh, const gm_position *posit
     evaluate(mesh, position, wanted, result);
 }
 
-/* With friction, which needs the moments of the force; and their derivatives, where those are wanted. */
+/* With friction, which needs the moments of the force; and their derivatives, where those are wanted. rates: [side], NULL =
+   axes at rest. */
 static OWN_STACK void evaluate_sliding(const gm_mesh *mesh, const gm_position *position,
-                                       const double approach[2], int wanted,
+                                       const double approach[2], const gmi_rates *rates, int wanted,
                                        gm_mesh_result *result) {
-    const gmi_sliding sliding =
-        gmi_sliding_find(&mesh->friction, mesh->pair, &mesh->engagement, position);
     const gmi_friction_sum none = {.loss = 0.0};
     gmi_side_sum memory[2];
     gmi_friction_sum friction[2];
@@ -589,6 +588,9 @@ static OWN_STACK void evaluate_sliding(const gm_mesh *mesh, const gm_position *p
         sums[side] = &no_contact;
         friction[side] = none;
         if (!gmi_side_is_clear(&mesh->engagement, prepared, side, position->offset)) {
+            const gmi_sliding sliding =
+                gmi_sliding_find(&mesh->friction, mesh->pair, &mesh->engagement, position,
+                                 rates == NULL ? NULL : &rates[side]);
             gmi_side_sum_sliding(mesh->pair, &mesh->engagement, prepared, side, position,
                                  (wanted & GM_WANT_DERIVATIVES) != 0, &mesh->law, approach[side],
                                  &sliding, &memory[side], &friction[side]);
@@ -601,7 +603,7 @@ static OWN_STACK void evaluate_sliding(const gm_mesh *mesh, const gm_position *p
 static void evaluate_rolling(const gm_mesh *mesh, const gm_position *position, int wanted,
                              gm_mesh_result *result) {
     const double approach[2] = {position->offset_rate, -position->offset_rate};
-    evaluate_sliding(mesh, position, approach, wanted, result);
+    evaluate_sliding(mesh, position, approach, NULL, wanted, result);
 }
 
 int gmi_mesh_evaluate_exact(const gm_mesh *mesh, const gm_position *position, int wanted,
@@ -786,9 +788,9 @@ static int evaluate_moving(const gm_mesh *mesh, const gm_position *position,
 
     /* And what they mean. */
     if (is_elastic(mesh)) {
-        finish_elastic(mesh, position, sums, approach, wanted, mask, workspace, result);
+        finish_elastic(mesh, position, sums, approach, rates, wanted, mask, workspace, result);
     } else if (mesh->friction.is_on) {
-        evaluate_sliding(mesh, position, approach, wanted, result);
+        evaluate_sliding(mesh, position, approach, rates, wanted, result);
     } else {
         set_result(mesh, &sums[GM_DRIVE], &sums[GM_COAST], NULL, approach, wanted, result);
     }
@@ -862,6 +864,9 @@ static OWN_STACK int evaluate_posed(const gm_mesh *mesh, const gm_motion *motion
     int status = gmi_mesh_follow(mesh, motion, &moved, &position, rates);
     if (status == GM_OK) {
         status = check_evaluation(&moved, &position, wanted, workspace);
+    }
+    if (status == GM_OK && mesh->friction.is_on) {
+        status = check_speed(position.pinion_speed);
     }
     if (status != GM_OK) {
         return status;

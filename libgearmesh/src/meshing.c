@@ -343,5 +343,11 @@ void gmi_rates_find(const gm_pair *pair, const gmi_engagement *at, double offset
                             e[1] * pose_rate->offset + tau * pose_rate->axial_shift;
         rates[side].along = -sign * (e[0] * pose_rate->skew + e[1] * pose_rate->inclination);
         rates[side].across = -sign * (t[0] * pose_rate->skew + t[1] * pose_rate->inclination);
+
+        /* Of a point of the wheel's body at z, across the line of action: v + theta' x (z - z_O) k along -+t. */
+        const double turning = t[0] * pose_rate->inclination - t[1] * pose_rate->skew;
+        const double moving = t[0] * pose_rate->center_distance_change + t[1] * pose_rate->offset;
+        rates[side].sideways[0] = -sign * (moving + turning * (pair->face_start - at->face_center));
+        rates[side].sideways[1] = -sign * turning * pair->face_width;
     }
 }

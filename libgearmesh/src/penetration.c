@@ -323,14 +323,21 @@ static int law_mask(int wanted) {
 /* Hands the normal force of a part on to friction. */
 static OWN_STACK void add_friction(const side_view *view, double rho_origin, int wanted,
                                    const gmi_side_sum *part) {
-    gmi_side_force force, of_moment = {.force = 0.0};
+    gmi_side_force force, of_moment = {.force = 0.0}, of_t1 = {.force = 0.0};
     gmi_law_force(view->law, part, view->approach_speed, law_mask(wanted), &force);
     if (wanted & GMI_TANGENT) {
-        /* rho_p = origin + advance t1 */
         const gmi_line_tangent *line = view->line_tangent;
-        const double advance = view->lines.advance;
         const double(*sum)[2] = line->sum_by, (*contact)[2] = line->flow_by;
         const int o = GMI_BY_ORIGIN, d = GMI_BY_DELTA;
+        const gmi_side_sum over_t1 = {.sum = part->sum_t1,
+                                      .contact = part->contact_t1,
+                                      .by_origin = sum[o][1],
+                                      .by_delta = sum[d][1],
+                                      .contact_by_origin = contact[o][1],
+                                      .contact_by_delta = contact[d][1]};
+
+        /* rho_p = origin + advance t1 */
+        const double advance = view->lines.advance;
         const gmi_side_sum moment = {
             .sum = part->sum_rho,
             .contact = part->contact_rho,
@@ -339,17 +346,21 @@ static OWN_STACK void add_friction(const side_view *view, double rho_origin, int
             .contact_by_origin =
                 part->contact + rho_origin * contact[o][0] + advance * contact[o][1],
             .contact_by_delta = rho_origin * contact[d][0] + advance * contact[d][1]};
+        gmi_law_force(view->law, &over_t1, view->approach_speed, law_mask(wanted), &of_t1);
         gmi_law_force(view->law, &moment, view->approach_speed, law_mask(wanted), &of_moment);
     }
 
+    const gm_pair *pair = view->pair;
+    const int side = view->side;
     const gmi_part_force part_force = {
-        .force = gmi_varying_of(view->pair, view->side, force.force, force.by_origin,
-                                force.by_delta, force.by_speed),
-        .moment = gmi_varying_of(view->pair, view->side, force.force_rho, of_moment.by_origin,
+        .force = gmi_varying_of(pair, side, force.force, force.by_origin, force.by_delta,
+                                force.by_speed),
+        .moment = gmi_varying_of(pair, side, force.force_rho, of_moment.by_origin,
                                  of_moment.by_delta, of_moment.by_speed),
-        .contact = gmi_varying_of(view->pair, view->side, part->contact, part->contact_by_origin,
+        .contact = gmi_varying_of(pair, side, part->contact, part->contact_by_origin,
                                   part->contact_by_delta, 0.0),
-        .force_t1 = force.force_t1};
+        .force_t1 = gmi_varying_of(pair, side, force.force_t1, of_t1.by_origin, of_t1.by_delta,
+                                   of_t1.by_speed)};
     gmi_friction_add(view->sliding, &part_force, view->friction);
 }
 

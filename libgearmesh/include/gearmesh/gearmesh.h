@@ -1046,7 +1046,8 @@ typedef struct gm_motion {
  *
  * The damping force of a side is D times the integral of the speed of approach over its touching part: dx/dt, less the
  * velocity of the wheel's axis along the surface normal, less what a changing tilt does at each point, in first order. With
- * elastic teeth the mean over the touching part is taken.
+ * elastic teeth and with friction the mean over the touching part is taken. The sliding speed of friction contains what
+ * the wheel's body does across the line of action.
  *
  * @return as gm_mesh_evaluate_at(), and GM_POSE_OUT_OF_MESH; GM_STATE_OUT_OF_RANGE for rates too
  *
@@ -1119,7 +1120,7 @@ typedef struct gm_load {
  * pairing: x is the one within half a base pitch, and the tables of the teeth that meet there are used. No state is kept.
  *
  * Both loads are in balance with each other, whatever the motion. Their power is that of the flanks, -(dU/dt + damping
- * loss), less three things: flanks that leave at a tip with some overlap take its energy along; deviations that change
+ * loss + friction loss), less three things: flanks that leave at a tip with some overlap take its energy along; deviations that change
  * along the way of contact do work on the rotation; and between tilted axes the force keeps the pinion's normal, so that
  * the power is open by the order of tilt times force times speed.
  *
