@@ -2,6 +2,7 @@
 # SPDX-FileCopyrightText: The gearmesh authors
 # SPDX-License-Identifier: BSD-3-Clause
 """scripts/flanks and what it reads with, from constructed flanks whose numbers are known."""
+import math
 import os
 import re
 import struct
@@ -22,6 +23,7 @@ program.require("numpy")
 import numpy as np  # noqa: E402
 
 import flankfile  # noqa: E402
+import mkafile  # noqa: E402
 import script_case  # noqa: E402
 
 HEADER = "tooth,flank,t1,t2,deviation_um\n"
@@ -401,6 +403,52 @@ class Measured(Drawn):
         column, traces = flankfile.read_traces(self.path("t.csv"))
         self.assertEqual((column, len(traces)), ("diameter_mm", 8))
         self.assertEqual(traces[1].along_mm[0], 1)  # was measured from 17 down to 1
+
+    MACHINE = ("HEADER KS.MK.FILE\r\nUNITS mm\r\nUNDEFINED -999 ! none\r\n 21 :Modul: 2,000\r\n 22 :Z\xe4hnezahl: 20\r\n"
+               " 23 :Winkel: 0\xb000'00\"\r\n 24 :Winkel: 20\xb000'00\"\r\n 41 :da: 38.0 39.0\r\n 44 :de: 43.0\r\n 61 :ba: 1.0\r\n"
+               " 64 :be: 15.0\r\n\r\n")
+
+    def machine_traces(self, text):
+        with open(self.path("t.mka"), "w", encoding="latin-1", newline="") as file:
+            file.write(self.MACHINE + text)
+        return mkafile.read_traces(self.path("t.mka"))
+
+    def test_traces_of_a_machine_are_where_they_were_measured(self):
+        column, traces = self.machine_traces(
+            "Profil:\r\nZahn-Nr.: 3 links / 5  Werte  z= 8.0\r\n1,5 2 3\r\n-999 5\r\n\r\n"
+            "Zahn-Nr.: 3 rechts / 3 Werte z= 8\r\n1 2 3\r\n"
+            "Topografie: Zahn-Nr.: 3 /Profil:2 links / 2 Werte / z= 8.0\r\n9 9\r\n"
+            "Lead: Tooth-No.: 7k right / 3 values x= 7.1\r\n1 4 2\r\n"
+            "   linke Zahnflanke\r\n  Zahn-Nr.  fp  Fp  Fr\r\n 1  0.662 0.5 0.778\r\n")
+        self.assertEqual(column, "roll_length_mm")
+        self.assertEqual([(trace.tooth, trace.flank, trace.kind) for trace in traces],
+                         [(3, "left", "profile"), (3, "right", "profile"), (7, "right", "helix")])
+        base_mm = 20 * math.cos(math.radians(20))
+        begin_mm, end_mm, right_mm = (math.sqrt(d * d / 4 - base_mm**2) for d in (38, 43, 39))
+        np.testing.assert_allclose(traces[0].along_mm, [begin_mm + share * (end_mm - begin_mm) for share in (0, 0.25, 0.5, 1)])
+        np.testing.assert_array_equal(traces[0].deviation_um, [1.5, 2, 3, 5])
+        np.testing.assert_allclose(traces[1].along_mm[[0, -1]], [right_mm, end_mm])
+        np.testing.assert_array_equal(traces[2].along_mm, [1, 8, 15])
+        result = self.flanks("t.mka")
+        self.assertEqual((result.returncode, result.stderr), (0, ""))
+        self.assertIn("3 traces of 2 teeth", result.stdout)
+        self.assertIn("over roll length / mm", self.svg_text("t_traces.svg"))
+
+    def test_machine_files_that_cannot_be_drawn(self):
+        good = "Zahn-Nr.: 3 links / 2 Werte z= 8\n"
+        for text, message in ((good + "1\n", "13: the trace must have 2 values (got 1)"), (good + "1 2 3\n", "(got 3)"),
+                              (good + "1 x\n", "(got 0)"), ("Zahn-Nr.: 3 / 2 Werte z= 8\n1 2\n", "its flank"),
+                              ("", "must have a trace")):
+            with self.assertRaises(flankfile.FlankFileError) as caught:
+                self.machine_traces(text)
+            self.assertIn(message, str(caught.exception))
+        self.write("HEADER KS.MK.FILE\n" + good + "1 2\n", "a.mka")
+        self.write("HEADER KS.MW.FILE\n 7 :ME: 1\n", "a.mew")
+        for name, message in (("a.mka", "its line 41 where the traces begin"), ("a.mew", "give the .mka")):
+            result = self.flanks(name)
+            self.assertEqual(result.returncode, 2)
+            self.assertIn(message, result.stderr)
+            self.assertNotIn("Traceback", result.stderr)
 
     def test_a_trace_ends_where_its_place_changes(self):
         place = "5,left,profile,8,20,1\n5,left,profile,8.005,21,1\n5,left,profile,{},22,1\n5,left,profile,{},23,1\n"
