@@ -1,0 +1,225 @@
+/* SPDX-FileCopyrightText: The gearmesh authors */
+/* SPDX-License-Identifier: BSD-3-Clause */
+
+/*
+ * A gearbox of two stages by CVODE: an intermediate shaft that twists carries the wheel of the first and the pinion of the
+ * second. Where their teeth stand on the shaft, and where the shafts stand, says how the stages mesh: there are no phases to
+ * give. Both gears of the shaft have the same hand, so that their axial forces are against each other: what is left of them
+ * is known from torque and helix.
+ */
+#include <cvode/cvode.h>
+#include <gearmesh/gearmesh.h>
+#include <math.h>
+#include <nvector/nvector_serial.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <sunlinsol/sunlinsol_dense.h>
+#include <sunmatrix/sunmatrix_dense.h>
+
+enum { INPUT, LARGE, SMALL, OUTPUT, GEARS, STAGES = 2 }; /* large and small stand on one shaft */
+enum {
+    IN = 2 * GEARS,
+    OUT,
+    LOSS,
+    AXIAL,
+    STATES
+}; /* behind angles and speeds: integrals over time */
+
+static const double pi = 3.14159265358979323846;
+static const int teeth[GEARS] = {23, 61, 19, 55};
+static const double inertia[GEARS] = {3e-4, 6e-3, 3e-4, 1.5e-2};
+static const double keyed[GEARS] = {0.0, 0.0, 0.21, 0.0}; /* of tooth 0 on its shaft (rad) */
+static const double stage_z[STAGES] = {0.0, 80e-3};
+static const double stiffness = 3e8, damping = 3e3, torque = 60.0, speed = 150.0;
+static const double shaft_stiffness = 6e4, shaft_damping = 2.0; /* N m/rad, N m s/rad */
+static const double bend = 0.7; /* between both lines of centres (rad) */
+
+typedef struct gearbox {
+    gm_mesh *mesh[STAGES];
+    double place[GEARS][3];
+    double zero[GEARS]; /* angles in which they were assembled */
+    double stored;
+} gearbox;
+
+static gm_mesh *mesh_of(int pinion, int wheel, double module, double helix_angle) {
+    gm_pair_params params;
+    gm_pair_params_default(&params);
+    params.pinion_teeth = pinion;
+    params.wheel_teeth = wheel;
+    params.normal_module = module;
+    params.normal_pressure_angle = pi / 9.0;
+    params.helix_angle = helix_angle;
+    params.center_distance = 0.5 * (pinion + wheel) * module / cos(helix_angle);
+    params.face_width = 30e-3;
+    params.backlash = 100e-6;
+
+    gm_pair pair;
+    gm_mesh_params law;
+    gm_mesh *mesh = NULL;
+    gm_mesh_params_default(&law);
+    law.stiffness = stiffness;
+    law.damping = damping;
+    if (gm_pair_init(&pair, &params) == GM_OK) {
+        const size_t size = gm_mesh_size(&law, &pair);
+        (void)gm_mesh_init(&mesh, &law, &pair, NULL, NULL, malloc(size), size);
+    }
+    return mesh;
+}
+
+static gm_body body_of(const gearbox *box, int gear, const double *y) {
+    const double angle = box->zero[gear] + y[gear];
+    const double c = cos(angle), s = sin(angle);
+    const double *place = box->place[gear];
+    const gm_body body = {{place[0], place[1], place[2]},
+                          {c, -s, 0.0, s, c, 0.0, 0.0, 0.0, 1.0},
+                          {0.0, 0.0, 0.0},
+                          {0.0, 0.0, y[GEARS + gear]}};
+    return body;
+}
+
+/* Of ideal flanks, which are pressed evenly on the side that touches. */
+static double energy_of(const gm_penetration *c, double *loss) {
+    const double contact = c->drive_contact + c->coast_contact;
+    if (!(contact > 0.0)) {
+        return 0.0;
+    }
+    *loss += damping * c->rate * c->rate / contact;
+    return 0.5 * stiffness * c->penetration * c->penetration / contact;
+}
+
+static int derivatives(sunrealtype t, N_Vector state, N_Vector rates, void *data) {
+    gearbox *box = (gearbox *)data;
+    const double *y = N_VGetArrayPointer(state);
+    double *rate = N_VGetArrayPointer(rates);
+
+    /* Both stages turn the sense around; the load grows with the speed of the output. */
+    const double ratio = (double)teeth[LARGE] / teeth[INPUT] * teeth[OUTPUT] / teeth[SMALL];
+    const double load = torque * ratio * y[GEARS + OUTPUT] / (speed / ratio);
+    const double twist = y[LARGE] - y[SMALL];
+    const double untwisting = y[GEARS + LARGE] - y[GEARS + SMALL];
+    const double shaft = shaft_stiffness * twist + shaft_damping * untwisting;
+    double moment[GEARS] = {torque, -shaft, shaft, -load};
+    double loss = shaft_damping * untwisting * untwisting, axial = 0.0;
+    (void)t;
+    box->stored = 0.5 * shaft_stiffness * twist * twist;
+    for (int stage = 0; stage < STAGES; ++stage) {
+        const int driver = 2 * stage, driven = driver + 1;
+        const gm_body pinion = body_of(box, driver, y), wheel = body_of(box, driven, y);
+        gm_load on[2];
+        gm_mesh_result result;
+        const int status = gm_mesh_evaluate_bodies(box->mesh[stage], &pinion, &wheel, GM_WANT_FORCE,
+                                                   NULL, &result, &on[0], &on[1]);
+        if (status != GM_OK) {
+            return status; /* > 0: a smaller step may help */
+        }
+        moment[driver] += on[0].moment[2];
+        moment[driven] += on[1].moment[2];
+        axial += on[1 - stage].force[2];
+        box->stored += energy_of(&result.contact, &loss);
+    }
+    for (int k = 0; k < GEARS; ++k) {
+        rate[k] = y[GEARS + k];
+        rate[GEARS + k] = moment[k] / inertia[k];
+    }
+    rate[IN] = torque * y[GEARS + INPUT];
+    rate[OUT] = load * y[GEARS + OUTPUT];
+    rate[LOSS] = loss;
+    rate[AXIAL] = axial;
+    return 0;
+}
+
+/* The large gear is turned into its mate; with it stands the small one, and the output gear is turned into that. */
+static int assemble(gearbox *box) {
+    const double y[2 * GEARS] = {0.0};
+    for (int stage = 0; stage < STAGES; ++stage) {
+        const int driver = 2 * stage, driven = driver + 1;
+        const gm_pair *pair = gm_mesh_pair(box->mesh[stage]);
+        if (stage > 0) {
+            box->place[driver][0] = box->place[driver - 1][0];
+            box->place[driver][1] = box->place[driver - 1][1];
+            box->zero[driver] = box->zero[driver - 1] + keyed[driver];
+        }
+        box->place[driven][0] = box->place[driver][0] + pair->center_distance * cos(bend * stage);
+        box->place[driven][1] = box->place[driver][1] + pair->center_distance * sin(bend * stage);
+        box->place[driver][2] = box->place[driven][2] = stage_z[stage];
+
+        gm_motion motion;
+        const gm_body pinion = body_of(box, driver, y), wheel = body_of(box, driven, y);
+        if (gm_motion_of_bodies(box->mesh[stage], &pinion, &wheel, &motion, NULL) != GM_OK) {
+            return 0;
+        }
+        box->zero[driven] -= motion.position.offset / pair->wheel.base_radius;
+    }
+    return 1;
+}
+
+static double kinetic(const double *y) {
+    double energy = 0.0;
+    for (int k = 0; k < GEARS; ++k) {
+        energy += 0.5 * inertia[k] * y[GEARS + k] * y[GEARS + k];
+    }
+    return energy;
+}
+
+int main(void) {
+    const double settled = 0.3, end = 0.4, first_helix = pi / 9.0, second_helix = -pi / 18.0;
+    double y[STATES] = {0.0}, rates[STATES], before[STATES] = {0.0};
+    gearbox box = {.mesh = {mesh_of(teeth[INPUT], teeth[LARGE], 2e-3, first_helix),
+                            mesh_of(teeth[SMALL], teeth[OUTPUT], 3e-3, second_helix)}};
+    if (box.mesh[0] == NULL || box.mesh[1] == NULL || !assemble(&box)) {
+        return 1;
+    }
+    y[GEARS + INPUT] = speed;
+    y[GEARS + LARGE] = y[GEARS + SMALL] = -speed * teeth[INPUT] / teeth[LARGE];
+    y[GEARS + OUTPUT] = -y[GEARS + SMALL] * teeth[SMALL] / teeth[OUTPUT];
+
+    SUNContext context;
+#if SUNDIALS_VERSION_MAJOR < 7
+    SUNContext_Create(NULL, &context);
+#else
+    SUNContext_Create(SUN_COMM_NULL, &context);
+#endif
+    N_Vector state = N_VMake_Serial(STATES, y, context),
+             unused = N_VMake_Serial(STATES, rates, context);
+    SUNMatrix matrix = SUNDenseMatrix(STATES, STATES, context);
+    SUNLinearSolver solver = SUNLinSol_Dense(state, matrix, context);
+    void *cvode = CVodeCreate(CV_BDF, context);
+    sunrealtype time = 0.0;
+    int failed = CVodeInit(cvode, derivatives, 0.0, state) ||
+                 CVodeSStolerances(cvode, 1e-9, 1e-10) || CVodeSetUserData(cvode, &box) ||
+                 CVodeSetMaxNumSteps(cvode, 1000000) || CVodeSetLinearSolver(cvode, solver, matrix);
+
+    /* Behind the start the means are taken and the energies counted. */
+    failed = failed || CVode(cvode, settled, state, &time, CV_NORMAL) < 0 ||
+             derivatives(time, state, unused, &box);
+    for (int k = 0; k < STATES; ++k) {
+        before[k] = y[k];
+    }
+    const double energy = kinetic(y) + box.stored;
+    failed = failed || CVode(cvode, end, state, &time, CV_NORMAL) < 0 ||
+             derivatives(time, state, unused, &box);
+
+    /* A right-handed pinion that drives counter-clockwise is pushed along +z, its wheel the other way; the small gear is
+     * left-handed and turns clockwise. */
+    const gm_pair *first = gm_mesh_pair(box.mesh[0]), *second = gm_mesh_pair(box.mesh[1]);
+    const double first_force = torque / first->pinion.base_radius;
+    const double second_force = torque * teeth[LARGE] / teeth[INPUT] / second->pinion.base_radius;
+    const double known =
+        -first_force * tan(first->base_helix_angle) - second_force * tan(second->base_helix_angle);
+    const double axial = (y[AXIAL] - before[AXIAL]) / (end - settled);
+    const double in = y[IN] - before[IN], out = y[OUT] - before[OUT], loss = y[LOSS] - before[LOSS];
+    const double open = in - out - loss - (kinetic(y) + box.stored - energy);
+    printf("axial force of the shaft: %.1f N, by both helices %.1f N\n", axial, known);
+    printf("energy: %.3f J in, %.3f J out, %.2g J lost, %.2g %% open\n", in, out, loss,
+           100.0 * open / in);
+
+    CVodeFree(&cvode);
+    SUNLinSolFree(solver);
+    SUNMatDestroy(matrix);
+    N_VDestroy(state);
+    N_VDestroy(unused);
+    SUNContext_Free(&context);
+    free(box.mesh[0]);
+    free(box.mesh[1]);
+    return failed || fabs(open) > 1e-3 * in || fabs(axial - known) > 1e-3 * fabs(second_force);
+}
