@@ -291,6 +291,27 @@ class Script(unittest.TestCase):
         return subprocess.run([os.path.join(ROOT, "scripts", "cases"), "--gearsim", GEARSIM, *arguments],
                               cwd=folder, capture_output=True, text=True, stdin=subprocess.DEVNULL, timeout=240)
 
+    def test_loads_along_a_misaligned_face(self):
+        result = self.cases("misaligned", "--no-pictures")
+        self.assertEqual((result.returncode, result.stderr), (0, ""))
+        with open(os.path.join(ROOT, "data", "misaligned", "README.md"), encoding="utf-8") as file:
+            page = file.read()
+        found = {}
+        for name, teeth, mean, factor, centre in re.findall(
+                r"(?m)^  (.*), (.*): mean (\d+) N/mm, ([\d.]+) of it at most, centre ([-\d.]+) mm", result.stdout):
+            found[name, teeth] = float(factor), float(centre)
+            self.assertIn(f"{factor}, {centre.replace('-0.0', '0.0')} mm |", page)
+            # Torque over base radius and face; 17 stations do not see the ends of a line.
+            self.assertAlmostEqual(int(mean), 170579 / 633.385 / 360 * 1e3, delta=10)
+
+        # The bearings feel the same centre, the largest load is that of slices; elastic teeth gather more of it.
+        for name, factor, centre in (("skew 0.1 mrad", 1.449, -26.9), ("skew 0.3 mrad", 2.320, -76.0),
+                                     ("inclination 0.3 mrad", 1.567, -33.9)):
+            rigid, elastic = (found[name, teeth] for teeth in ("constant stiffness", "elastic teeth"))
+            self.assertAlmostEqual(rigid[0], factor, delta=0.02)
+            self.assertAlmostEqual(rigid[1], centre, delta=0.5)
+            self.assertGreater(elastic[0], 1.1 * rigid[0])
+
     def test_pictures_show_the_curves(self):
         with tempfile.TemporaryDirectory() as folder:
             result = self.cases("clunk", "nrel5mw", "--output", "made", folder=folder)
