@@ -59,12 +59,18 @@ def loss_of_contact(run):
 
 def near_tooth_orders(spectra, gears, tooth_orders, width):
     """[frame, bin]: within a share `width` of the frequency of a tooth order."""
-    mesh_Hz = gears.pinion_teeth * spectra.speed_rpm[:, None] / 60.0
-    ratio = spectra.frequency_Hz[None, :] / mesh_Hz
-    near = np.zeros(ratio.shape, dtype=bool)
+    bins = len(spectra.frequency_Hz)
+    mesh_bin = gears.pinion_teeth * spectra.speed_rpm / 60.0 / spectra.frequency_Hz[1]
+    frame = np.arange(len(mesh_bin))
+
+    # + 1 where the neighbourhood of an order begins, - 1 behind its end: the sum along a frame counts those around a bin.
+    change = np.zeros((len(mesh_bin), bins + 1), dtype=np.int8)
     for k in tooth_orders:
-        near |= np.abs(ratio / k - 1.0) <= width
-    return near
+        first = np.ceil(mesh_bin * k * (1.0 - width)).astype(int)
+        behind = np.floor(mesh_bin * k * (1.0 + width)).astype(int) + 1
+        change[frame, np.minimum(first, bins)] += 1
+        change[frame, np.minimum(behind, bins)] -= 1
+    return np.cumsum(change[:, :bins], axis=1, dtype=np.int8) > 0
 
 
 def energy_shares(spectra, gears):

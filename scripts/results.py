@@ -223,6 +223,9 @@ def _read_csv(path, wanted):
 
 def _count_rows(path, names, head_lines):
     """Number of rows below the head; each must have as many fields as the header."""
+    rows = _count_even_rows(path, len(names) - 1, head_lines)
+    if rows is not None:
+        return rows
     rows = 0
     with open(path, encoding="utf-8", errors="replace") as file:
         for number, line in enumerate(itertools.islice(file, head_lines, None), start=head_lines + 1):
@@ -232,6 +235,21 @@ def _count_rows(path, names, head_lines):
             if line.count(",") != len(names) - 1:
                 raise RunError(f"{path}:{number}: must have {len(names)} columns, as the header has "
                                f"(got {line.count(',') + 1})")
+    return rows
+
+
+def _count_even_rows(path, commas, head_lines):
+    """The same where all lines below the head have so many commas, which is told quickly; None where one has not."""
+    rows = 0
+    with open(path, "rb") as file:
+        for _ in range(head_lines):
+            file.readline()
+        while block := file.read(1 << 22):
+            block = np.frombuffer(block + file.readline(), dtype=np.uint8)
+            ends = np.flatnonzero(block == 10)
+            if (np.searchsorted(np.flatnonzero(block == 44), ends) != commas * np.arange(1, len(ends) + 1)).any():
+                return None
+            rows += len(ends)
     return rows
 
 

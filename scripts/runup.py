@@ -8,10 +8,11 @@ Window functions and their scaling: G. Heinzel, A. Ruediger, R. Schilling, "Spec
 estimation by the Discrete Fourier transform", 2002 (amplitude scaling by the sum of the window, density
 scaling by its equivalent noise bandwidth).
 """
+import itertools
 import math
 
 import numpy as np
-from scipy import signal
+from scipy import fft, signal
 
 import tracking
 from results import Run, RunError, read_run  # noqa: F401  (a run-up is read and analysed by one module)
@@ -90,16 +91,23 @@ class Spectra:
 def frames_of(run, window, length, hop, padding=1):
     """Windowed spectra of the force without its mean: pieces (first frame, squared peak amplitude [frame, bin] in N^2).
 
-    In pieces, as all windowed frames at once would fill the memory.
+    In pieces, as all windowed frames at once would fill the memory. The window is followed by zeros up to at least
+    `padding` times its length.
     """
     if len(run.force_N) < length:
         raise RunError(f"the run has {len(run.force_N)} rows, a window needs {length}")
     weight = signal.get_window(window, length)
     force_N = run.force_N - run.force_N.mean()
+    weight *= 2.0 / weight.sum()
     frames = np.lib.stride_tricks.sliding_window_view(force_N, length)[::hop]
     for first in range(0, len(frames), 64):
-        spectrum = np.fft.rfft(frames[first : first + 64] * weight, padding * length, axis=1)
-        yield first, np.abs(2.0 * spectrum / weight.sum()) ** 2
+        spectrum = fft.rfft(frames[first : first + 64] * weight, padded(length, padding), axis=1)
+        yield first, spectrum.real**2 + spectrum.imag**2
+
+
+def padded(length, padding):
+    """Rows of a window and the zeros behind it: not fewer than asked for, and as many as are transformed quickly."""
+    return fft.next_fast_len(padding * length, real=True) if padding > 1 else length
 
 
 def middles_of(values, length, hop):
@@ -193,7 +201,7 @@ def speed_map(run, window="hann", length=STANDARD_LENGTH, hop=STANDARD_HOP, rows
     mean_rpm = np.bincount(row_of, speed_rpm, rows) / np.maximum(count, 1)
 
     # Sums over the frames of each row, at the same frequency and at the same order.
-    frequency_Hz = np.fft.rfftfreq(PADDING * length, 1.0 / run.rate_Hz)
+    frequency_Hz = np.fft.rfftfreq(padded(length, PADDING), 1.0 / run.rate_Hz)
     fixed, moving = np.zeros((2, rows, len(frequency_Hz)))
     for first, pieces in frames_of(run, window, length, hop, PADDING):
         for frame, power in enumerate(pieces, start=first):
@@ -230,8 +238,9 @@ def single_order_rpm(run):
     return math.sqrt(60.0 * CUT_TURNS * run.sweep_rpm_per_s() / SWEEP_OF_CUT)
 
 
-def order_cut(run, order, teeth):
-    """Amplitude of one order: (row in the middle of each window, N), NaN where its frequency is not trusted.
+def order_cuts(run, order, multiples, teeth):
+    """Amplitudes of rising whole multiples of an order: (row in the middle of each window, N [multiple, window]), NaN where a
+    frequency is not trusted.
 
     The force is turned back by order times the angle, so that the order stands still, and averaged under a window. That
     follows the order exactly, however fast it sweeps. What remains to be lost is what its amplitude changes within
@@ -240,7 +249,6 @@ def order_cut(run, order, teeth):
     hop_s = min(CUT_HOP_S, (run.time_s[-1] - run.time_s[0]) / CUT_POINTS)
     hop = max(1, int(round(hop_s * run.rate_Hz)))
     force_N = run.force_N - run.force_N.mean()
-    still = force_N * np.exp(-1j * np.remainder(order * run.angle_rad, 2.0 * np.pi))
 
     # Windows that lie within the run, each as long as its speed wants it.
     middle = np.arange(hop // 2, len(force_N), hop)
@@ -250,9 +258,20 @@ def order_cut(run, order, teeth):
     if not len(middle):
         raise RunError(f"the run has {len(force_N)} rows, too few for an order cut")
 
-    weights = {int(h): tracking.even_weight(2 * int(h)) for h in np.unique(half)}
-    amplitude_N = np.array([2.0 * abs(still[m - h : m + h] @ weights[int(h)]) for m, h in zip(middle, half)])
-    amplitude_N[order * run.speed_rpm[middle] / 60.0 > run.trusted_Hz] = np.nan
+    # Some windows at a time, so that what is turned back is never all of the run.
+    amplitude_N, weight = np.empty((len(multiples), len(middle))), np.empty(0)
+    for piece in np.array_split(np.arange(len(middle)), max(1, len(middle) // 64)):
+        low, high = (middle - half)[piece].min(), (middle + half)[piece].max()
+        back = np.exp(-1j * np.remainder(order * run.angle_rad[low:high], 2.0 * np.pi))
+        powers = itertools.accumulate(itertools.repeat(back, max(multiples)), np.multiply)
+        still = [force_N[low:high] * power for multiple, power in enumerate(powers, 1) if multiple in multiples]
+        for window in piece:
+            if len(weight) != 2 * half[window]:
+                weight = tracking.even_weight(2 * half[window])
+            part = slice(middle[window] - half[window] - low, middle[window] + half[window] - low)
+            amplitude_N[:, window] = [2.0 * abs(values[part] @ weight) for values in still]
+
+    amplitude_N[np.outer(multiples, order * run.speed_rpm[middle] / 60.0) > run.trusted_Hz] = np.nan
     return middle, amplitude_N
 
 
@@ -340,7 +359,6 @@ def block_starts(run, turn, turns):
 
 def order_blocks(run, turns, highest_order):
     """Spectra of blocks of `turns` pinion turns, Hann, overlapping by half; None if the run has none."""
-    lowest_rpm = BLOCK_MIN_SHARE_OF_SPEED * run.speed_rpm.max()
     turn = run.angle_rad / (2.0 * np.pi)
     starts = block_starts(run, turn, turns)
     if not len(starts):
@@ -348,17 +366,17 @@ def order_blocks(run, turns, highest_order):
 
     over_angle = tracking.OverAngle(run)
 
-    # So many samples per turn that the slowest block holds the whole bandwidth: nothing is aliased.
-    samples = turns * int(2 ** np.ceil(np.log2(over_angle.samples_per_turn(highest_order, lowest_rpm))))
-    weight = signal.get_window("hann", samples)
-
-    # Each block over even steps of the angle, and its spectrum up to the highest order.
+    # Each block over even steps of the angle, so many that it holds the whole bandwidth and nothing is aliased, and its
+    # spectrum up to the highest order.
     bins = int(highest_order * turns) + 1
     power, speeds_rpm = np.empty((len(starts), bins), dtype=np.float32), np.empty((3, len(starts)))
     for i, start in enumerate(starts):
-        spectrum = np.fft.rfft(over_angle.piece(start, turns, samples) * weight)[:bins]
-        power[i] = np.abs(2.0 * spectrum / weight.sum()) ** 2
         first, last = np.searchsorted(turn, (start, start + turns))
         inside_rpm = run.speed_rpm[first:last]
         speeds_rpm[:, i] = inside_rpm.mean(), inside_rpm.min(), inside_rpm.max()
+        samples = math.ceil(turns * over_angle.samples_per_turn(highest_order, inside_rpm.min()))
+        samples = fft.next_fast_len(samples, real=True)
+        weight = signal.get_window("hann", samples)
+        spectrum = fft.rfft(over_angle.piece(start, turns, samples) * weight)[:bins]
+        power[i] = np.abs(2.0 * spectrum / weight.sum()) ** 2
     return OrderBlocks(turns, *speeds_rpm, power, run.trusted_Hz, run.sweep_rpm_per_s())

@@ -40,7 +40,10 @@ class OverAngle:
         self.turn = run.angle_rad / (2.0 * np.pi)
         self.rate_Hz = run.rate_Hz
         self.values = signal.resample_poly(run.force_N - run.force_N.mean(), 2, 1)
-        self.fine_turn = np.interp(np.arange(len(self.values)) / 2.0, np.arange(len(self.turn)), self.turn)
+
+        # The angle half-way between two rows is their mean.
+        self.fine_turn = np.repeat(self.turn, 2)
+        self.fine_turn[1:-1:2] += 0.5 * np.diff(self.turn)
 
     def piece(self, start, turns, samples):
         """So many samples at even steps of the angle."""

@@ -151,7 +151,7 @@ class Speeds(unittest.TestCase):
         for start_rpm, end_rpm in ((600, 6000), (6000, 600), (-600, -6000), (3000, -3000)):
             run = run_up(lambda t, angle: 2.0 * np.cos(45 * angle), start_rpm, end_rpm)
             self.assertTrue((np.diff(run.angle_rad) >= 0).all())
-            middle, found_N = runup.order_cut(run, 45, 45)
+            middle, (found_N,) = runup.order_cuts(run, 45, [1], 45)
             counts = run.speed_rpm[middle] > 300
             np.testing.assert_allclose(found_N[counts], 2.0, rtol=0.01)
             line, _ = blocks_of(run).line(45)
@@ -179,12 +179,19 @@ class Orders(unittest.TestCase):
     def test_cut_shows_the_amplitude_of_its_order_alone(self):
         run = run_up(lambda t, angle: 3.0 * np.cos(45 * angle + 1.0) + 0.5 * np.sin(90 * angle))
         for order, amplitude_N in ((45, 3.0), (90, 0.5), (135, 0.0)):
-            _, found_N = runup.order_cut(run, order, 45)
+            _, (found_N,) = runup.order_cuts(run, order, [1], 45)
             np.testing.assert_allclose(found_N[np.isfinite(found_N)], amplitude_N, atol=0.01)
+
+        # Several at once: phases of their own, one left out between two, and each trusted as far as its frequency goes.
+        middle, found_N = runup.order_cuts(run, 45, (1, 2, 4), 45)
+        for multiple, amplitude_N, amplitudes_N in zip((1, 2, 4), (3.0, 0.5, 0.0), found_N):
+            trusted = multiple * 45 * run.speed_rpm[middle] / 60.0 <= run.trusted_Hz
+            np.testing.assert_array_equal(np.isfinite(amplitudes_N), trusted)
+            np.testing.assert_allclose(amplitudes_N[trusted], amplitude_N, atol=0.01)
 
     def test_cut_follows_an_amplitude_over_the_speed(self):
         run = run_up(lambda t, angle: (1.0 + t) * np.cos(45 * angle))
-        middle, found_N = runup.order_cut(run, 45, 45)
+        middle, (found_N,) = runup.order_cuts(run, 45, [1], 45)
         np.testing.assert_allclose(found_N, 1.0 + (run.speed_rpm[middle] - 600.0) / 540.0, rtol=0.01)
 
     def test_cut_shows_a_resonance_that_a_fast_run_up_passes(self):
@@ -202,7 +209,7 @@ class Orders(unittest.TestCase):
                     return (response(ratio, damping) * np.exp(1j * order * angle)).real
 
                 run = run_up(force, start_rpm, 9000.0, duration_s)
-                middle, found_N = runup.order_cut(run, order, 45)
+                middle, (found_N,) = runup.order_cuts(run, order, [1], 45)
                 ratio = order * run.speed_rpm[middle] / 60.0 / EIGENFREQUENCY_HZ
                 near = (ratio > 0.7) & (ratio < 1.5)
                 expected_N = np.abs(response(ratio, damping))[near]
@@ -216,7 +223,7 @@ class Orders(unittest.TestCase):
 
     def test_cut_ends_where_the_rate_ends(self):
         run = run_up(lambda t, angle: 0.0)
-        middle, found_N = runup.order_cut(run, 180, 45)
+        middle, (found_N,) = runup.order_cuts(run, 180, [1], 45)
         np.testing.assert_array_equal(np.isnan(found_N), 3.0 * run.speed_rpm[middle] > 0.4 * 25600)
         self.assertTrue(np.isnan(found_N).any())
 
@@ -526,6 +533,15 @@ class CommandLine(unittest.TestCase):
     def test_missing_column_is_named(self):
         path = self.write(columns=COLUMNS.replace("pinion_angle_rad", "wheel_angle_rad"))
         self.assert_input_error(self.campbell(path), "pinion_angle_rad", "output.columns")
+
+    def test_rows_with_other_numbers_of_fields_are_named(self):
+        """Also where a row has as many too many as the next one lacks; comments and empty lines are no rows."""
+        good = ",".join("1" * (COLUMNS.count(",") + 1))
+        for tail, line in ((f"{good},7\n{good.rpartition(',')[0]}\n", 0), (f"\n# a note, of two, or three\n{good},7\n", 2)):
+            path = self.write(tail=tail)
+            with open(path, encoding="utf-8") as file:
+                rows = len(file.read().splitlines()) - len(tail.splitlines())
+            self.assert_input_error(self.campbell(path), f":{rows + line + 1}: must have {COLUMNS.count(',') + 1} columns")
 
     def test_incomplete_run_is_drawn_with_a_warning(self):
         path = self.write(tail="# incomplete: interrupted\n")
