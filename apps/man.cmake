@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 
 # A manual page of what a program says with --help, so that there is one text of its use:
-#     cmake -DPROGRAM=FILE -DVERSION=0.1.0 -DPAGE=gearsim.1 -P man.cmake
+#     cmake -DPROGRAM=FILE -DVERSION=0.2.0 -DPAGE=gearsim.1 -P man.cmake
 # A program that does not run here, for another machine or without its packages, gets none.
 get_filename_component(NAME "${PAGE}" NAME_WE)
 set(ENV{COLUMNS} 80)

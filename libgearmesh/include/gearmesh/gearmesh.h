@@ -73,9 +73,9 @@ extern "C" {
 
 /** Version of this header; gm_version() gives that of the library. */
 #define GM_VERSION_MAJOR  0
-#define GM_VERSION_MINOR  1       /**< as above */
+#define GM_VERSION_MINOR  2       /**< as above */
 #define GM_VERSION_PATCH  0       /**< as above */
-#define GM_VERSION_STRING "0.1.0" /**< the three of them */
+#define GM_VERSION_STRING "0.2.0" /**< the three of them */
 
 /** What makes a function of the library visible to its users. */
 #if defined(_WIN32) && defined(GEARMESH_SHARED)
