@@ -46,13 +46,18 @@ do for [format in formats] {
     set xtics pinion_teeth
     set mxtics default
     spectrum = 'spectrum.dat'
-    if (eigenfrequency > 0) {
+    if (!has_spectrum) {
+        set label 3 'no order spectrum of so few turns' at graph 0.5, graph 0.5 center font ',12' textcolor rgb grey
+        unset key
+        plot NaN
+        unset label 3
+    } else { if (eigenfrequency > 0) {
         plot spectrum using 1:2 with lines lw 0.8 lc rgb '#bdbdbd' title 'all speeds', \
             spectrum using 1:3 with lines lw 0.8 lc rgb '#0072b2' \
                 title 'above the eigenfrequency only'
     } else {
         plot spectrum using 1:2 with lines lw 0.8 lc rgb '#bdbdbd' title 'all speeds'
-    }
+    } }
     unset multiplot
     unset output
 }

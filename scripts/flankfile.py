@@ -71,6 +71,8 @@ def _other_delimiter(line):
 
 
 def _check_delimiter(path, number, line):
+    if re.match(r"\s*[;\[]", line):
+        _fail(path, number, "this is a parameter file; a flank file or measured traces are right")
     delimiter = _other_delimiter(line)
     if delimiter:
         _fail(path, number, f"the fields are separated by {delimiter}; commas, with a point as decimal sign, are right")

@@ -368,6 +368,7 @@ def _read_text(path):
 
     Where commas separate nothing, a comma in a number is its point.
     """
+    results.refuse_other_files(path, "a record as text, HDF5, sound or UFF58")
     with open(path, encoding="utf-8-sig", errors="replace") as file:
         lines = [line.rstrip("\r\n") for line in file]
     filled = [(number, line) for number, line in enumerate(lines, start=1) if line.strip() and not line.startswith("#")]

@@ -3,6 +3,7 @@
 """What gearsim writes, CSV or HDF5, as columns of numbers and what the file says of its origin."""
 import itertools
 import os
+import re
 
 import numpy as np
 
@@ -115,6 +116,8 @@ def is_hdf5(path):
 def _wanted(path, names):
     """Those of the names that an analysis reads, in the order of Run."""
     missing = [name for name in COLUMNS if name not in names]
+    if "time_s" in missing and "te_um" in names:
+        raise RunError(f"{path}: must be a dynamic run (got a static one, which `plot` draws)")
     if missing:
         raise RunError(f"{path}: no column {', '.join(missing)}; add it to output.columns of the run")
     return [name for name in COLUMNS + (PAIRS_COLUMN,) if name in names]
@@ -188,6 +191,18 @@ def _text(value):
 # ----------------------------------------------------------------------------------------------------
 
 
+def refuse_other_files(path, right):
+    """Tell of a file that is no table at all by what it is; `right` says what would be right."""
+    with open(path, "rb") as file:
+        begin = file.read(65536)
+    if b"\0" in begin:
+        raise RunError(f"{path}: must be {right} (got a file that is no text)")
+    lines = (line.strip() for line in begin.decode("utf-8-sig", errors="replace").splitlines())
+    first = next((line for line in lines if line and line[0] not in "#;"), "")
+    if re.fullmatch(r"\[\w+\]\s*([;#].*)?", first):
+        raise RunError(f"{path}: must be {right} (got a parameter file, whose result `gearsim {program.shown(path)}` writes)")
+
+
 def read_head(path):
     """Provenance lines `# section.key = value`, the column names, and how many lines both take."""
     provenance = {}
@@ -206,6 +221,7 @@ def read_head(path):
 
 def _read_csv(path, wanted):
     """The same of a CSV."""
+    refuse_other_files(path, "a result of gearsim, CSV or HDF5")
     provenance, names, head_lines = read_head(path)
     chosen = wanted(path, names)
     used = [names.index(name) for name in chosen]

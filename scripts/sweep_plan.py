@@ -81,6 +81,8 @@ def varied(text):
         if not count.isdigit() or not 1 <= int(count) <= MOST_RUNS:
             raise InputError(f"--vary {text}: '{count}' is no number of values; {RIGHT}")
         return Grid(key, [text_of(v) for v in np.linspace(number(parts[0], text), number(parts[1], text), int(count))])
+    if len(parts) == 2 and re.fullmatch(r"\s*[-+.\deE]+\s*", parts[0]):
+        raise InputError(f"--vary {text}: a range must have a number of values; {RIGHT}")
     values = [value.strip() for value in spec.split(",")]
     if not all(values) or len(set(values)) != len(values):
         raise InputError(f"--vary {text}: values that all differ are right; {RIGHT}")

@@ -12,6 +12,7 @@ bottom = 100.0 / height
 step = (upper - bottom) / panels
 set border 3
 set grid ytics lt 1 lw 0.6 lc rgb '#d8d8d8'
+if (tics ne '') { eval 'set xtics (' . tics . ')' } # at the values themselves where they are few
 set style fill transparent solid 0.18 noborder
 right = curves > 1 ? 0.83 : 0.97
 

@@ -73,6 +73,15 @@ class Job:
         except InputError as error:
             return {"failed": str(error)}
 
+    def check_keys(self, row):
+        """Refuses keys that gearsim does not know, before anything is written; values may be wrong in single runs."""
+        values = {key: value for key, value in zip(self.keys, row) if not key.startswith("class.")}
+        try:
+            self._call(self.gearsim, "--quiet", "--check", *self._set(values))
+        except InputError as error:
+            if "unknown key" in str(error) or "unknown section" in str(error):
+                raise
+
     def _flanks(self, index, values):
         """Keys of flanks that are made for this run; takes what says so out of the values."""
         made = {}

@@ -143,7 +143,15 @@ class Runs(Case):
         self.assertIn("(got many)", many["failed"])
         self.assertEqual(many["loads.1.te_peak_to_peak_um"], "")
         self.assertIn("warning: 2 runs failed", done.stderr)
-        self.assertEqual(call("sweep", "p.ini", "--vary", "a.b=1,2", "--output", "x", folder=self.folder).returncode, 1)
+        none = call("sweep", "p.ini", "--vary", "load.mean_Nm=0,many", "--output", "x", folder=self.folder)
+        self.assertEqual((none.returncode, none.stderr.splitlines()[-1]), (1, "sweep: no run has a result"))
+
+    def test_a_key_that_is_not_there_is_told_before_anything_is_written(self):
+        for vary, message in (("load.foo=1,2", "load.foo: unknown key"), ("load.mean_Nm=1:2", "must have a number of values")):
+            done = call("sweep", "p.ini", "--vary", vary, "--output", "x", folder=self.folder)
+            self.assertEqual(done.returncode, 2)
+            self.assertIn(message, done.stderr)
+        self.assertEqual([name for name in os.listdir(self.folder) if name.startswith("x")], [])
 
     def test_a_killed_sweep_goes_on_with_nothing_lost_or_made_twice(self):
         arguments = ("--vary", "load.mean_Nm=100:400:9", "--set", "analysis.positions=40", "--jobs", "2",

@@ -288,6 +288,20 @@ class Reports(Case):
 
     def test_bad_input(self):
         self.write("a.csv", HEAD, self.run_up())
+        static = self.static()
+        self.write("s.csv", HEAD, static)
+        for name, text in (("p.ini", b"; A drive.\n[gears]\nz = 2\n"), ("p.png", b"\x89PNG\r\n\x1a\n\0\0")):
+            with open(os.path.join(self.folder, name), "wb") as file:
+                file.write(text)
+        for script, name, message in (("campbell", "s.csv", "must be a dynamic run"), ("orders", "p.png", "no text"),
+                                      *((script, name, message) for script in ("summary", "plot", "report", "campbell", "orders")
+                                        for name, message in (("p.ini", "parameter file"), ("p.png", "no text")))):
+            result = script_case.call(script, name, folder=self.folder)
+            self.assertEqual(result.returncode, 2, script)
+            self.assertIn(message, result.stderr)
+            self.assertNotIn("Traceback", result.stderr)
+        for name in ("s.csv", "p.ini", "p.png"):
+            os.remove(os.path.join(self.folder, name))
         for arguments, message in ((["nowhere.csv"], "nowhere.csv"), (["a.csv", "--output", "no/where.html"], "no such folder"),
                                    (["a.csv", "--at", "1"], "--at: must be")):
             result = script_case.call("report", *arguments, folder=self.folder)
