@@ -256,7 +256,7 @@ static double coefficient(const gm_mesh_params *law, const gm_pair *pair, double
                    0.2) *
                pow(1e3 * law->oil_viscosity, -0.05) * pow(1e6 * law->roughness, 0.25);
     case GM_FRICTION_BENEDICT_KELLEY:
-        return fmax(0.0, 0.0127 * log10(29.66 * line_load * per_cos * 1e-3 /
+        return fmax(0.0, 0.0127 * log10(29.66 * line_load * per_cos /
                                         (1e3 * law->oil_viscosity * v * rolling * rolling)));
     default:
         return law->friction_coefficient;

@@ -694,7 +694,14 @@ static void coefficients_are_those_of_their_laws(void) {
                   1e-9);
     params.friction_law = GM_FRICTION_BENEDICT_KELLEY;
     GM_ASSERT_REL(coefficient_at(&pair, &params, phase, speed, &r),
-                  0.0127 * log10(29.66 * per_mm / (50.0 * v * v_sum * v_sum)), 1e-9);
+                  0.0127 * log10(29.66 * 1e3 * per_mm / (50.0 * v * v_sum * v_sum)), 1e-9);
+
+    /* In the units of its authors: 3.17e8, lbf/in, cP, in/s, three digits. */
+    const double inch = 0.0254, pound = 4.4482216;
+    const double imperial = 3.17e8 * (per_mm * 1e3 * inch / pound) /
+                            (50.0 * (v / inch) * (v_sum / inch) * (v_sum / inch));
+    GM_ASSERT_ABS(coefficient_at(&pair, &params, phase, speed, &r), 0.0127 * log10(imperial),
+                  0.0127 * 0.005 / 3.17 / log(10.0));
     params.friction_law = GM_FRICTION_CONSTANT;
     params.friction_coefficient = 0.07;
     GM_ASSERT_REL(coefficient_at(&pair, &params, phase, speed, &r), 0.07, 1e-9);

@@ -56,6 +56,46 @@ static void published_stiffness_comes_out(void) {
     GM_ASSERT_ABS(gm_iso6336_mesh_stiffness(&pair, 0.898) / per_mm_um, 18.632, 5e-4);
 }
 
+/*
+ * KISSsoft's reports of the planetary stages: sun and planet, planet and ring, with the same C_R of 0.862. Both values of
+ * a stage to half a unit of their last place against each other; each to that of C_R. In stage 1 the planet has fewer
+ * teeth than the sun that drives it.
+ */
+static void published_stiffness_of_planetary_stages(void) {
+    static const struct {
+        int sun, planet, ring;
+        double module, sun_distance, ring_distance, shift[3], inner, outer;
+    } stages[] = {
+        {19, 17, -56, 45e-3, 0.863, 0.863, {0.6170, 0.8021, -0.5013}, 12.362, 13.289},
+        {18, 36, -93, 21e-3, 0.584, 0.584, {0.3890, 0.5039, 0.1171}, 12.240, 14.053},
+    };
+    for (int k = 0; k < 2; ++k) {
+        gm_test_context("stage %d", k + 1);
+        gm_pair_params params = plain_spur(stages[k].sun, stages[k].planet);
+        params.normal_module = stages[k].module;
+        params.center_distance = stages[k].sun_distance;
+        params.pinion_profile_shift = stages[k].shift[0];
+        params.wheel_profile_shift = stages[k].shift[1];
+        params.pinion_rack_dedendum = params.wheel_rack_dedendum = 1.25;
+        gm_pair pair = pair_of(&params);
+        const double inner = gm_iso6336_single_stiffness(&pair, 0.862) / per_mm_um;
+
+        params.pinion_teeth = stages[k].planet;
+        params.wheel_teeth = stages[k].ring;
+        params.center_distance = stages[k].ring_distance;
+        params.pinion_profile_shift = stages[k].shift[1];
+        params.wheel_profile_shift = stages[k].shift[2];
+        params.pinion_tip_alteration = k == 0 ? -0.2413 : -0.08338; /* of the mesh with the sun */
+        pair = pair_of(&params);
+        const double outer = gm_iso6336_single_stiffness(&pair, 0.862) / per_mm_um;
+        GM_ASSERT_REL(inner, stages[k].inner, 0.0005 / 0.862);
+        GM_ASSERT_REL(outer, stages[k].outer, 0.0005 / 0.862);
+        GM_ASSERT_REL(outer / inner, stages[k].outer / stages[k].inner,
+                      0.0005 / 12.24 + 0.0005 / 13.289);
+    }
+    gm_test_context("%s", "");
+}
+
 /* Without shift and helix: 0.8 / (0.04723 + 0.15551 / 20 + 0.25791 / 40) = 0.8 / 0.06145325. */
 static void spur_gears_without_shift_by_hand(void) {
     gm_pair_params params = plain_spur(20, 40);
@@ -217,6 +257,7 @@ static void gears_without_a_stiffness_are_refused(void) {
 int main(int argc, char **argv) {
     static const gm_test tests[] = {
         GM_TEST(published_stiffness_comes_out),
+        GM_TEST(published_stiffness_of_planetary_stages),
         GM_TEST(spur_gears_without_shift_by_hand),
         GM_TEST(a_ring_is_as_stiff_as_a_rack),
         GM_TEST(profile_shifts_by_hand),

@@ -71,7 +71,7 @@ gmi_friction gmi_friction_of(const gm_mesh_params *params, const gm_pair *pair,
         break;
     case GM_FRICTION_BENEDICT_KELLEY:
         friction.factor =
-            29.66 * friction.normal / (milli * pair->face_width * milli * params->oil_viscosity);
+            29.66 * friction.normal / (pair->face_width * milli * params->oil_viscosity);
         break;
     default:
         friction.factor = params->friction_coefficient;
@@ -136,8 +136,8 @@ static gmi_varying sliding_speed(const gmi_sliding *s, const gmi_part_force *par
  * ------------------------------------------------------------------------------------------- */
 
 /*
- * [BenedictKelley]: 0.0127 lg(29.66 (F/b) / (eta |v| v_sum^2)), with sqrt(v^2 + v0^2) for |v|. Not below 0, where the
- * formula does not hold.
+ * [BenedictKelley]: 0.0127 lg(29.66 (F/b) / (eta |v| v_sum^2)), N/m and mPa s, with sqrt(v^2 + v0^2) for |v|. Not below 0,
+ * where the formula does not hold.
  */
 static gmi_varying benedict_kelley(const gmi_sliding *s, const gmi_varying *load,
                                    const gmi_varying *speed) {

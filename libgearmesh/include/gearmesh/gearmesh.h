@@ -715,7 +715,7 @@ enum gm_friction_law {
         1, /**< mean over the mesh, of Schlenk [ISO14179]: 0.048 (F/b / (v_sum rho_red))^0.2 eta^-0.05 Ra^0.25, mineral
                 oil; N/mm, m/s, mm, mPa s, um; v_sum and rho_red in the pitch point */
     GM_FRICTION_BENEDICT_KELLEY =
-        2 /**< by place [BenedictKelley]: 0.0127 lg(29.66 (F/b) / (eta |v| v_sum^2)), N/mm, mPa s, m/s, |v| taken as
+        2 /**< by place [BenedictKelley]: 0.0127 lg(29.66 (F/b) / (eta |v| v_sum^2)), N/m, mPa s, m/s, |v| taken as
                sqrt(v^2 + v0^2) */
 };
 
