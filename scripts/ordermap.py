@@ -194,7 +194,7 @@ class Analysis:
     @property
     def method_text(self):
         if self.options.method == "vold-kalman":
-            return f"Orders by a Vold-Kalman filter, {self.bandwidth:.2g} orders wide"
+            return f"Orders by a Vold-Kalman filter, {self.bandwidth:.2g} of an order wide"
         low, high = np.min(self.frames.turns), np.max(self.frames.turns)
         turns = f"{low:.3g}" if low == high else f"{low:.3g} to {high:.3g}"
         return f"Orders by resampling over the angle, frames of {turns} turns"

@@ -25,6 +25,7 @@ FEWEST_TURNS, MOST_TURNS = 5, 40
 # The same for single orders: a resonance of RESOLVED_DAMPING is then shown to 1 %. So many turns tell orders 1 apart.
 SWEEP_OF_TRACK, RESOLVED_DAMPING, TURNS_APART = 0.035, 0.02, 2.5
 BANDWIDTH_TURNS, LEAST_BANDWIDTH = 4.0, 0.1  # of a Vold-Kalman filter, times the turns of such a frame
+MOST_BANDWIDTH = 0.5  # of what is 1 order away, as the sidebands of a gear are, 1 % leaks in then
 POINTS = 600  # frames in a record, at most
 PADDING = 8  # between two bins of a map a Hann window then loses 0.3 % at most
 STEPS_OF_BANDWIDTH = 16  # steps of an envelope of the Vold-Kalman filter in 1 / bandwidth
@@ -114,7 +115,8 @@ def fitting_bandwidth(run, apart):
     It is the same at all speeds, and as wide as those of the lower quarter want it.
     """
     turns = SWEEP_OF_TRACK * np.percentile(run.speed_rpm, 25) ** 2 / (60.0 * max(run.sweep_rpm_per_s(), 1e-9))
-    return float(np.clip(BANDWIDTH_TURNS / max(turns, 1e-9), min(LEAST_BANDWIDTH, apart / 2.0), min(1.0, apart / 2.0)))
+    most = min(MOST_BANDWIDTH, apart / 2.0)
+    return float(np.clip(BANDWIDTH_TURNS / max(turns, 1e-9), min(LEAST_BANDWIDTH, most), most))
 
 
 def least_damping(run, frames):

@@ -100,6 +100,13 @@ class Tracking(unittest.TestCase):
             found = tracking.vold_kalman(run, np.array([23.0]), 0.2, rows)
             np.testing.assert_allclose(found, expected, atol=0.01)
 
+    def test_a_sideband_does_not_leak_into_a_tooth_order_of_a_fast_run(self):
+        run = run_of(600, 3000, lambda angle: np.cos(24 * angle))
+        rows = tracking.frames_of(run, 6, 120).row
+        found = tracking.vold_kalman(run, np.array([23.0]), tracking.fitting_bandwidth(run, 23.0), rows)
+        self.assertLess(np.nanmax(found), 0.02)
+        self.assertLess(np.nanmedian(found), 0.0105)
+
     def test_a_resonance_is_shown_where_it_is_said_to_be(self):
         """Peak of 1 / (1 - r^2 + 2 i D r) to 1 % from the damping on that is told."""
         for damping in (0.02, 0.05):
