@@ -1,34 +1,25 @@
 # SPDX-FileCopyrightText: The gearmesh authors
 # SPDX-License-Identifier: BSD-3-Clause
 """
-Two gears in MuJoCo: bodies on hinges, the wheel's shaft free to tilt on springs if wanted. The mesh acts as a passive
-force, from position, rotation and velocity of both bodies.
+Two gears in MuJoCo: bodies on hinges. The mesh acts as a passive force.
+
+    mujoco_gears.py [PICTURE.png]
 """
 import mujoco
 import numpy as np
+from tilting_gears import DRIVE, INERTIA, LOAD, MASS, MESH, PLACE, columns, main, offset, start
 
-import gearmesh
-
-PAIR = gearmesh.Pair(pinion_teeth=45, wheel_teeth=41, normal_module=1.65e-3, normal_pressure_angle=np.radians(16),
-                     helix_angle=np.radians(33), center_distance=0.085, face_width=0.0175, backlash=100e-6)
-MESH = gearmesh.Mesh(PAIR, stiffness=1.05e8, damping=844.361)
-SPEED, DRIVE, LOAD = 1000 * np.pi / 30, 25.0, 20.0  # of the pinion at the start (rad/s), torques (N m)
-
-# Bodies are at the middles of their faces; tilts are joints in front of that of the shaft.
+# Tilts are joints in front of that of the shaft.
+BODY = """
+    <body name="{name}" pos="{place[0]} {place[1]} {place[2]}">
+      {tilts}
+      <joint name="{name}" axis="0 0 1"/>
+      <inertial pos="0 0 0" mass="{mass}" diaginertia="{inertia[0]} {inertia[1]} {inertia[2]}"/>
+    </body>"""
 MODEL = """
 <mujoco>
   <option timestep="2e-6" integrator="RK4" gravity="0 0 0"/>
-  <worldbody>
-    <body name="pinion" pos="0 0 {middle}">
-      <joint name="pinion" axis="0 0 1"/>
-      <inertial pos="0 0 0" mass="1" diaginertia="1.1e-3 1.1e-3 2.1e-3"/>
-    </body>
-    <body name="wheel" pos="{distance} 0 {middle}">
-      {tilts}
-      <joint name="wheel" axis="0 0 1"/>
-      <inertial pos="0 0 0" mass="1" diaginertia="1.1e-3 1.1e-3 2.1e-3"/>
-    </body>
-  </worldbody>
+  <worldbody>{bodies}</worldbody>
 </mujoco>"""
 TILT = '<joint name="tilt_{axis}" axis="{direction}" stiffness="{stiffness}" damping="{damping}"/>'
 
@@ -55,34 +46,27 @@ def simulate(duration, tilt_stiffness=None, tilt_damping=0.0):
     tilts = "" if tilt_stiffness is None else "\n".join(
         TILT.format(axis=axis, direction=direction, stiffness=tilt_stiffness, damping=tilt_damping)
         for axis, direction in (("x", "1 0 0"), ("y", "0 1 0")))
-    model = mujoco.MjModel.from_xml_string(
-        MODEL.format(distance=PAIR.center_distance, middle=PAIR.face_width / 2, tilts=tilts))
+    bodies = "".join(BODY.format(name=name, place=place, mass=MASS, inertia=INERTIA, tilts=tilts if name == "wheel" else "")
+                     for name, place in PLACE.items())
+    model = mujoco.MjModel.from_xml_string(MODEL.format(bodies=bodies))
     data = mujoco.MjData(model)
     joints = {name: model.joint(name) for name in ("pinion", "wheel")}
     pinion, wheel = (joints[name].qposadr[0] for name in joints)
     pinion_dof, wheel_dof = (joints[name].dofadr[0] for name in joints)
-
-    # At rest against each other under the torques; the wheel's angles count clockwise. Both accelerate together.
-    r_bp, r_bw = PAIR.pinion.base_radius, PAIR.wheel.base_radius
-    torque = r_bw * (DRIVE * r_bp + LOAD * r_bw) / (r_bp**2 + r_bw**2)
-    data.qpos[wheel] = MESH.static(0.0, torque).offset / r_bw
-    data.qvel[pinion_dof], data.qvel[wheel_dof] = SPEED, -SPEED * r_bp / r_bw
+    data.qpos[wheel], data.qvel[pinion_dof], data.qvel[wheel_dof] = start()
     data.qfrc_applied[pinion_dof], data.qfrc_applied[wheel_dof] = DRIVE, LOAD
 
     mujoco.set_mjcb_passive(gear_mesh)
     rows = []
     try:
         for _ in range(round(duration / model.opt.timestep)):
-            rows.append([data.time, r_bp * data.qpos[pinion] + r_bw * data.qpos[wheel],
+            rows.append([data.time, offset(data.qpos[pinion], data.qpos[wheel]),
                          *(data.joint(f"tilt_{axis}").qpos[0] if tilts else 0.0 for axis in "xy")])
             mujoco.mj_step(model, data)
     finally:
         mujoco.set_mjcb_passive(None)
-    return dict(zip(("time", "offset", "tilt_x", "tilt_y"), np.array(rows).T))
+    return columns(rows)
 
 
 if __name__ == "__main__":
-    fixed, tilting = simulate(2e-3), simulate(2e-3, tilt_stiffness=2e4, tilt_damping=1.0)
-    for title, run in (("fixed", fixed), ("tilting", tilting)):
-        print(f"{title} shaft: transmission error {-1e6 * run['offset'].mean():.2f} um on average, "
-              f"tilts {1e6 * run['tilt_x'].mean():.1f} and {1e6 * run['tilt_y'].mean():.1f} urad")
+    main("MuJoCo", simulate)
