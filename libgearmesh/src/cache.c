@@ -195,7 +195,7 @@ static int describe(gm_cache *cache, const gm_cache_params *params, const gm_mes
     if (!check_params(params, pair)) {
         return GM_ERR_PARAMETER;
     }
-    if (pair->face_advance == 0.0 || mesh->model == GM_MODEL_SIMPLE) {
+    if (pair->face_advance == 0.0 || mesh->model == GM_MODEL_SIMPLE || mesh->has_corners) {
         return GM_ERR_GEOMETRY;
     }
 

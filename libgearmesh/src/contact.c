@@ -70,6 +70,15 @@ void gmi_lines_find(const gm_pair *pair, const gmi_engagement *at, int side,
     lines->last = floor_to_int((above - lines->fall) * per_pitch);
 }
 
+void gmi_lines_widen(const gm_pair *pair, double lower, double upper, gmi_lines *lines) {
+    const double per_pitch = 1.0 / pair->transverse_base_pitch;
+    lines->lower = lower;
+    lines->upper = upper;
+    lines->lower_by_delta = lines->upper_by_delta = 0.0;
+    lines->first = -floor_to_int((lines->rise - (lower - lines->origin)) * per_pitch);
+    lines->last = floor_to_int((upper - lines->origin - lines->fall) * per_pitch);
+}
+
 gmi_line_ends gmi_line_ends_find(const gm_pair *pair, const gmi_engagement *at,
                                  const gmi_lines *lines) {
     /* Spur gears: a line is inside as a whole, or not at all. */

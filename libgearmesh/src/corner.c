@@ -105,6 +105,14 @@ int gmi_corner_init(const gm_pair *pair, const gmi_engagement *at, int role, gmi
     corner->along = r_g * (r_m + r_g) + length * tip;
     corner->across = (r_m + r_g) * tip - length * r_g;
 
+    /* Parabolas follow the gap closely enough that are short beside the way to where rho_C would be 0. */
+    const double per_roll = corner->across / r_g;
+    corner->coarse = corner->fine = pair->transverse_base_pitch / 64.0;
+    const double singular = 0.5 * (length - tip) * (length - tip) / per_roll;
+    for (int k = 0; k < 12 && singular > 0.0 && 4.0 * corner->fine > singular; ++k) {
+        corner->fine *= 0.5;
+    }
+
     /* It is off the flank at the mate's tip, or where there is no involute. */
     const double start = corner->mate_roll;
     const double end = at->tip_roll_length[mate];
@@ -133,6 +141,9 @@ void gmi_corner_at(const gmi_corner *corner, double roll, gmi_corner_place *plac
     const double cosine = (r_m * (r_m + n_way) + rho * (start + e_way)) * per_square;
     const double versine = sine * sine / (1.0 + cosine);
     place->mate_roll = rho;
+    place->across = n_way;
+    place->along = e_way + roll;
+    place->versine = versine;
     place->turn = angle_of(sine, cosine);
 
     /* The gap: by the roll, and by T, which moves the corner along e and the end of the path with it. */
@@ -149,4 +160,10 @@ void gmi_corner_at(const gmi_corner *corner, double roll, gmi_corner_place *plac
     const double turn_by_roll = (rho_by_roll + 1.0 - place->by_roll) / r_m;
     place->by_roll_twice =
         (base_sum * sine + corner->line_of_action * cosine) * turn_by_roll * per_base;
+}
+
+int gmi_corners_init(const gm_pair *pair, const gmi_engagement *at, gmi_corner corners[2]) {
+    const int pinion = gmi_corner_init(pair, at, GM_PINION, &corners[GM_PINION]);
+    const int wheel = gmi_corner_init(pair, at, GM_WHEEL, &corners[GM_WHEEL]);
+    return pinion && wheel;
 }

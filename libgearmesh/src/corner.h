@@ -10,17 +10,6 @@
 
 #include "internal.h"
 
-/* The tip corner of one gear, as it comes to the mate's flank or goes off it. */
-typedef struct gmi_corner {
-    double tip_base;       /* r_b of the gear whose tip it is (m) */
-    double mate_base;      /* of the gear whose flank it touches (m) */
-    double line_of_action; /* T (m) */
-    double tip_roll;       /* rho_a (m) */
-    double mate_roll;      /* of the flank touched, at the end of the path: T - rho_a (m) */
-    double along, across;  /* of the centre distance times r_a: the parts of its way (m2) */
-    double reach;          /* roll beyond the path after which it is off the mate's flank (m) */
-} gmi_corner;
-
 /* Where the corner is after some roll beyond the end of the path. */
 typedef struct gmi_corner_place {
     double gap;           /* between corner and flank: what the overlap falls by (m) */
@@ -28,7 +17,12 @@ typedef struct gmi_corner_place {
     double by_roll_twice; /* and the second (1/m) */
     double by_length;     /* its derivative by T (1) */
     double mate_roll;     /* roll length of the flank touched, its radius of curvature there (m) */
-    double turn;          /* of the normal from the line of action, with the axes held (rad) */
+    double across,
+        along; /* of the corner from the point of the line of action with the same roll, away from the mate's
+                             axis and along the line (m) */
+    double
+        versine; /* 1 - cos of the turn of the normal from the line of action, with the axes held */
+    double turn; /* that turn (rad) */
     double
         tip_arm; /* of that normal about the axis of the tip: d overlap / d angle (m); about the other: mate_base */
 } gmi_corner_place;
@@ -42,5 +36,32 @@ int gmi_corner_init(const gm_pair *pair, const gmi_engagement *at, int role, gmi
 
 /* roll: of the gear whose tip it is, beyond the end of the path, 0 .. reach (m). Basic arithmetic and roots alone. */
 void gmi_corner_at(const gmi_corner *corner, double roll, gmi_corner_place *place);
+
+/*
+ * The force of the parts of all lines of a side that are beyond the tip of one gear, in the transverse section, with
+ * weights; of the stiffness and of damping.
+ */
+typedef struct gmi_tip_load {
+    double arm,
+        arm_t1; /* times gap', what the arm of the tip's gear is shorter by, over its r_b; and times t1 (N) */
+    double versine, versine_t1;         /* times that of the turn of the normal; and times t1 (N) */
+    double across, along;               /* times those of gmi_corner_place (N m) */
+    double arm_by_origin, arm_by_delta; /* derivatives of arm (N/m) */
+    double arm_by_speed;                /* and by the speed of approach (N s/m) */
+} gmi_tip_load;
+
+/*
+ * corner_line.c: the sum of a side whose lines go on beyond the path, and the force at both tips, [enum gm_role], at a
+ * speed of approach. wanted: GMI_MOMENTS and GMI_DERIVATIVES, which here are those of the touching part too.
+ */
+void gmi_side_sum_corners(const gm_mesh *mesh, int side, const gm_position *position, int wanted,
+                          double approach_speed, gmi_side_sum *total, gmi_tip_load tips[2]);
+
+/* wrench.c: what the tip of one gear changes. */
+void gmi_wrench_add_tip(const gm_pair *pair, const gmi_engagement *at, const gmi_tip_load *load,
+                        int role, int side_of_teeth, gm_wrench *wrench);
+
+/* The tips of both gears at one engagement, [enum gm_role]; 0 where one of them has no flank to touch. */
+int gmi_corners_init(const gm_pair *pair, const gmi_engagement *at, gmi_corner corners[2]);
 
 #endif

@@ -277,7 +277,7 @@ int gm_rolling_equilibrium(const gm_mesh *mesh, double pinion_angle, double pini
     problem p = {.mesh = mesh,
                  .workspace = workspace,
                  .pair = mesh->pair,
-                 .by_torque = mesh->friction.is_on};
+                 .by_torque = mesh->friction.is_on || mesh->has_corners};
     int status = gm_position_from_pinion_angle(p.pair, pinion_angle, 0.0, 0.0, &p.position);
     if (status != GM_OK) {
         return status;

@@ -3,8 +3,8 @@
 
 /*
  * What the sources of the core share and users never see. Dependencies run one way:
- * gear -> meshing -> pair -> iso6336, position -> contact -> flank -> line -> ramp, tilt -> penetration -> law -> wrench
- * -> mesh -> equilibrium, cache, body, tangent.
+ * gear -> meshing -> pair -> iso6336, position -> contact -> corner -> flank -> line -> ramp, tilt -> penetration, corner_line
+ * -> law -> wrench -> mesh -> equilibrium, cache, body, tangent.
  */
 #ifndef GEARMESH_INTERNAL_H
 #define GEARMESH_INTERNAL_H
@@ -286,6 +286,12 @@ typedef struct gmi_teeth {
     int step;
 } gmi_teeth;
 
+/* The tooth after this one, or before it. */
+static inline int gmi_next_tooth(int tooth, int step, int teeth) {
+    const int next = tooth + step;
+    return next < 0 ? teeth - 1 : next == teeth ? 0 : next;
+}
+
 /* Ideal penetration of one side at x: x - backlash / 2, or -x - backlash / 2 [Paper, Eqs. 10, 20]. */
 static inline double gmi_ideal_penetration(const gmi_engagement *at, int side, double offset) {
     return (side == GM_DRIVE ? offset : -offset) - 0.5 * at->backlash;
@@ -293,6 +299,9 @@ static inline double gmi_ideal_penetration(const gmi_engagement *at, int side, d
 
 void gmi_lines_find(const gm_pair *pair, const gmi_engagement *at, int side,
                     const gm_position *position, gmi_lines *lines);
+
+/* The same lines with other limits: also those that meet these. */
+void gmi_lines_widen(const gm_pair *pair, double lower, double upper, gmi_lines *lines);
 gmi_line_ends gmi_line_ends_find(const gm_pair *pair, const gmi_engagement *at,
                                  const gmi_lines *lines);
 gmi_teeth gmi_lines_teeth(const gm_pair *pair, int side, const gm_position *position,
@@ -399,6 +408,9 @@ void gmi_grid_init(gmi_grid *grid, const gmi_tables *tables, double climb, doubl
 
 /* The table of this gear now begins at another place along the common face. */
 void gmi_grid_move(gmi_grid *grid, double face_origin);
+
+/* Lines stay where they are along the profile of this table. */
+void gmi_grid_hold(gmi_grid *grid);
 
 /* What moves the lines of one side and what is on them: its coordinates. */
 enum gmi_coordinate {
@@ -514,9 +526,18 @@ typedef struct gmi_line_part {
     double from_by[GMI_COORDINATES], to_by[GMI_COORDINATES];
 } gmi_line_part;
 
-/* tables: 1 = the pinion's, 2 = the wheel's, 3 = both end the line too. */
+/* tables: a sum of 1 = the pinion's, 2 = the wheel's ends the line too, 4 = tips and starts do not. */
 void gmi_tilt_clip(const gm_pair *pair, const gmi_engagement *at, int side, double rho_origin,
                    double delta, int tables, gmi_line_part *part);
+
+/* How far a line is beyond the tip of a gear: at_zero + per_t1 t1 (m), and how it moves. */
+typedef struct gmi_beyond {
+    double at_zero, per_t1;
+    double by_origin, by_delta; /* (1) */
+} gmi_beyond;
+
+void gmi_tilt_beyond(const gm_pair *pair, const gmi_engagement *at, int side, double rho_origin,
+                     double delta, int role, gmi_beyond *beyond);
 
 /* Speed of approach, on average over the touching part; sum with GMI_MOMENTS where the tilt changes. */
 double gmi_rates_mean_approach(const gmi_rates *rates, const gm_pair *pair,
@@ -832,6 +853,20 @@ static inline void gmi_wrench_set(gm_wrench *wrench, double value) {
     }
 }
 
+/* corner.c, corner.h: corner contact. */
+
+/* The tip corner of one gear, as it comes to the mate's flank or goes off it. */
+typedef struct gmi_corner {
+    double tip_base;       /* r_b of the gear whose tip it is (m) */
+    double mate_base;      /* of the gear whose flank it touches (m) */
+    double line_of_action; /* T (m) */
+    double tip_roll;       /* rho_a (m) */
+    double mate_roll;      /* of the flank touched, at the end of the path: T - rho_a (m) */
+    double along, across;  /* of the centre distance times r_a: the parts of its way (m2) */
+    double reach;          /* roll beyond the path after which it is off the mate's flank (m) */
+    double coarse, fine; /* width of a parabola of the gap far from the path, and at its end (m) */
+} gmi_corner;
+
 /* mesh.c: the prepared mesh. */
 struct gm_mesh {
     const gm_pair *pair;       /* as drawn */
@@ -846,6 +881,8 @@ struct gm_mesh {
     gmi_friction friction;
     double contact_compliance; /* 1 / E* = sum of (1 - nu^2) / E of both gears (m2/N) */
     gm_cache *cache;           /* NULL = exact */
+    int has_corners;           /* lines go on beyond the path of contact */
+    gmi_corner corners[2];     /* [enum gm_role] whose tip it is; set where it has them */
 };
 
 /* Sum of a side with first moments and its tangent, of rates that are set in it. */

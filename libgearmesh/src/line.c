@@ -101,6 +101,13 @@ void gmi_grid_move(gmi_grid *grid, double face_origin) {
     }
 }
 
+void gmi_grid_hold(gmi_grid *grid) {
+    if (grid->face_rate > 0.0) {
+        grid->climb = 0.0;
+        set_rates(grid, grid->face_ratio);
+    }
+}
+
 /* Index of the cell that holds v, clamped into the table against rounding at its rim. */
 static inline int cell_of(double v, int last) {
     const int cell = v > 0.0 ? (int)v : 0;

@@ -203,6 +203,9 @@ int gm_mesh_line_loads(const gm_mesh *mesh, const gm_position *position, gm_work
     if (mesh->model == GM_MODEL_SIMPLE) {
         return GM_ERR_GEOMETRY;
     }
+    if (mesh->has_corners) {
+        return GM_ERR_PARAMETER;
+    }
     const gm_position posed = gmi_mesh_posed(mesh, position);
     int status = gmi_check_position(mesh->pair, &posed);
 

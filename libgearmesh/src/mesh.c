@@ -6,6 +6,7 @@
  * overlaps is found by penetration.c or cache.c, law.c makes a force of it, wrench.c says where it acts.
  */
 #include "cache.h"
+#include "corner.h"
 #include "elastic_mesh.h"
 #include "internal.h"
 #include "penetration.h"
@@ -41,6 +42,7 @@ void gm_mesh_params_default(gm_mesh_params *params) {
         .wheel_tooth_stiffness = NULL,
         .reference_torque = gmi_nan(),
         .stations = 17,
+        .corner_contact = GM_CORNER_BY_LAW,
         .friction_law = GM_FRICTION_CONSTANT,
         .friction_coefficient = 0.0,
         .friction_speed = 0.01,
@@ -56,6 +58,27 @@ static int is_stiffness(double value) {
 
 static int is_within(double value, double from, double to) {
     return value >= from && value <= to;
+}
+
+/* The field at fault where corners are in contact, or NULL. */
+static const char *corner_at_fault(const gm_mesh_params *params, const char **wanted) {
+    const int corner = params->corner_contact;
+    if (corner != GM_CORNER_BY_LAW && corner != GM_CORNER_OFF && corner != GM_CORNER_ON) {
+        *wanted = "GM_CORNER_BY_LAW, GM_CORNER_OFF or GM_CORNER_ON";
+        return "corner_contact";
+    }
+    if (corner != GM_CORNER_ON) {
+        return NULL;
+    }
+    if (params->model == GM_MODEL_SIMPLE || params->law == GM_LAW_ELASTIC) {
+        *wanted = "GM_CORNER_OFF with GM_MODEL_SIMPLE and with GM_LAW_ELASTIC";
+        return "corner_contact";
+    }
+    if (params->friction_law != GM_FRICTION_CONSTANT || params->friction_coefficient > 0.0) {
+        *wanted = "GM_CORNER_OFF with friction";
+        return "corner_contact";
+    }
+    return NULL;
 }
 
 /* The field of the friction that is at fault, or NULL. */
@@ -122,9 +145,12 @@ static const char *field_at_fault(const gm_mesh_params *params, const char **wan
         return "simple_stiffness";
     }
 
-    /* Materials, and then friction. */
+    /* Materials, and then friction and what does not go with it. */
     const char *at_fault = gmi_elastic_field_at_fault(params, wanted);
-    return at_fault != NULL ? at_fault : friction_at_fault(params, wanted);
+    if (at_fault == NULL) {
+        at_fault = friction_at_fault(params, wanted);
+    }
+    return at_fault != NULL ? at_fault : corner_at_fault(params, wanted);
 }
 
 int gm_mesh_params_check(const gm_mesh_params *params, const char **field,
@@ -204,8 +230,13 @@ int gm_mesh_init(gm_mesh **mesh, const gm_mesh_params *params, const gm_pair *pa
         status = GM_ERR_MEMORY;
     }
     gmi_engagement engagement;
+    gmi_corner corners[2];
+    const int has_corners = status == GM_OK && params->corner_contact == GM_CORNER_ON;
     if (status == GM_OK) {
         status = gmi_engagement_find(pair, &params->pose, &engagement);
+    }
+    if (status == GM_OK && has_corners && !gmi_corners_init(pair, &engagement, corners)) {
+        status = GM_ERR_GEOMETRY;
     }
     if (status != GM_OK) {
         return status;
@@ -235,7 +266,11 @@ int gm_mesh_init(gm_mesh **mesh, const gm_mesh_params *params, const gm_pair *pa
                                (1.0 - params->wheel_poisson_ratio * params->wheel_poisson_ratio) /
                                    params->wheel_youngs_modulus;
     made->friction = gmi_friction_of(params, own_pair, &engagement);
-    made->is_special = made->friction.is_on || made->elastic != NULL;
+    made->has_corners = has_corners;
+    if (has_corners) {
+        memcpy(made->corners, corners, sizeof corners);
+    }
+    made->is_special = made->friction.is_on || made->elastic != NULL || has_corners;
     made->is_posed = engagement.offset_shift != 0.0 || engagement.phase_shift != 0.0;
     if (params->model == GM_MODEL_SIMPLE) {
         pinion_flanks = wheel_flanks = NULL;
@@ -340,7 +375,8 @@ int gm_mesh_use_cache(gm_mesh *mesh, gm_cache *cache) {
         return GM_ERR_PARAMETER;
     }
     mesh->cache = cache;
-    mesh->is_special = cache != NULL || mesh->friction.is_on || mesh->elastic != NULL;
+    mesh->is_special =
+        cache != NULL || mesh->friction.is_on || mesh->elastic != NULL || mesh->has_corners;
     return GM_OK;
 }
 
@@ -606,12 +642,78 @@ static void evaluate_rolling(const gm_mesh *mesh, const gm_position *position, i
     evaluate_sliding(mesh, position, approach, NULL, wanted, result);
 }
 
+/* A corner has a shorter arm about the axis of its own gear: torque = force times d overlap / d angle. */
+static void add_tip(const gm_mesh *mesh, const gmi_tip_load *force, int role, int side, int wanted,
+                    gm_mesh_result *result) {
+    const gm_pair *pair = mesh->pair;
+    const double sign = gmi_side_sign(side);
+    const double r_bp = pair->pinion.base_radius, r_bw = pair->wheel.base_radius;
+    const double arm = role == GM_PINION ? r_bp : r_bw;
+    *(role == GM_PINION ? &result->pinion_torque : &result->wheel_torque) -=
+        sign * arm * force->arm;
+    if (wanted & GM_WANT_DERIVATIVES) {
+        gm_gradient *by = role == GM_PINION ? &result->pinion_torque_by : &result->wheel_torque_by;
+        by->pinion_angle -= arm * r_bp * (force->arm_by_delta + force->arm_by_origin);
+        by->wheel_angle += arm * r_bw * force->arm_by_delta;
+        by->pinion_speed -= arm * r_bp * force->arm_by_speed;
+        by->wheel_speed += arm * r_bw * force->arm_by_speed;
+    }
+    if (wanted & GM_WANT_WRENCH) {
+        gm_wrench of_tip;
+        gmi_wrench_set(&of_tip, 0.0);
+        gmi_wrench_add_tip(pair, &mesh->engagement, force, role, side, &of_tip);
+        gmi_wrench_turn(&of_tip, mesh->engagement.axis_direction);
+        for (int k = 0; k < 3; ++k) {
+            result->wrench.pinion_force[k] += of_tip.pinion_force[k];
+            result->wrench.pinion_moment[k] += of_tip.pinion_moment[k];
+            result->wrench.wheel_force[k] += of_tip.wheel_force[k];
+            result->wrench.wheel_moment[k] += of_tip.wheel_moment[k];
+        }
+    }
+}
+
+/* What the sums of both sides and of their tips, [side][enum gm_role], are for the user. */
+static OWN_STACK void set_corner_result(const gm_mesh *mesh, const gmi_side_sum sums[2],
+                                        gmi_tip_load tips[2][2], const double approach[2],
+                                        int wanted, gm_mesh_result *result) {
+    set_result(mesh, &sums[GM_DRIVE], &sums[GM_COAST], NULL, approach, wanted, result);
+
+    /* Both tips of each side that presses. */
+    const double force[2] = {result->drive_force, result->coast_force};
+    for (int side = GM_DRIVE; side <= GM_COAST; ++side) {
+        for (int role = GM_PINION; role <= GM_WHEEL && force[side] > 0.0; ++role) {
+            add_tip(mesh, &tips[side][role], role, side, wanted, result);
+        }
+    }
+}
+
+/* Lines that go on beyond the path of contact; rates: [side], NULL where the axes are at rest. */
+static OWN_STACK void evaluate_corners(const gm_mesh *mesh, const gm_position *position,
+                                       const gmi_rates *rates, int wanted, gm_mesh_result *result) {
+    const int moments = (wanted & GM_WANT_WRENCH) || rates != NULL ? GMI_MOMENTS : GMI_SUM;
+    const int mask = moments | (wanted & GM_WANT_DERIVATIVES ? GMI_DERIVATIVES : GMI_SUM);
+    gmi_side_sum sums[2];
+    gmi_tip_load tips[2][2];
+    double approach[2] = {position->offset_rate, -position->offset_rate};
+    for (int side = GM_DRIVE; side <= GM_COAST; ++side) {
+        approach[side] = rates != NULL ? rates[side].delta : approach[side];
+        gmi_side_sum_corners(mesh, side, position, mask, approach[side], &sums[side], tips[side]);
+        if (rates != NULL) {
+            approach[side] = gmi_rates_mean_approach(&rates[side], mesh->pair, &mesh->engagement,
+                                                     side, &sums[side]);
+        }
+    }
+    set_corner_result(mesh, sums, tips, approach, wanted, result);
+}
+
 int gmi_mesh_evaluate_exact(const gm_mesh *mesh, const gm_position *position, int wanted,
                             gm_workspace *workspace, gm_mesh_result *result) {
     if (is_elastic(mesh)) {
         return evaluate_elastic(mesh, position, wanted, workspace, result);
     }
-    if (mesh->friction.is_on) {
+    if (mesh->has_corners) {
+        evaluate_corners(mesh, position, NULL, wanted, result);
+    } else if (mesh->friction.is_on) {
         evaluate_rolling(mesh, position, wanted, result);
     } else {
         evaluate_any(mesh, position, wanted, result);
@@ -742,10 +844,13 @@ static int move_mesh(const gm_mesh *mesh, const gm_pose *pose, gm_mesh *moved) {
     const gm_pose both = both_poses(&mesh->pose, pose);
     *moved = *mesh;
     moved->cache = NULL;
-    moved->is_special = mesh->friction.is_on || mesh->elastic != NULL;
+    moved->is_special = mesh->friction.is_on || mesh->elastic != NULL || mesh->has_corners;
     const int status = gmi_engagement_find(mesh->pair, &both, &moved->engagement);
     if (status != GM_OK) {
         return status;
+    }
+    if (mesh->has_corners && !gmi_corners_init(mesh->pair, &moved->engagement, moved->corners)) {
+        return GM_POSE_OUT_OF_MESH;
     }
     if (mesh->side[GM_DRIVE].pinion != NULL) {
         gmi_engagement_keep_tables(mesh->pair, GM_PINION, &moved->engagement);
@@ -873,6 +978,10 @@ static OWN_STACK int evaluate_posed(const gm_mesh *mesh, const gm_motion *motion
     }
     if (is_at_rest(&motion->pose_rate)) {
         return gmi_mesh_evaluate_exact(&moved, &position, wanted, workspace, result);
+    }
+    if (mesh->has_corners) {
+        evaluate_corners(&moved, &position, rates, wanted, result);
+        return GM_OK;
     }
     const int is_tilting = rates[GM_DRIVE].along != 0.0 || rates[GM_DRIVE].across != 0.0;
     if (is_tilting && !is_elastic(mesh) && !mesh->friction.is_on) {

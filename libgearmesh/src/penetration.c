@@ -204,16 +204,6 @@ static int tilt_line(side_view *view, double rho_origin, gmi_line *line) {
     return 1;
 }
 
-static inline void integrate(const gmi_side *prepared, const gmi_line *line, int wanted,
-                             gmi_line_sum *sum) {
-    if (prepared->ramps > 0) {
-        gmi_ramps_integrate(line, &prepared->pinion_grid, &prepared->wheel_grid, prepared->pinion,
-                            prepared->wheel, wanted, sum);
-    } else {
-        gmi_line_integrate(line, &prepared->pinion_grid, &prepared->wheel_grid, wanted, sum);
-    }
-}
-
 /* ---------------------------------------------------------------------------------------------
  * How a side moves with all its coordinates
  * ------------------------------------------------------------------------------------------- */
@@ -409,7 +399,8 @@ static void add_line_in_parts(side_view *view, const gmi_line *line, double rho_
             part.tangent = view->line_tangent;
         }
         gmi_line_sum sum;
-        integrate(prepared, &part, wanted, &sum);
+        gmi_flanks_integrate(prepared, &prepared->pinion_grid, &prepared->wheel_grid, &part, wanted,
+                             &sum);
 
         gmi_side_sum of_part = gmi_no_contact();
         of_part.sum = sum.sum;
@@ -474,7 +465,8 @@ SPECIALIZED void add_line(side_view *view, const gmi_flank *pinion, const gmi_fl
     }
 
     gmi_line_sum sum;
-    integrate(prepared, &line, wanted, &sum);
+    gmi_flanks_integrate(prepared, &prepared->pinion_grid, &prepared->wheel_grid, &line, wanted,
+                         &sum);
 
     /* What it adds to the side. */
     side->sum += sum.sum;
@@ -507,11 +499,6 @@ SPECIALIZED void add_line(side_view *view, const gmi_flank *pinion, const gmi_fl
     }
 }
 
-static int next_tooth(int tooth, int step, int teeth) {
-    const int next = tooth + step;
-    return next < 0 ? teeth - 1 : next == teeth ? 0 : next;
-}
-
 /* slides: with friction; a constant at each call. view: with what is said of it there. */
 SPECIALIZED void follow_lines(const gm_pair *pair, const gmi_engagement *at,
                               const gmi_side *prepared, int side, const gm_position *position,
@@ -539,8 +526,8 @@ SPECIALIZED void follow_lines(const gm_pair *pair, const gmi_engagement *at,
         if (view->lines.delta + pinion.peak + wheel.peak + prepared->tilt_bound > 0.0) {
             add_line(view, &pinion, &wheel, k, wanted, slides, total);
         }
-        teeth.pinion = next_tooth(teeth.pinion, teeth.step, pair->pinion.teeth);
-        teeth.wheel = next_tooth(teeth.wheel, teeth.step, pair->wheel.teeth);
+        teeth.pinion = gmi_next_tooth(teeth.pinion, teeth.step, pair->pinion.teeth);
+        teeth.wheel = gmi_next_tooth(teeth.wheel, teeth.step, pair->wheel.teeth);
     }
 }
 

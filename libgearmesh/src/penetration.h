@@ -16,6 +16,18 @@ static inline int gmi_side_is_clear(const gmi_engagement *at, const gmi_side *pr
     return gmi_ideal_penetration(at, side, offset) + prepared->peak <= 0.0;
 }
 
+/* The integral along a line or a part of it, with the grids that it runs through. */
+static inline void gmi_flanks_integrate(const gmi_side *prepared, const gmi_grid *pinion_grid,
+                                        const gmi_grid *wheel_grid, const gmi_line *line,
+                                        int wanted, gmi_line_sum *sum) {
+    if (prepared->ramps > 0) {
+        gmi_ramps_integrate(line, pinion_grid, wheel_grid, prepared->pinion, prepared->wheel,
+                            wanted, sum);
+    } else {
+        gmi_line_integrate(line, pinion_grid, wheel_grid, wanted, sum);
+    }
+}
+
 /* The sum of a side that is not clear; wanted: mask of enum gmi_wanted. */
 static inline void gmi_side_sum_3d(const gm_pair *pair, const gmi_engagement *at,
                                    const gmi_side *prepared, int side, const gm_position *position,

@@ -182,7 +182,7 @@ int gm_mesh_tangent(const gm_mesh *mesh, const gm_motion *motion, gm_tangent *ta
     if (mesh == NULL || motion == NULL) {
         return GM_ERR_NULL;
     }
-    if (mesh->elastic != NULL || mesh->friction.is_on) {
+    if (mesh->elastic != NULL || mesh->friction.is_on || mesh->has_corners) {
         return GM_ERR_PARAMETER;
     }
 

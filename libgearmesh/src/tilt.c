@@ -176,7 +176,8 @@ void gmi_tilt_clip(const gm_pair *pair, const gmi_engagement *at, int side, doub
     part->from = -HUGE_VAL;
     part->to = HUGE_VAL;
     for (int place = 0; place < PLACES; ++place) {
-        if ((place == TABLE_PINION && !(tables & 1)) || (place == TABLE_WHEEL && !(tables & 2))) {
+        if ((place == TABLE_PINION && !(tables & 1)) || (place == TABLE_WHEEL && !(tables & 2)) ||
+            ((place == ROLL_PINION || place == ROLL_WHEEL) && tables & 4)) {
             continue;
         }
 
@@ -207,6 +208,19 @@ void gmi_tilt_clip(const gm_pair *pair, const gmi_engagement *at, int side, doub
         set_end(pair, at, &line, delta, part->from, from_place, from_is_lower, part->from_by);
         set_end(pair, at, &line, delta, part->to, to_place, to_is_lower, part->to_by);
     }
+}
+
+void gmi_tilt_beyond(const gm_pair *pair, const gmi_engagement *at, int side, double rho_origin,
+                     double delta, int role, gmi_beyond *beyond) {
+    const tilted line = tilted_of(pair, at, side, rho_origin);
+    const int place = role == GM_PINION ? ROLL_PINION : ROLL_WHEEL;
+    const straight roll = place_of(pair, &line, delta, place);
+    double by[GMI_COORDINATES];
+    place_gradient(&line, 0.0, place, by);
+    beyond->at_zero = roll.at_zero - at->tip_roll_length[role];
+    beyond->per_t1 = roll.per_t1;
+    beyond->by_origin = by[GMI_BY_ORIGIN];
+    beyond->by_delta = by[GMI_BY_DELTA];
 }
 
 /* ---------------------------------------------------------------------------------------------

@@ -6,6 +6,7 @@
  * the transverse section, and tan(beta_b) of it along the axis. Where it acts follows from its first moments over t1
  * and rho_p.
  */
+#include "corner.h"
 #include "internal.h"
 
 #include <math.h>
@@ -76,6 +77,48 @@ void gmi_wrench_add_by_turn(const gm_wrench *wrench, double turn_by, gm_wrench *
     for (int k = 0; k < 4; ++k) {
         to[k][0] -= turn_by * of[k][1];
         to[k][1] += turn_by * of[k][0];
+    }
+}
+
+/*
+ * What a tip corner changes: the force turns by Delta, away from the pinion's axis, to cos(Delta) e + sin(Delta) n, and acts
+ * where the corner is. T sin(Delta) = r_b gap' - (r_bp + r_bw) (1 - cos(Delta)). With the wheel's tip the pinion's flank
+ * keeps its arm, with the pinion's tip the wheel's does; the wheel's axes n and e point the other way.
+ */
+void gmi_wrench_add_tip(const gm_pair *pair, const gmi_engagement *at, const gmi_tip_load *load,
+                        int role, int side_of_teeth, gm_wrench *wrench) {
+    const double sign = gmi_side_sign(side_of_teeth);
+    const double sine = sin(at->working_pressure_angle);
+    const double cosine = cos(at->working_pressure_angle);
+    const double e[2] = {sine, sign * cosine}, n[2] = {cosine, -sign * sine};
+    const double base_sum = pair->pinion.base_radius + at->wheel_base_radius;
+    const double tip_base = role == GM_PINION ? pair->pinion.base_radius : at->wheel_base_radius;
+    const double per_length = 1.0 / at->line_of_action;
+    const double turned = (tip_base * load->arm - base_sum * load->versine) * per_length;
+    const double turned_t1 = (tip_base * load->arm_t1 - base_sum * load->versine_t1) * per_length;
+
+    /* Force, its moments by the place along z, and those of the axial force by where the corner is. */
+    const double away = role == GM_PINION ? -1.0 : 1.0;
+    const double axial_share = -sign * pair->face_advance / pair->face_width;
+    double force[2], z_force[2], axial[2];
+    for (int k = 0; k < 2; ++k) {
+        force[k] = turned * n[k] - load->versine * e[k];
+        const double force_t1 = turned_t1 * n[k] - load->versine_t1 * e[k];
+        z_force[k] = pair->face_start * force[k] + pair->face_width * force_t1;
+        axial[k] = away * (load->across * n[k] + load->along * e[k]) * axial_share;
+    }
+    const double tilting[2] = {axial[1] - z_force[1], z_force[0] - axial[0]};
+    const double shorter = sign * tip_base * load->arm;
+    for (int k = 0; k < 2; ++k) {
+        wrench->wheel_force[k] += force[k];
+        wrench->wheel_moment[k] += tilting[k];
+        wrench->pinion_force[k] -= force[k];
+        wrench->pinion_moment[k] -= tilting[k];
+    }
+    if (role == GM_PINION) {
+        wrench->pinion_moment[2] += shorter;
+    } else {
+        wrench->wheel_moment[2] += shorter;
     }
 }
 

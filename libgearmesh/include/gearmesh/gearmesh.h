@@ -708,6 +708,16 @@ enum gm_law {
                               docs/elastic.md */
 };
 
+/**
+ * Whether the tip edges of loaded teeth touch the mate's flank before and after the ideal path of contact, off the line of
+ * action. With it no line of contact ends but at the faces: the force has no jumps, and of helical gears no kinks.
+ */
+enum gm_corner_contact {
+    GM_CORNER_BY_LAW = 0, /**< as the law has it: off with all laws */
+    GM_CORNER_OFF = 1,    /**< a line of contact ends where the path does */
+    GM_CORNER_ON = 2      /**< it goes on, its overlap less by the gap of the corner */
+};
+
 /** Coefficient of friction mu of flanks that slide on each other. */
 enum gm_friction_law {
     GM_FRICTION_CONSTANT = 0, /**< friction_coefficient */
@@ -812,6 +822,10 @@ typedef struct gm_mesh_params {
 
     int stations; /**< along the face, 2 .. 97; docs/elastic.md has the error of each number [17] */
 
+    /** enum gm_corner_contact [GM_CORNER_BY_LAW]. GM_CORNER_ON: 3D model, constant stiffness or that of ISO 6336-1, no
+     *  friction, no tip that reaches to the mate's base circle. Start radii then end no line. */
+    int corner_contact;
+
     /* Friction, of the 3D model. At a sliding speed v its coefficient is mu v / sqrt(v^2 + v0^2). */
     int friction_law;            /**< enum gm_friction_law [GM_FRICTION_CONSTANT] */
     double friction_coefficient; /**< mu of GM_FRICTION_CONSTANT, 0 .. 1 [0: no friction] */
@@ -860,7 +874,8 @@ GM_API size_t gm_mesh_size(const gm_mesh_params *params, const gm_pair *pair);
  * @param[in]  memory         at least gm_mesh_size() bytes, aligned for double
  * @param[in]  memory_size    bytes in memory
  * @return GM_OK, GM_ERR_NULL, GM_ERR_PARAMETER, GM_ERR_GEOMETRY (not a pair, or one to which the law gives no
- *         stiffness), GM_ERR_TOOTH (flanks of another number of teeth), GM_ERR_MEMORY (too little, or not aligned), GM_STATE_NOT_FINITE or GM_POSE_OUT_OF_MESH (the pose)
+ *         stiffness, or corner contact of a tip that reaches to the mate's base circle), GM_ERR_TOOTH (flanks of another number of
+ *         teeth), GM_ERR_MEMORY (too little, or not aligned), GM_STATE_NOT_FINITE or GM_POSE_OUT_OF_MESH (the pose)
  */
 GM_API int gm_mesh_init(gm_mesh **mesh, const gm_mesh_params *params, const gm_pair *pair,
                         const gm_flanks *pinion_flanks, const gm_flanks *wheel_flanks, void *memory,
@@ -1086,7 +1101,7 @@ typedef struct gm_tangent {
  * @param[in]  mesh     the mesh; of constant stiffness, or that of ISO 6336-1
  * @param[in]  motion   where the gears are and how they move
  * @param[out] tangent  all of it; NaN on an error
- * @return as gm_mesh_evaluate_posed(); GM_ERR_PARAMETER with friction, and for elastic teeth, whose derivatives by both angles
+ * @return as gm_mesh_evaluate_posed(); GM_ERR_PARAMETER with friction, with corner contact, and for elastic teeth, whose derivatives by both angles
  *         gm_mesh_evaluate() has
  *
  * Accuracy: roundings. Cost: some six evaluations with tables; docs/performance.md. Source: docs/equations.md.
@@ -1240,7 +1255,8 @@ GM_API int gm_mesh_line_load_points(const gm_mesh *mesh);
  * @param[out]    points     [capacity]; NULL: not wanted
  * @param[in]     capacity   gm_mesh_line_load_points() is always enough
  * @param[out]    load       all fields; NaN and 0 on an error
- * @return as gm_mesh_evaluate_at(); GM_ERR_GEOMETRY (simple model), GM_ERR_MEMORY (more points than the capacity)
+ * @return as gm_mesh_evaluate_at(); GM_ERR_GEOMETRY (simple model), GM_ERR_PARAMETER (corner contact), GM_ERR_MEMORY (more
+ *         points than the capacity)
  *
  * Accuracy: elastic teeth as docs/elastic.md. Pressure of a line contact [Johnson], from E and nu of gm_mesh_params with
  * any law.
@@ -1397,7 +1413,7 @@ GM_API size_t gm_cache_size(const gm_cache_params *params, const gm_mesh *mesh);
  * @param[in]  mesh         3D model of helical gears: the sum of spur gears jumps, and no polynomial follows that
  * @param[in]  memory       at least gm_cache_size() bytes, aligned for double
  * @param[in]  memory_size  bytes in memory
- * @return GM_OK, GM_ERR_NULL, GM_ERR_PARAMETER, GM_ERR_GEOMETRY (spur gears, or the simple model),
+ * @return GM_OK, GM_ERR_NULL, GM_ERR_PARAMETER, GM_ERR_GEOMETRY (spur gears, the simple model, or corner contact),
  *         GM_ERR_MEMORY (too little or not aligned, or more than a computer has)
  */
 GM_API int gm_cache_init(gm_cache **cache, const gm_cache_params *params, const gm_mesh *mesh,

@@ -1,0 +1,539 @@
+/* SPDX-FileCopyrightText: The gearmesh authors */
+/* SPDX-License-Identifier: BSD-3-Clause */
+
+/*
+ * Lines of contact that go on beyond the path of contact, where a tip corner touches: there the overlap falls by the gap
+ * of corner.c, a function of the roll beyond the tip alone, which is straight along a line.
+ *
+ * Of spur gears the gap is the same all along a line, and taken as it is. Of helical gears it is a chain of parabolas with
+ * the exact gap and slope at every second joint, and without a jump or kink at any joint: within 1e-7 of the base pitch,
+ * and on average within 1e-8. So each part of a line between two joints is one that line.c integrates, tables and ramps as
+ * they are. Beyond its ends a flank has the deviation of the end. Nothing jumps where a corner begins, and no end of a line
+ * counts but those of the faces; starts of profiles end no line either.
+ */
+#include "corner.h"
+#include "internal.h"
+#include "penetration.h"
+
+#include <math.h>
+#include <string.h>
+
+/* Of a flank without tables and ramps. */
+static const gmi_grid no_grid = {0};
+
+#define JOINT_ROUNDING 1e-9 /* of the shortest parabola: a place this close to a joint is at it */
+
+/* What is known of the corner at a joint. */
+typedef struct joint {
+    double gap, slope;
+    double versine, across, along;
+} joint;
+
+/* The gap around one roll: a parabola from `from` on, and where the corner is. */
+typedef struct parabola {
+    double from, gap, slope, curvature;
+    double pair_from, pair_to; /* between them are this one and its neighbour */
+    joint begins, ends;        /* there */
+} parabola;
+
+/* One side at one position. */
+typedef struct view {
+    const gm_mesh *mesh;
+    int side;
+    int wanted;
+    gmi_lines lines;
+    double stop[2]; /* [enum gm_role] roll beyond the tip at which nothing touches any more (m) */
+    const gmi_grid *running[2]; /* [enum gm_role] of flanks with tables or ramps */
+    gmi_grid held[2];
+    parabola last; /* what was found last, of the tip of this gear: */
+    int last_role;
+    gmi_line_tangent tangent;
+    gmi_side_sum *total;
+    gmi_tip_load *tips;
+    double viscous; /* damping times speed of approach (N) */
+} view;
+
+/* One line of it. */
+typedef struct whole_line {
+    gmi_line line;
+    double gain, by_origin[2];   /* of tilted axes, see gmi_tilted_line */
+    double from_by[2], to_by[2]; /* how their faces' ends move by origin and delta */
+    double origin;               /* rho_p at t1 = 0 (m) */
+    gmi_beyond beyond[2];        /* [enum gm_role] the tip */
+} whole_line;
+
+static inline double roll_at(const gmi_beyond *beyond, double t1) {
+    return beyond->at_zero + beyond->per_t1 * t1;
+}
+
+/* ---------------------------------------------------------------------------------------------
+ * The gap as parabolas
+ * ------------------------------------------------------------------------------------------- */
+
+/* Widths double as the roll grows, so that all joints are at whole numbers of them. */
+static double width_at(const gmi_corner *corner, double roll) {
+    double width = corner->coarse;
+    while (roll < 8.0 * width && width > corner->fine) {
+        width *= 0.5;
+    }
+    return width;
+}
+
+/* The next joint on the way of the line, from a roll on that may be one. */
+static double next_joint(const gmi_corner *corner, double roll, int climbs) {
+    const double rounding = JOINT_ROUNDING * corner->fine;
+    if (climbs) {
+        const double width = width_at(corner, roll + rounding);
+        return (floor(roll / width + JOINT_ROUNDING) + 1.0) * width;
+    }
+    const double width = width_at(corner, roll - rounding);
+    return (ceil(roll / width - JOINT_ROUNDING) - 1.0) * width;
+}
+
+static void find_joint(const gmi_corner *corner, double roll, joint *found) {
+    gmi_corner_place place;
+    gmi_corner_at(corner, roll, &place);
+    found->gap = place.gap;
+    found->slope = place.by_roll;
+    found->versine = place.versine;
+    found->across = place.across;
+    found->along = place.along;
+}
+
+/* Both parabolas between two joints meet halfway with the same slope: gap and slope at both ends say which. */
+static OWN_STACK void find_parabola(const gmi_corner *corner, double roll, parabola *found) {
+    const double width = 2.0 * width_at(corner, roll);
+    const double from = floor(roll / width) * width;
+    if (from != found->pair_from) {
+        found->pair_from = from;
+        found->pair_to = fmin(from + width, corner->reach);
+        find_joint(corner, from, &found->begins);
+        find_joint(corner, found->pair_to, &found->ends);
+    }
+    const joint *begins = &found->begins, *ends = &found->ends;
+    const double half = 0.5 * (found->pair_to - from);
+    const double middle_slope =
+        (ends->gap - begins->gap) / half - 0.5 * (begins->slope + ends->slope);
+    if (roll < from + half) {
+        found->from = from;
+        found->gap = begins->gap;
+        found->slope = begins->slope;
+        found->curvature = (middle_slope - begins->slope) / half;
+    } else {
+        found->from = from + half;
+        found->gap = begins->gap + 0.5 * half * (begins->slope + middle_slope);
+        found->slope = middle_slope;
+        found->curvature = (ends->slope - middle_slope) / half;
+    }
+}
+
+/* Of spur gears. */
+static OWN_STACK void find_point(const gmi_corner *corner, double roll, parabola *found) {
+    if (roll == found->pair_from) {
+        return;
+    }
+    gmi_corner_place place;
+    gmi_corner_at(corner, roll, &place);
+    find_joint(corner, roll, &found->begins);
+    found->ends = found->begins;
+    found->from = found->pair_from = found->pair_to = roll;
+    found->gap = place.gap;
+    found->slope = place.by_roll;
+    found->curvature = place.by_roll_twice;
+}
+
+/* The gap of one tip around a place on a line. */
+static const parabola *gap_at(view *v, const gmi_beyond *beyond, int role, double t1) {
+    const gmi_corner *corner = &v->mesh->corners[role];
+    const double roll = roll_at(beyond, t1);
+    if (role != v->last_role) {
+        v->last_role = role;
+        v->last.pair_from = -1.0; /* nothing found yet */
+    }
+    if (beyond->per_t1 == 0.0) {
+        find_point(corner, roll, &v->last);
+    } else {
+        find_parabola(corner, roll, &v->last);
+    }
+    return &v->last;
+}
+
+/* The roll at which the gap exceeds an overlap: kappa u^2 / 2 is not far from it. */
+static OWN_STACK double stop_of(const gmi_corner *corner, double overlap) {
+    gmi_corner_place place;
+    gmi_corner_at(corner, 0.0, &place);
+    double roll = fmin(sqrt(2.0 * overlap / place.by_roll_twice), corner->reach);
+    for (int k = 0; k < 40 && roll < corner->reach; ++k) {
+        gmi_corner_at(corner, roll, &place);
+        if (place.gap > overlap) {
+            break;
+        }
+        roll = fmin(1.25 * roll, corner->reach);
+    }
+    return roll;
+}
+
+/* ---------------------------------------------------------------------------------------------
+ * Parts of a line
+ * ------------------------------------------------------------------------------------------- */
+
+/* v2 of a flank along the line, at t1 = 0 and by t1. */
+static double profile_of(const gmi_line *line, int role) {
+    return role == GM_PINION ? line->pinion_profile : line->wheel_profile;
+}
+
+static double profile_rate(const gmi_grid *grid) {
+    return grid->direction * grid->climb;
+}
+
+static void take_nearer(double cut, double from, double *next) {
+    if (cut > from && cut < *next) { /* not for spur gears: infinite, or no number */
+        *next = cut;
+    }
+}
+
+/* Where the next part begins: at an end of either flank's table, at a tip, or at a joint of the gap. */
+static double next_cut(const view *v, const whole_line *whole, double from, double to) {
+    double next = to;
+    for (int role = GM_PINION; role <= GM_WHEEL; ++role) {
+        const gmi_grid *grid = v->running[role];
+        if (grid->face_rate > 0.0) {
+            const double profile = profile_of(&whole->line, role);
+            take_nearer(-profile / profile_rate(grid), from, &next);
+            take_nearer((grid->profile_cells - profile) / profile_rate(grid), from, &next);
+        }
+        const gmi_beyond *beyond = &whole->beyond[role];
+        const gmi_corner *corner = &v->mesh->corners[role];
+        const double rounding = JOINT_ROUNDING * corner->fine;
+        const double roll = roll_at(beyond, from);
+        const int climbs = beyond->per_t1 > 0.0;
+        if (climbs ? roll < -rounding : roll <= rounding) {
+            take_nearer(-beyond->at_zero / beyond->per_t1, from, &next);
+        } else {
+            const double next_roll = next_joint(corner, roll, climbs);
+            take_nearer((next_roll - beyond->at_zero) / beyond->per_t1, from, &next);
+        }
+    }
+    return next;
+}
+
+/* A flank that has ended before this part has the deviation of its end. */
+static void hold_flanks(const view *v, double middle, gmi_line *part, int held[2]) {
+    double *profile[2] = {&part->pinion_profile, &part->wheel_profile};
+    for (int role = GM_PINION; role <= GM_WHEEL; ++role) {
+        const gmi_grid *grid = v->running[role];
+        const double place = *profile[role] + profile_rate(grid) * middle;
+        held[role] = grid->face_rate > 0.0 && !(place >= 0.0 && place <= grid->profile_cells);
+        if (held[role]) {
+            *profile[role] = place < 0.0 ? 0.0 : grid->profile_cells;
+        }
+    }
+}
+
+/* What is known of the tangent of a part before it is followed. */
+static OWN_STACK void begin_tangent(view *v, const whole_line *whole, const int held[2]) {
+    gmi_line_tangent *tangent = &v->tangent;
+    memset(tangent, 0, sizeof *tangent);
+    tangent->speed[0] = 1.0; /* so that what flows is the touching part */
+    tangent->by[GMI_BY_DELTA][0] = 1.0;
+    if (v->mesh->engagement.is_tilted) {
+        tangent->by[GMI_BY_DELTA][0] = whole->gain;
+        tangent->by[GMI_BY_ORIGIN][0] = whole->by_origin[0];
+        tangent->by[GMI_BY_ORIGIN][1] = whole->by_origin[1];
+    }
+    tangent->pinion_per_rho = held[GM_PINION] ? 0.0 : v->running[GM_PINION]->per_rho;
+    tangent->wheel_per_rho = held[GM_WHEEL] ? 0.0 : v->running[GM_WHEEL]->per_rho;
+}
+
+/* A corner takes its gap off the part, and changes what the part moves by. */
+static void take_gap_off(view *v, const gmi_beyond *beyond, const parabola *gap, gmi_line *part) {
+    const double gone = roll_at(beyond, part->from) - gap->from;
+    const double rate = beyond->per_t1;
+    part->overlap -= gap->gap + gone * (gap->slope + 0.5 * gone * gap->curvature);
+    part->half_slope -= 0.5 * rate * (gap->slope + gone * gap->curvature);
+    part->curvature -= 0.5 * rate * rate * gap->curvature;
+    if (v->wanted & GMI_DERIVATIVES) {
+        const double slope_0 = gap->slope + gap->curvature * (beyond->at_zero - gap->from);
+        const double slope_1 = gap->curvature * rate;
+        v->tangent.by[GMI_BY_ORIGIN][0] -= beyond->by_origin * slope_0;
+        v->tangent.by[GMI_BY_ORIGIN][1] -= beyond->by_origin * slope_1;
+        v->tangent.by[GMI_BY_DELTA][0] -= beyond->by_delta * slope_0;
+        v->tangent.by[GMI_BY_DELTA][1] -= beyond->by_delta * slope_1;
+    }
+}
+
+/* The force of a part, and its derivatives by origin and delta. */
+typedef struct part_force {
+    double whole, by_t1;
+    double whole_by[2], by_t1_by[2];
+} part_force;
+
+/* Of stiffness and damping. */
+static part_force force_of(const view *v, const gmi_line_sum *sum) {
+    const double stiffness = v->mesh->law.stiffness, viscous = v->viscous;
+    part_force force = {stiffness * sum->sum + viscous * sum->contact,
+                        stiffness * sum->sum_t1 + viscous * sum->contact_t1,
+                        {0.0, 0.0},
+                        {0.0, 0.0}};
+    if (v->wanted & GMI_DERIVATIVES) {
+        const gmi_line_tangent *tangent = &v->tangent;
+        for (int k = GMI_BY_ORIGIN; k <= GMI_BY_DELTA; ++k) {
+            force.whole_by[k] =
+                stiffness * tangent->sum_by[k][0] + viscous * tangent->flow_by[k][0];
+            force.by_t1_by[k] =
+                stiffness * tangent->sum_by[k][1] + viscous * tangent->flow_by[k][1];
+        }
+    }
+    return force;
+}
+
+/* What acts at a corner: arms are exact, moments along the face those of the middle of the load. */
+static void add_tip_load(const view *v, const gmi_beyond *beyond, const parabola *gap,
+                         const gmi_line_sum *sum, gmi_tip_load *tip) {
+    const part_force load = force_of(v, sum);
+    if (load.whole == 0.0) {
+        return;
+    }
+    const double roll = roll_at(beyond, load.by_t1 / load.whole);
+    const double slope = gap->slope + gap->curvature * (roll - gap->from);
+    const double length = gap->pair_to - gap->pair_from;
+    const double q = length > 0.0 ? (roll - gap->pair_from) / length : 0.0;
+    const joint *a = &gap->begins, *b = &gap->ends;
+    const double versine = a->versine + q * (b->versine - a->versine);
+    tip->arm += slope * load.whole;
+    tip->arm_t1 += slope * load.by_t1;
+    tip->versine += versine * load.whole;
+    tip->versine_t1 += versine * load.by_t1;
+    tip->across += (a->across + q * (b->across - a->across)) * load.whole;
+    tip->along += (a->along + q * (b->along - a->along)) * load.whole;
+    if (v->wanted & GMI_DERIVATIVES) {
+        const double slope_0 = gap->slope + gap->curvature * (beyond->at_zero - gap->from);
+        const double slope_1 = gap->curvature * beyond->per_t1;
+        tip->arm_by_origin += slope_0 * load.whole_by[GMI_BY_ORIGIN] +
+                              slope_1 * load.by_t1_by[GMI_BY_ORIGIN] +
+                              gap->curvature * beyond->by_origin * load.whole;
+        tip->arm_by_delta += slope_0 * load.whole_by[GMI_BY_DELTA] +
+                             slope_1 * load.by_t1_by[GMI_BY_DELTA] +
+                             gap->curvature * beyond->by_delta * load.whole;
+        tip->arm_by_speed +=
+            v->mesh->law.damping * (slope_0 * sum->contact + slope_1 * sum->contact_t1);
+    }
+}
+
+/* The end of a face that moves under tilted axes, and takes the overlap and the touching part along. */
+static void add_face_end(gmi_line_tangent *tangent, double sign, double t1, double f,
+                         const double end_by[2]) {
+    if (!(f > 0.0)) {
+        return;
+    }
+    for (int k = GMI_BY_ORIGIN; k <= GMI_BY_DELTA; ++k) {
+        const double moved = sign * end_by[k];
+        tangent->sum_by[k][0] += f * moved;
+        tangent->sum_by[k][1] += f * moved * t1;
+        tangent->flow_by[k][0] += moved;
+        tangent->flow_by[k][1] += moved * t1;
+    }
+}
+
+/* What a part adds to the side and to the tips that it is beyond of. */
+static OWN_STACK void add_sums(view *v, const whole_line *whole, const gmi_line_sum *sum,
+                               const int is_beyond[2], double middle) {
+    gmi_side_sum *side = v->total;
+    const double advance = v->lines.advance;
+    side->sum += sum->sum;
+    side->contact += sum->contact;
+    side->sum_t1 += sum->sum_t1;
+    side->sum_rho += whole->origin * sum->sum + advance * sum->sum_t1;
+    side->contact_t1 += sum->contact_t1;
+    side->contact_rho += whole->origin * sum->contact + advance * sum->contact_t1;
+
+    if (v->wanted & GMI_DERIVATIVES) {
+        const gmi_line_tangent *tangent = &v->tangent;
+        side->by_origin += tangent->sum_by[GMI_BY_ORIGIN][0];
+        side->by_delta += tangent->sum_by[GMI_BY_DELTA][0];
+        side->contact_by_origin += tangent->flow_by[GMI_BY_ORIGIN][0];
+        side->contact_by_delta += tangent->flow_by[GMI_BY_DELTA][0];
+    }
+    for (int role = GM_PINION; role <= GM_WHEEL; ++role) {
+        if (is_beyond[role]) {
+            const gmi_beyond *beyond = &whole->beyond[role];
+            add_tip_load(v, beyond, gap_at(v, beyond, role, middle), sum, &v->tips[role]);
+        }
+    }
+}
+
+/* One part between two cuts; whether it touches. */
+static int add_part(view *v, const whole_line *whole, double from, double to) {
+    const gm_mesh *mesh = v->mesh;
+    const double middle = 0.5 * (from + to);
+    gmi_line part = gmi_line_between(&whole->line, from, to);
+    int held[2], is_beyond[2];
+    hold_flanks(v, middle, &part, held);
+    int mask = v->wanted & GMI_MOMENTS;
+    if (v->wanted & GMI_DERIVATIVES) {
+        mask = GMI_TANGENT | GMI_MOMENTS;
+        begin_tangent(v, whole, held);
+        part.tangent = &v->tangent;
+    }
+
+    /* The gap of each tip that the part is beyond of. */
+    for (int role = GM_PINION; role <= GM_WHEEL; ++role) {
+        const gmi_beyond *beyond = &whole->beyond[role];
+        const double roll = roll_at(beyond, middle);
+        is_beyond[role] = roll > 0.0;
+        if (is_beyond[role]) {
+            mask |= GMI_MOMENTS;
+            take_gap_off(v, beyond, gap_at(v, beyond, role, middle), &part);
+        }
+    }
+
+    gmi_line_sum sum;
+    gmi_flanks_integrate(
+        &mesh->side[v->side], held[GM_PINION] ? &v->held[GM_PINION] : v->running[GM_PINION],
+        held[GM_WHEEL] ? &v->held[GM_WHEEL] : v->running[GM_WHEEL], &part, mask, &sum);
+    if (v->wanted & GMI_DERIVATIVES && mesh->engagement.is_tilted) {
+        if (from == whole->line.from) {
+            add_face_end(&v->tangent, -1.0, from, sum.at_from, whole->from_by);
+        }
+        if (to == whole->line.to) {
+            add_face_end(&v->tangent, 1.0, to, sum.at_to, whole->to_by);
+        }
+    }
+    add_sums(v, whole, &sum, is_beyond, middle);
+    return sum.contact > 0.0;
+}
+
+/* ---------------------------------------------------------------------------------------------
+ * All lines of a side
+ * ------------------------------------------------------------------------------------------- */
+
+/* A line ends where the corner of a gear no longer touches. */
+static void end_at_stop(const gmi_beyond *beyond, double stop, double *from, double *to) {
+    if (beyond->per_t1 == 0.0) {
+        *to = beyond->at_zero <= stop ? *to : *from;
+        return;
+    }
+    const double end = (stop - beyond->at_zero) / beyond->per_t1;
+    if (beyond->per_t1 > 0.0) {
+        *to = fmin(*to, end);
+    } else {
+        *from = fmax(*from, end);
+    }
+}
+
+/* Between tilted axes the overlap is a parabola along the line, and faces end elsewhere. */
+static OWN_STACK void tilt_line(const view *v, whole_line *whole) {
+    enum { FACES_ALONE = 4 };
+    const gm_pair *pair = v->mesh->pair;
+    const gmi_engagement *at = &v->mesh->engagement;
+    gmi_line_part part;
+    gmi_tilted_line tilted;
+    gmi_tilt_clip(pair, at, v->side, whole->origin, v->lines.delta, FACES_ALONE, &part);
+    gmi_tilt_line(pair, at, v->side, whole->origin, &tilted);
+    whole->gain = tilted.gain;
+    for (int k = 0; k < 2; ++k) {
+        whole->by_origin[k] = tilted.by_origin[k];
+        whole->from_by[k] = part.from_by[k];
+        whole->to_by[k] = part.to_by[k];
+    }
+    gmi_line *line = &whole->line;
+    const double *shift = tilted.shift;
+    line->from = part.from;
+    line->to = part.to;
+    line->overlap += (tilted.gain - 1.0) * v->lines.delta + shift[0] +
+                     line->from * (shift[1] + line->from * shift[2]);
+    line->half_slope = 0.5 * shift[1] + line->from * shift[2];
+    line->curvature = shift[2];
+}
+
+static void add_line(view *v, const gmi_flank *pinion, const gmi_flank *wheel, int k) {
+    const gm_mesh *mesh = v->mesh;
+    const gm_pair *pair = mesh->pair;
+    const gmi_engagement *at = &mesh->engagement;
+    whole_line whole;
+    whole.origin = v->lines.origin + (double)k * pair->transverse_base_pitch;
+    const double delta = v->lines.delta;
+    whole.line = (gmi_line){
+        at->face_from,
+        at->face_to,
+        delta + pinion->pitch + wheel->pitch,
+        0.0,
+        0.0,
+        pinion->values,
+        wheel->values,
+        (whole.origin - pair->pinion.start_roll_length) * v->running[GM_PINION]->per_rho,
+        (at->line_of_action + delta - at->wheel_profile_start - whole.origin) *
+            v->running[GM_WHEEL]->per_rho,
+        NULL,
+    };
+
+    /* All of the faces, as far as corners reach. */
+    if (at->is_tilted) {
+        tilt_line(v, &whole);
+    }
+    double from = whole.line.from, last = whole.line.to;
+    for (int role = GM_PINION; role <= GM_WHEEL; ++role) {
+        gmi_tilt_beyond(pair, at, v->side, whole.origin, delta, role, &whole.beyond[role]);
+        end_at_stop(&whole.beyond[role], v->stop[role], &from, &last);
+    }
+
+    /* From cut to cut. */
+    int touches = 0;
+    double to;
+    for (; from < last; from = to) {
+        to = next_cut(v, &whole, from, last);
+        touches |= add_part(v, &whole, from, to);
+    }
+    v->total->pairs += touches;
+}
+
+void gmi_side_sum_corners(const gm_mesh *mesh, int side, const gm_position *position, int wanted,
+                          double approach_speed, gmi_side_sum *total, gmi_tip_load tips[2]) {
+    const gm_pair *pair = mesh->pair;
+    const gmi_engagement *at = &mesh->engagement;
+    const gmi_side *prepared = &mesh->side[side];
+    *total = gmi_no_contact();
+    memset(tips, 0, 2 * sizeof *tips);
+    if (gmi_side_is_clear(at, prepared, side, position->offset)) {
+        return;
+    }
+    view v;
+    v.mesh = mesh;
+    v.side = side;
+    v.wanted = wanted;
+    v.total = total;
+    v.tips = tips;
+    v.last_role = -1;
+    v.viscous = mesh->law.damping * approach_speed;
+
+    /* The tables as lines run through them, and as they are held beyond their ends. */
+    const int has_tables = prepared->pinion != NULL || prepared->wheel != NULL;
+    v.running[GM_PINION] = has_tables ? &prepared->pinion_grid : &no_grid;
+    v.running[GM_WHEEL] = has_tables ? &prepared->wheel_grid : &no_grid;
+    for (int role = GM_PINION; role <= GM_WHEEL; ++role) {
+        v.held[role] = *v.running[role];
+        gmi_grid_hold(&v.held[role]);
+        v.stop[role] = stop_of(&mesh->corners[role],
+                               gmi_ideal_penetration(at, side, position->offset) + prepared->peak);
+    }
+
+    /* Starts of profiles end no line; tilted axes may bring one in that is just outside. */
+    gmi_lines_find(pair, at, side, position, &v.lines);
+    const double lower = at->line_of_action + v.lines.delta - at->tip_roll_length[GM_WHEEL];
+    gmi_lines_widen(pair, lower - v.stop[GM_WHEEL],
+                    at->tip_roll_length[GM_PINION] + v.stop[GM_PINION], &v.lines);
+    v.lines.first -= at->is_tilted;
+    v.lines.last += at->is_tilted;
+
+    /* Line by line, each with the teeth that meet on it; those that cannot reach each other are left out. */
+    gmi_teeth teeth = gmi_lines_teeth(pair, side, position, &v.lines);
+    for (int k = v.lines.first; k <= v.lines.last; ++k) {
+        const gmi_flank pinion = gmi_flank_of(prepared->pinion, teeth.pinion);
+        const gmi_flank wheel = gmi_flank_of(prepared->wheel, teeth.wheel);
+        if (v.lines.delta + pinion.peak + wheel.peak + prepared->tilt_bound > 0.0) {
+            add_line(&v, &pinion, &wheel, k);
+        }
+        teeth.pinion = gmi_next_tooth(teeth.pinion, teeth.step, pair->pinion.teeth);
+        teeth.wheel = gmi_next_tooth(teeth.wheel, teeth.step, pair->wheel.teeth);
+    }
+}

@@ -1,0 +1,596 @@
+/* SPDX-FileCopyrightText: The gearmesh authors */
+/* SPDX-License-Identifier: BSD-3-Clause */
+
+/*
+ * Lines of contact beyond the path: force, torques and wrench against sums over many points, their derivatives against
+ * differences, and what the corner is there for: no jumps, no kinks, and an energy.
+ */
+#include "corner.h"
+#include "gm_test.h"
+#include "random_gears.h"
+#include "reference_gear.h"
+
+enum { POINTS = 4000 };
+
+typedef union room {
+    double alignment;
+    char memory[8192];
+} room;
+
+static int make_mesh(room *where, const gm_pair *pair, const gm_flanks *pinion,
+                     const gm_flanks *wheel, int corner, double damping, gm_mesh **mesh) {
+    gm_mesh_params params;
+    gm_mesh_params_default(&params);
+    params.stiffness = 1e8;
+    params.damping = damping;
+    params.corner_contact = corner;
+    return gm_mesh_init(mesh, &params, pair, pinion, wheel, where->memory, sizeof where->memory);
+}
+
+/* ---------------------------------------------------------------------------------------------
+ * Point by point
+ * ------------------------------------------------------------------------------------------- */
+
+/* A deviation, the table bilinear and with its edges held; t2 may be anything. */
+static double deviation_at(const model_flanks *flanks, int side, int tooth, double t1, double t2) {
+    if (flanks == NULL) {
+        return 0.0;
+    }
+    t2 = fmin(fmax(t2, 0.0), 1.0);
+    double value = flanks->pitch[side][tooth];
+    const model_table *table = &flanks->table[side][tooth];
+    if (table->face_nodes > 0) {
+        const double v1 = t1 * (table->face_nodes - 1), v2 = t2 * (table->profile_nodes - 1);
+        const int i = (int)fmin(v1, table->face_nodes - 2);
+        const int j = (int)fmin(v2, table->profile_nodes - 2);
+        const double *near = table->values + i * table->profile_nodes + j;
+        const double *far = near + table->profile_nodes;
+        const double p = v1 - i, q = v2 - j;
+        value += (double)table->factor * ((1.0 - p) * ((1.0 - q) * near[0] + q * near[1]) +
+                                          p * ((1.0 - q) * far[0] + q * far[1]));
+    }
+    for (int k = 0; k < flanks->ramp_count[side]; ++k) {
+        const model_ramp *ramp = &flanks->ramp[side][k];
+        value -=
+            (double)ramp->factor * fmax(0.0, ramp->offset + ramp->per_t1 * t1 + ramp->per_t2 * t2);
+    }
+    return value;
+}
+
+typedef struct brute {
+    double sum, contact, arm[2]; /* of one side; arm: integral of f gap', [role] */
+    double force[3], moment[3];  /* on the wheel, about the pinion's axis, per stiffness */
+    double beyond;               /* part of the sum that is beyond the path */
+} brute;
+
+/* Unit normal of the mate's involute at C, on the side of e: tangent to its base circle. */
+static void normal_at(double axis, double base, const double c[2], const double e[2],
+                      double normal[2]) {
+    const double x = c[0] - axis, y = c[1];
+    const double squared = x * x + y * y, rho = sqrt(squared - base * base);
+    double best = -1.0;
+    for (int sign = -1; sign <= 1; sign += 2) {
+        const double n[2] = {base * (base * x - sign * rho * y) / squared,
+                             base * (base * y + sign * rho * x) / squared};
+        const double way[2] = {(x - n[0]) / rho, (y - n[1]) / rho};
+        const double along = way[0] * e[0] + way[1] * e[1];
+        if (fabs(along) > best) {
+            best = fabs(along);
+            normal[0] = along < 0.0 ? -way[0] : way[0];
+            normal[1] = along < 0.0 ? -way[1] : way[1];
+        }
+    }
+}
+
+/* What acts at one point, on the drive side; the other one is its mirror image. */
+static void add_acting(const gm_pair *pair, const gmi_engagement *at, double sign, double q,
+                       double rho, const double roll[2], double z, brute *b) {
+    const double a = at->working_pressure_angle, r = pair->pinion.base_radius;
+    const double e[2] = {sin(a), cos(a)}, n[2] = {cos(a), -sin(a)};
+    double normal[2] = {e[0], e[1]};
+    double place[2] = {r * n[0] + rho * e[0], r * n[1] + rho * e[1]};
+    for (int role = GM_PINION; role <= GM_WHEEL; ++role) {
+        if (roll[role] > 0.0) {
+            /* The corner, turned about its own axis from where its tip meets the line of action. */
+            const double d = at->center_distance;
+            const double tip = role == GM_PINION
+                                   ? at->tip_roll_length[GM_PINION]
+                                   : at->line_of_action - at->tip_roll_length[GM_WHEEL];
+            const double own = role == GM_PINION ? 0.0 : d;
+            const double turn = roll[role] / (role == GM_PINION ? r : at->wheel_base_radius);
+            const double x = r * n[0] + tip * e[0] - own, y = r * n[1] + tip * e[1];
+            const double c = cos(turn), s = sin(turn);
+            place[0] = own + c * x - s * y;
+            place[1] = s * x + c * y;
+            normal_at(role == GM_PINION ? d : 0.0,
+                      fabs(role == GM_PINION ? at->wheel_base_radius : r), place, e, normal);
+        }
+    }
+    const double f[3] = {q * normal[0], sign * q * normal[1],
+                         -sign * q * pair->face_advance / pair->face_width};
+    const double x[3] = {place[0], sign * place[1], z};
+    for (int k = 0; k < 3; ++k) {
+        const int i = (k + 1) % 3, j = (k + 2) % 3;
+        b->force[k] += f[k];
+        b->moment[k] += x[i] * f[j] - x[j] * f[i];
+    }
+}
+
+static void brute_side(const random_case *c, const gm_mesh *mesh, const gm_position *position,
+                       int side, brute *b) {
+    const gm_pair *pair = &c->pair;
+    gmi_engagement at;
+    gmi_corner corners[2];
+    (void)gmi_engagement_find(pair, NULL, &at);
+    (void)gmi_corners_init(pair, &at, corners);
+    const double sign = side == GM_DRIVE ? 1.0 : -1.0;
+    const double delta = sign * position->offset - 0.5 * pair->backlash;
+    const double p = pair->transverse_base_pitch;
+    const double length[2] = {
+        pair->pinion.tip_roll_length - pair->pinion.start_roll_length,
+        at.tip_roll_length[GM_WHEEL] - at.wheel_profile_start,
+    };
+    memset(b, 0, sizeof *b);
+    (void)mesh;
+    const int lines = 6 + (int)(pair->total_contact_ratio + 1.0);
+    for (int k = -lines; k <= lines; ++k) {
+        const int steps = side == GM_DRIVE ? k : -k;
+        const int z_p = pair->pinion.teeth, z_w = pair->wheel.teeth;
+        const int i = ((position->pinion_tooth + steps) % z_p + z_p) % z_p;
+        const int j = ((position->wheel_tooth + steps - (side == GM_COAST)) % z_w + z_w) % z_w;
+        for (int point = 0; point < POINTS; ++point) {
+            const double t1 = (point + 0.5) / POINTS;
+            const double rho = pair->phase_origin[side] + sign * position->phase + k * p +
+                               sign * pair->face_advance * t1;
+            const double rho_w = at.line_of_action + delta - rho;
+            const double roll[2] = {rho - at.tip_roll_length[GM_PINION],
+                                    rho_w - at.tip_roll_length[GM_WHEEL]};
+            double f = delta;
+            f += deviation_at(c->model_use[0], side, i, t1,
+                              (rho - pair->pinion.start_roll_length) / length[0]);
+            f += deviation_at(c->model_use[1], side, j, t1,
+                              (rho_w - at.wheel_profile_start) / length[1]);
+            gmi_corner_place place[2];
+            int is_off = 0;
+            for (int role = GM_PINION; role <= GM_WHEEL; ++role) {
+                if (roll[role] > 0.0) {
+                    is_off = is_off || roll[role] > corners[role].reach;
+                    gmi_corner_at(&corners[role], fmin(roll[role], corners[role].reach),
+                                  &place[role]);
+                    f -= place[role].gap;
+                }
+            }
+            if (!(f > 0.0) || is_off) {
+                continue;
+            }
+            const double share = f / POINTS;
+            b->sum += share;
+            b->contact += 1.0 / POINTS;
+            for (int role = GM_PINION; role <= GM_WHEEL; ++role) {
+                b->arm[role] += roll[role] > 0.0 ? share * place[role].by_roll : 0.0;
+                b->beyond += roll[role] > 0.0 ? share : 0.0;
+            }
+            add_acting(pair, &at, sign, share, rho, roll, pair->face_start + t1 * pair->face_width,
+                       b);
+        }
+    }
+}
+
+/* A pair whose corners touch flanks, rings among them; deviations of some micrometres per millimetre of module. */
+static int random_corner_case(random_case *c, uint64_t *seed, int i) {
+    int status = random_mixed_case_make(c, seed, i);
+    gmi_engagement at;
+    gmi_corner corners[2];
+    if (status == GM_OK) {
+        (void)gmi_engagement_find(&c->pair, NULL, &at);
+        status = gmi_corners_init(&c->pair, &at, corners) ? GM_OK : GM_ERR_GEOMETRY;
+    }
+    return status == GM_OK && fabs(c->pair.face_advance) < 4.0 * c->pair.transverse_base_pitch;
+}
+
+static gm_position random_place(uint64_t *seed, const random_case *c, int i) {
+    gm_position position;
+    const double side = i % 5 == 0 ? -1.0 : 1.0;
+    const double depth = gm_test_uniform(seed, 0.5e-3, 8e-3) * c->pair.normal_module;
+    (void)gm_position_from_pinion_angle(&c->pair, gm_test_uniform(seed, 0.0, 6.0),
+                                        side * (0.5 * c->pair.backlash + depth), 0.0, &position);
+    return position;
+}
+
+static void forces_are_sums_over_points(void) {
+    uint64_t seed = 4711;
+    int met = 0, at_corners = 0;
+    for (int i = 0; i < 90; ++i) {
+        random_case c;
+        room where;
+        gm_mesh *mesh;
+        if (random_corner_case(&c, &seed, i)) {
+            gm_test_context("case %d", i);
+            GM_ASSERT_INT(make_mesh(&where, &c.pair, c.use[0], c.use[1], GM_CORNER_ON, 0.0, &mesh),
+                          GM_OK);
+            const gm_position position = random_place(&seed, &c, i);
+            gm_mesh_result r;
+            GM_ASSERT_INT(gm_mesh_evaluate_at(mesh, &position, GM_WANT_WRENCH | GM_WANT_DERIVATIVES,
+                                              NULL, &r),
+                          GM_OK);
+            brute b[2];
+            brute_side(&c, mesh, &position, GM_DRIVE, &b[GM_DRIVE]);
+            brute_side(&c, mesh, &position, GM_COAST, &b[GM_COAST]);
+            const double largest = fmax(b[0].sum, b[1].sum);
+            const double k = 1e8, r_bp = c.pair.pinion.base_radius, r_bw = c.pair.wheel.base_radius;
+
+            /* A few points of so many are all that can be told apart. */
+            const double e = 2e-5 * largest + 1e-8 * c.pair.normal_module;
+            GM_ASSERT_ABS(r.contact.drive, b[GM_DRIVE].sum, e);
+            GM_ASSERT_ABS(r.contact.coast, b[GM_COAST].sum, e);
+            GM_ASSERT_ABS(r.contact.drive_contact, b[GM_DRIVE].contact, 30.0 / POINTS);
+            GM_ASSERT_ABS(r.pinion_torque,
+                          k * r_bp *
+                              (b[0].sum - b[0].arm[GM_PINION] - (b[1].sum - b[1].arm[GM_PINION])),
+                          k * r_bp * e);
+            GM_ASSERT_ABS(r.wheel_torque,
+                          k * r_bw *
+                              (b[0].sum - b[0].arm[GM_WHEEL] - (b[1].sum - b[1].arm[GM_WHEEL])),
+                          k * r_bw * e);
+            const double lever = c.pair.center_distance + c.pair.face_width;
+            for (int axis = 0; axis < 3; ++axis) {
+                GM_ASSERT_ABS(r.wrench.wheel_force[axis], k * (b[0].force[axis] + b[1].force[axis]),
+                              4.0 * k * e);
+                GM_ASSERT_ABS(-r.wrench.pinion_moment[axis],
+                              k * (b[0].moment[axis] + b[1].moment[axis]), 4.0 * k * e * lever);
+            }
+
+            /* What acts on one gear acts on the other, and turns both as the torques say. */
+            const double d = c.pair.center_distance * c.pair.wheel.sign;
+            const double size = k * largest * lever;
+            GM_ASSERT_ABS(-r.wrench.pinion_moment[2], r.pinion_torque, 1e-12 * size);
+            GM_ASSERT_ABS(c.pair.wheel.sign * -r.wrench.wheel_moment[2], r.wheel_torque,
+                          1e-12 * size);
+            GM_ASSERT_ABS(r.wrench.wheel_moment[2] + d * r.wrench.wheel_force[1] +
+                              r.wrench.pinion_moment[2],
+                          0.0, 1e-12 * size);
+            ++met;
+            at_corners += b[0].beyond + b[1].beyond > 0.0;
+        }
+        random_case_free(&c);
+    }
+    GM_ASSERT(met > 50);
+    GM_ASSERT(at_corners > 30);
+}
+
+/* ---------------------------------------------------------------------------------------------
+ * Derivatives
+ * ------------------------------------------------------------------------------------------- */
+
+static gm_motion turned(const gm_pair *pair, const gm_motion *motion, int which, double by) {
+    gm_motion result = *motion;
+    const double r_bp = pair->pinion.base_radius, r_bw = pair->wheel.base_radius;
+    if (which == 0 || which == 1) {
+        result.position.offset += which == 0 ? r_bp * by : -r_bw * by;
+        result.position.phase += which == 0 ? r_bp * by : 0.0;
+    } else {
+        result.position.offset_rate += which == 2 ? r_bp * by : -r_bw * by;
+    }
+    return result;
+}
+
+static double part_of(const gm_gradient *gradient, int which) {
+    const double parts[4] = {gradient->pinion_angle, gradient->wheel_angle, gradient->pinion_speed,
+                             gradient->wheel_speed};
+    return parts[which];
+}
+
+/* Force and both torques by both angles and speeds; tables, ramps and tilted axes, damped and not. */
+static void derivatives_are_those_of_differences(void) {
+    uint64_t seed = 99;
+    int met = 0, rejected = 0;
+    for (int i = 0; i < 300; ++i) {
+        random_case c;
+        room where;
+        gm_mesh *mesh;
+        if (random_corner_case(&c, &seed, i)) {
+            const gm_pair *pair = &c.pair;
+            GM_ASSERT_INT(make_mesh(&where, pair, c.use[0], c.use[1], GM_CORNER_ON,
+                                    i % 2 == 0 ? 0.0 : 1e5, &mesh),
+                          GM_OK);
+            const double m = pair->normal_module;
+            const double tilt =
+                i % 3 == 0 ? 0.02 * pair->transverse_base_pitch / pair->face_width : 0.0;
+            gm_motion motion = {.position = random_place(&seed, &c, i)};
+            motion.position.offset_rate = gm_test_uniform(&seed, -1e-3, 1e-3) * m;
+            if (i % 3 != 1) {
+                motion.pose = (gm_pose){gm_test_uniform(&seed, -0.01, 0.01) * m,
+                                        gm_test_uniform(&seed, -0.01, 0.01) * m, 0.0,
+                                        gm_test_uniform(&seed, -tilt, tilt),
+                                        gm_test_uniform(&seed, -tilt, tilt)};
+            }
+            gm_mesh_result r, far[2], near[2];
+            int status = gm_mesh_evaluate_posed(mesh, &motion, GM_WANT_DERIVATIVES, NULL, &r);
+            for (int which = 0; which < 4 && status == GM_OK && r.force != 0.0; ++which) {
+                gm_test_context("case %d, by %d", i, which);
+                const double h = (which < 2 ? 2e-7 : 1e-4) * m / pair->pinion.base_radius;
+                for (int k = 0; k < 2; ++k) {
+                    const gm_motion a = turned(pair, &motion, which, k == 0 ? -h : h);
+                    const gm_motion b = turned(pair, &motion, which, k == 0 ? -0.5 * h : 0.5 * h);
+                    status |= gm_mesh_evaluate_posed(mesh, &a, 0, NULL, &far[k]);
+                    status |= gm_mesh_evaluate_posed(mesh, &b, 0, NULL, &near[k]);
+                }
+                const double got[3] = {part_of(&r.force_by, which),
+                                       part_of(&r.pinion_torque_by, which),
+                                       part_of(&r.wheel_torque_by, which)};
+                const double wide[3] = {far[1].force - far[0].force,
+                                        far[1].pinion_torque - far[0].pinion_torque,
+                                        far[1].wheel_torque - far[0].wheel_torque};
+                const double narrow[3] = {near[1].force - near[0].force,
+                                          near[1].pinion_torque - near[0].pinion_torque,
+                                          near[1].wheel_torque - near[0].wheel_torque};
+                for (int k = 0; k < 3; ++k) {
+                    const double by = narrow[k] / h;
+                    const double size = fabs(got[k]) + 1e-3 * fabs(got[0]);
+                    if (fabs(by - 0.5 * wide[k] / h) > 2e-6 * size) {
+                        ++rejected; /* a kink between */
+                        continue;
+                    }
+                    GM_ASSERT_ABS(got[k], by, 2e-5 * size);
+                    ++met;
+                }
+            }
+            GM_ASSERT(status == GM_OK || status == GM_POSE_OUT_OF_MESH);
+        }
+        random_case_free(&c);
+    }
+    GM_ASSERT(met > 1000);
+    GM_ASSERT(rejected < met / 5);
+}
+
+/* ---------------------------------------------------------------------------------------------
+ * What the corner is there for
+ * ------------------------------------------------------------------------------------------- */
+
+/* NREL 5 MW, stage 3, and a helical and a spur pair of the tests. */
+static gm_pair pair_of(int which) {
+    gm_pair_params params;
+    gm_pair_params_default(&params);
+    const double degree = 0.017453292519943295;
+    switch (which) {
+    case 0:
+        return spur_pair();
+    case 1:
+        return reference_pair(REFERENCE_FACE_WIDTH);
+    default:
+        params.pinion_teeth = 36;
+        params.wheel_teeth = -93;
+        params.normal_module = 21e-3;
+        params.normal_pressure_angle = 20.0 * degree;
+        params.helix_angle = which == 2 ? 0.0 : 8.0 * degree;
+        params.center_distance = which == 2 ? 584e-3 : 590e-3;
+        params.face_width = 200e-3;
+        params.pinion_profile_shift = 0.5;
+        return make_pair(&params);
+    }
+}
+
+/* Work over a closed way of both angles: nothing is lost and nothing won. */
+static void energy_is_kept_over_a_mesh_cycle(void) {
+    for (int which = 0; which < 4; ++which) {
+        for (int corner = GM_CORNER_OFF; corner <= GM_CORNER_ON; ++corner) {
+            gm_test_context("pair %d, corner %d", which, corner);
+            const gm_pair pair = pair_of(which);
+            room where;
+            gm_mesh *mesh;
+            GM_ASSERT_INT(make_mesh(&where, &pair, NULL, NULL, corner, 0.0, &mesh), GM_OK);
+            enum { STEPS = 4000 };
+            const double m = pair.normal_module;
+            double work = 0.0, turned_over = 0.0;
+            for (int k = 0; k < STEPS; ++k) {
+                /* x goes round once per base pitch of the roll. */
+                const double turn = 6.283185307179586 * k / STEPS;
+                const double x = 0.5 * pair.backlash + m * (5e-3 + 2e-3 * sin(turn));
+                const double x_by = m * 2e-3 * cos(turn);
+                const double roll_by = pair.transverse_base_pitch / 6.283185307179586;
+                gm_position position;
+                gm_mesh_result r;
+                (void)gm_position_from_pinion_angle(&pair, roll_by * turn / pair.pinion.base_radius,
+                                                    x, 0.0, &position);
+                GM_ASSERT_INT(gm_mesh_evaluate_at(mesh, &position, 0, NULL, &r), GM_OK);
+                const double pinion_by = roll_by / pair.pinion.base_radius;
+                const double wheel_by = (roll_by - x_by) / pair.wheel.base_radius;
+                work += (r.pinion_torque * pinion_by - r.wheel_torque * wheel_by) *
+                        6.283185307179586 / STEPS;
+                turned_over += fabs(r.force * x_by) * 6.283185307179586 / STEPS;
+            }
+            if (corner == GM_CORNER_ON) {
+                GM_ASSERT_ABS(work, 0.0, 1e-5 * turned_over);
+            } else {
+                GM_ASSERT(fabs(work) > 1e-3 * turned_over); /* flanks leave with some overlap */
+            }
+        }
+    }
+}
+
+/* Largest first or second difference of the force on a way of so many steps. */
+static double largest_difference(const gm_mesh *mesh, const gm_motion *begins, int coordinate,
+                                 double range, int steps, int order) {
+    const gm_pair *pair = gm_mesh_pair(mesh);
+    double last[2] = {(double)NAN, (double)NAN}, largest = 0.0;
+    for (int k = 0; k <= steps; ++k) {
+        const double by = range * k / steps;
+        gm_motion there = *begins;
+        double *const places[5] = {&there.pose.center_distance_change, &there.pose.offset,
+                                   &there.pose.axial_shift, &there.pose.skew,
+                                   &there.pose.inclination};
+        if (coordinate < 2) {
+            there = turned(pair, begins, coordinate, by);
+        } else {
+            *places[coordinate - 2] += by;
+        }
+        gm_mesh_result r;
+        GM_ASSERT_INT(gm_mesh_evaluate_posed(mesh, &there, 0, NULL, &r), GM_OK);
+        const double difference =
+            order == 1 ? r.force - last[0] : r.force - 2.0 * last[0] + last[1];
+        largest = fmax(largest, isnan(difference) ? 0.0 : fabs(difference));
+        last[1] = last[0];
+        last[0] = r.force;
+    }
+    return largest;
+}
+
+/*
+ * With steps a quarter as long, the largest difference is a quarter without a jump, and the largest second difference a
+ * sixteenth without a kink. With the path's ends as they are neither is so.
+ */
+static void nothing_jumps_and_helical_gears_have_no_kinks(void) {
+    for (int which = 0; which < 4; ++which) {
+        const gm_pair pair = pair_of(which);
+        const int is_helical = pair.face_advance != 0.0;
+        room with_room, without_room;
+        gm_mesh *with, *without;
+        GM_ASSERT_INT(make_mesh(&with_room, &pair, NULL, NULL, GM_CORNER_ON, 0.0, &with), GM_OK);
+        GM_ASSERT_INT(make_mesh(&without_room, &pair, NULL, NULL, GM_CORNER_OFF, 0.0, &without),
+                      GM_OK);
+        const double m = pair.normal_module, p = pair.transverse_base_pitch;
+
+        /* Deeper and less deep, but never out of contact: ideal flanks touch with a kink. */
+        const double range[7] = {1e-2 * m / pair.pinion.base_radius,
+                                 4e-3 * m / pair.wheel.base_radius,
+                                 4e-3 * m,
+                                 4e-3 * m,
+                                 0.02 * m,
+                                 0.01 * p / pair.face_width,
+                                 0.01 * p / pair.face_width};
+        for (int coordinate = -1; coordinate < 7; ++coordinate) {
+            gm_test_context("pair %d, coordinate %d", which, coordinate);
+            gm_motion begins = {.pose.skew = coordinate < 5 ? 0.0 : 1e-6};
+            const double x = 0.5 * pair.backlash + 5e-3 * m;
+            (void)gm_position_from_pinion_angle(&pair, 0.0, x, 0.0, &begins.position);
+
+            /* Roll at a held x: coordinate -1. The others begin where a pair enters. */
+            if (coordinate < 0) {
+                double jumps[2] = {0.0, 0.0}, kinks[2] = {0.0, 0.0}, bare[2] = {0.0, 0.0};
+                for (int fine = 0; fine < 2; ++fine) {
+                    const int steps = fine == 0 ? 4000 : 16000;
+                    double last[2] = {(double)NAN, (double)NAN}, last_bare = (double)NAN;
+                    for (int k = 0; k <= steps; ++k) {
+                        gm_position there = begins.position;
+                        there.phase = p * k / steps;
+                        gm_mesh_result r;
+                        GM_ASSERT_INT(gm_mesh_evaluate_at(with, &there, 0, NULL, &r), GM_OK);
+                        const double second = fabs(r.force - 2.0 * last[0] + last[1]);
+                        if (second > kinks[fine]) {
+                            kinks[fine] = second;
+                        }
+                        if (fabs(r.force - last[0]) > jumps[fine]) {
+                            jumps[fine] = fabs(r.force - last[0]);
+                        }
+                        last[1] = last[0];
+                        last[0] = r.force;
+                        GM_ASSERT_INT(gm_mesh_evaluate_at(without, &there, 0, NULL, &r), GM_OK);
+                        if (fabs(r.force - last_bare) > bare[fine]) {
+                            bare[fine] = fabs(r.force - last_bare);
+                        }
+                        last_bare = r.force;
+                    }
+                }
+                GM_ASSERT(jumps[1] < 0.3 * jumps[0]);
+                if (is_helical) {
+                    GM_ASSERT(kinks[1] < 0.09 * kinks[0]);
+                } else {
+                    GM_ASSERT(bare[1] > 0.9 * bare[0]);
+                }
+                continue;
+            }
+            const double first[2] = {
+                largest_difference(with, &begins, coordinate, range[coordinate], 1000, 1),
+                largest_difference(with, &begins, coordinate, range[coordinate], 4000, 1)};
+            GM_ASSERT(first[1] < 0.3 * first[0]);
+            if (is_helical) {
+                const double second[2] = {
+                    largest_difference(with, &begins, coordinate, range[coordinate], 250, 2),
+                    largest_difference(with, &begins, coordinate, range[coordinate], 1000, 2)};
+                GM_ASSERT(second[1] < 0.09 * second[0]);
+            }
+        }
+    }
+}
+
+/* The torque of the load is what is carried, with the arms of the corners. */
+static void equilibrium_carries_the_torque(void) {
+    for (int which = 0; which < 4; ++which) {
+        const gm_pair pair = pair_of(which);
+        room where;
+        gm_mesh *mesh;
+        GM_ASSERT_INT(make_mesh(&where, &pair, NULL, NULL, GM_CORNER_ON, 0.0, &mesh), GM_OK);
+        const double torque = 5e-3 * pair.normal_module * 1e8 * pair.wheel.base_radius;
+        int at_corners = 0;
+        for (int k = 0; k < 100; ++k) {
+            gm_test_context("pair %d, position %d", which, k);
+            const double angle = 1e-2 * k * pair.pinion.pitch_angle;
+            double x;
+            gm_mesh_result r;
+            GM_ASSERT_INT(gm_static_equilibrium(mesh, angle, torque, (double)NAN, NULL, &x, &r),
+                          GM_OK);
+            GM_ASSERT_REL(r.wheel_torque, torque, 1e-9);
+            at_corners += fabs(r.wheel_torque - r.force * pair.wheel.base_radius) > 1e-9 * torque;
+        }
+        GM_ASSERT(at_corners > 2);
+    }
+}
+
+/* A pair of which a tip reaches to the mate's base circle, and what no corner goes with. */
+static void what_corners_do_not_go_with_is_refused(void) {
+    const gm_pair pair = reference_pair(REFERENCE_FACE_WIDTH);
+    gm_mesh_params params;
+    const char *field, *requirement;
+    gm_mesh_params_default(&params);
+    params.stiffness = 1e8;
+    params.corner_contact = GM_CORNER_ON;
+    GM_ASSERT_INT(gm_mesh_params_check(&params, &field, &requirement), GM_OK);
+    params.friction_coefficient = 0.05;
+    GM_ASSERT_INT(gm_mesh_params_check(&params, &field, &requirement), GM_ERR_PARAMETER);
+    GM_ASSERT_STRING(field, "corner_contact");
+    params.friction_coefficient = 0.0;
+    params.model = GM_MODEL_SIMPLE;
+    GM_ASSERT_INT(gm_mesh_params_check(&params, &field, &requirement), GM_ERR_PARAMETER);
+    GM_ASSERT_STRING(field, "corner_contact");
+    params.model = GM_MODEL_3D;
+    params.corner_contact = 3;
+    GM_ASSERT_INT(gm_mesh_params_check(&params, &field, &requirement), GM_ERR_PARAMETER);
+    GM_ASSERT_STRING(field, "corner_contact");
+
+    /* Neither a tangent nor a cache. */
+    room where;
+    gm_mesh *mesh;
+    GM_ASSERT_INT(make_mesh(&where, &pair, NULL, NULL, GM_CORNER_ON, 0.0, &mesh), GM_OK);
+    const gm_motion motion = {.position = {.phase = 0.0}};
+    gm_tangent tangent;
+    GM_ASSERT_INT(gm_mesh_tangent(mesh, &motion, &tangent), GM_ERR_PARAMETER);
+    gm_cache_params cache;
+    gm_cache_params_default(&cache);
+    GM_ASSERT_INT(gm_cache_size(&cache, mesh), 0);
+
+    /* 10 teeth without shift are cut by the tips of 60. */
+    gm_pair_params cut;
+    gm_pair_params_default(&cut);
+    cut.pinion_teeth = 10;
+    cut.wheel_teeth = 60;
+    cut.normal_module = 2e-3;
+    cut.normal_pressure_angle = 0.3490658503988659;
+    cut.center_distance = 70e-3;
+    cut.face_width = 10e-3;
+    const gm_pair undercut = make_pair(&cut);
+    GM_ASSERT_INT(make_mesh(&where, &undercut, NULL, NULL, GM_CORNER_ON, 0.0, &mesh),
+                  GM_ERR_GEOMETRY);
+    GM_ASSERT_INT(make_mesh(&where, &undercut, NULL, NULL, GM_CORNER_BY_LAW, 0.0, &mesh), GM_OK);
+}
+
+int main(int argc, char **argv) {
+    static const gm_test tests[] = {
+        GM_TEST(forces_are_sums_over_points),
+        GM_TEST(derivatives_are_those_of_differences),
+        GM_TEST(energy_is_kept_over_a_mesh_cycle),
+        GM_TEST(nothing_jumps_and_helical_gears_have_no_kinks),
+        GM_TEST(equilibrium_carries_the_torque),
+        GM_TEST(what_corners_do_not_go_with_is_refused),
+    };
+    return gm_test_main("unit.corner_mesh", tests, GM_TEST_COUNT(tests), argc, argv);
+}
