@@ -744,6 +744,22 @@ class Values(Case):
         result = self.accepted("run.ini", "--check", "--set", "analysis.type=static", "--set", "load.end_Nm=5")
         self.assertIn("--set load.end_Nm: warning: not used with analysis.loads = 1\n", result.stderr)
 
+    def test_corners_go_with_rigid_flanks_alone(self):
+        corner = ["--set", "mesh.corner_contact=on"]
+        for others, name in [(["mesh.friction_coefficient=0.1"], "friction"),
+                             (["mesh.stiffness_N_per_m=", "mesh.damping_Ns_per_m="], "mesh.law = elastic"),
+                             (["analysis.type=static", "output.load_distribution=q.csv"], "output.load_distribution")]:
+            self.refused("--set mesh.corner_contact: ", f"must be off with {name} (got on)",
+                         arguments=corner + [word for text in others for word in ("--set", text)])
+        self.refused("--set solver.lookup: ", "must be off with corner contact", arguments=[*corner, "--set", "solver.lookup=on"])
+        few = ["gears.pinion_teeth=8", "gears.center_distance_mm=49", "gears.pinion_tip_diameter_mm="]
+        self.refused("--set mesh.corner_contact: ", "a tip reaches to the base circle of its mate",
+                     arguments=corner + [word for text in few for word in ("--set", text)])
+        self.write("run.ini", PARAMS)
+        self.accepted("run.ini", "--check", *corner)
+        result = self.accepted("run.ini", "--check", *corner, "--set", "mesh.model=simple")
+        self.assertIn("--set mesh.corner_contact: warning: not used with mesh.model = simple\n", result.stderr)
+
     def test_lookup_needs_helical_gears_and_stays_within_a_tooth(self):
         spur = ["--set", "gears.helix_angle_deg=0", "--set", "gears.center_distance_mm=71.5"]
         for key in ("pinion", "wheel"):

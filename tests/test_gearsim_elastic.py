@@ -200,7 +200,7 @@ class Elastic(unittest.TestCase):
 
     def test_corner_contact_is_not_there(self):
         self.rows(SPUR62 | {"mesh": {"corner_contact": "off"}})
-        self.refused(SPUR62 | {"mesh": {"corner_contact": "on"}}, "run.ini:", "mesh.corner_contact: must be off (got on)")
+        self.refused(SPUR62 | {"mesh": {"corner_contact": "on"}}, "run.ini:", "mesh.corner_contact: must be off with mesh.law = elastic (got on)")
 
     def test_rubbing_teeth_lose_what_their_sliding_takes(self):
         """Loss over power in per coefficient: elastic spur teeth share the load next to equally [Ohlendorf]."""

@@ -19,7 +19,7 @@
 enum mesh_model { MODEL_SIMPLE, MODEL_3D };
 enum mesh_law { LAW_CONSTANT, LAW_ISO6336, LAW_ELASTIC };
 enum friction_law { FRICTION_CONSTANT, FRICTION_ISO14179, FRICTION_BENEDICT_KELLEY };
-enum corner_contact { CORNER_CONTACT_OFF };
+enum corner_contact { CORNER_CONTACT_OFF, CORNER_CONTACT_ON };
 enum drive_kind { DRIVE_SPEED, DRIVE_TORQUE };
 enum analysis_type { ANALYSIS_DYNAMIC, ANALYSIS_STATIC };
 enum static_period { PERIOD_MESH, PERIOD_PINION, PERIOD_HUNTING };
@@ -170,6 +170,11 @@ typedef struct config {
 static inline int config_has_friction(const config *conf) {
     return conf->model == MODEL_3D &&
            (conf->friction_law != FRICTION_CONSTANT || conf->friction_coefficient > 0);
+}
+
+/* Whether lines of contact go on beyond the path. */
+static inline int config_has_corners(const config *conf) {
+    return conf->model == MODEL_3D && conf->corner_contact == CORNER_CONTACT_ON;
 }
 
 /* Room for config_note(). */

@@ -171,6 +171,20 @@ static int check_output_is_no_input(const config *conf) {
            check_not_input(conf, conf->load_file, "load.file");
 }
 
+/* What corners do not go with. */
+static int check_corners(const config *conf) {
+    const char *other = conf->law == LAW_ELASTIC    ? "mesh.law = elastic"
+                        : config_has_friction(conf) ? "friction"
+                        : conf->analysis == ANALYSIS_STATIC && conf->load_distribution != NULL
+                            ? "output.load_distribution"
+                            : NULL;
+    if (!config_has_corners(conf) || other == NULL) {
+        return 0;
+    }
+    config_complain(conf, "mesh.corner_contact", "must be off with %s (got on)", other);
+    return 1;
+}
+
 int config_check_together(const config *conf) {
     int faults = check_profile_window(conf);
 
@@ -180,6 +194,7 @@ int config_check_together(const config *conf) {
     if (conf->model == MODEL_3D) {
         faults += modification_keys_check(conf);
     }
+    faults += check_corners(conf);
     faults += conf->analysis == ANALYSIS_STATIC ? check_static(conf) : check_dynamic(conf);
     return faults + check_output_is_no_input(conf);
 }

@@ -83,6 +83,8 @@ static gm_mesh_params params_of(const config *conf, const gear_mesh *mesh) {
     params.simple_stiffness = share * conf->simple_stiffness;
     params.pose = conf->pose;
 
+    params.corner_contact = config_has_corners(conf) ? GM_CORNER_ON : GM_CORNER_BY_LAW;
+
     /* What elastic teeth are made of, and the load that their stiffness is stated at. */
     params.pinion_youngs_modulus = conf->pinion_youngs_modulus;
     params.wheel_youngs_modulus = conf->wheel_youngs_modulus;
@@ -215,9 +217,16 @@ static int refuse(const config *conf, const gear_mesh *mesh, const gm_mesh_param
     if (status == GM_POSE_OUT_OF_MESH) {
         return refuse_pose(conf, &mesh->pair);
     }
-    return status == GM_ERR_GEOMETRY && conf->law == LAW_ELASTIC
-               ? refuse_elastic(conf, &mesh->pair, params, memory, size)
-               : EXIT_RUN_FAILED;
+    if (status == GM_ERR_GEOMETRY && conf->law == LAW_ELASTIC) {
+        return refuse_elastic(conf, &mesh->pair, params, memory, size);
+    }
+    if (status == GM_ERR_GEOMETRY && config_has_corners(conf)) {
+        config_complain(conf, "mesh.corner_contact",
+                        "must be off for these gears: a tip reaches to the base circle of its "
+                        "mate, where it has no flank to touch (got on)");
+        return EXIT_BAD_INPUT;
+    }
+    return EXIT_RUN_FAILED;
 }
 
 /* Too many lines of contact at once, or gears that ISO 6336-1 does not know. */

@@ -165,8 +165,8 @@ static const key_spec keys[] = {
      .standard = "0.3", .help = "nu of the wheel's material"},
     {NAME("mesh", "stations"), COUNT(2, 97), INTO(stations), .standard = "17", .used = FOR_ELASTIC,
      .help = "along the face, at which the teeth deflect; 17: 0.3 % in the force"},
-    {NAME("mesh", "corner_contact"), CHOICE("off"), INTO(corner_contact), .standard = "off",
-     .help = "of tip edges beside the path: there is none yet, contact ends where the path does"},
+    {NAME("mesh", "corner_contact"), CHOICE("off on"), INTO(corner_contact), .standard = "off", .used = FOR_3D,
+     .help = "on: tip edges touch before and after the path of contact, so that the force does not jump; not with elastic teeth"},
 
     {NAME("pose", "center_distance_change_um"), NUMBER(UNIT_UM, UP_TO(1e9)), INTO(pose.center_distance_change),
      .standard = "0", .help = "the wheel's axis has moved away from the pinion's"},

@@ -311,10 +311,15 @@ static int see_means(dynamic_run *run, double row, int i) {
     }
 }
 
-/* The momentum of the bodies tells the force, unless friction has its share in it. */
+/* The momentum of the bodies tells the force, unless torques are not that of one force: with friction, or at corners. */
+static int is_force_of_momentum(const config *conf) {
+    return !config_has_friction(conf) && !config_has_corners(conf);
+}
+
 static int takes_mean(const dynamic_run *run, const dynamic_column *column) {
     const int is_force = column->need >= NEEDS_MESH;
-    return run->factor > 1 && column->mean != NULL && !(is_force && config_has_friction(run->conf));
+    return run->factor > 1 && column->mean != NULL &&
+           !(is_force && !is_force_of_momentum(run->conf));
 }
 
 /* Sample i of a row's period; values that nobody needs are left as they were. */
@@ -551,7 +556,7 @@ int dynamics_note(const gear_mesh *gears, config *conf) {
         snprintf(text, sizeof text,
                  "low-pass filtered, %sload_torque_Nm from means (%s of %.6g s), "
                  "but time_s, pinion_speed_rpm, angles and pairs_in_contact",
-                 config_has_friction(conf) ? "" : "contact_force_N and ",
+                 is_force_of_momentum(conf) ? "contact_force_N and " : "",
                  mean_kind(conf, gears) == SAMPLE_HAT ? "triangle, each side" : "box",
                  1.0 / (conf->output_rate * conf->oversampling));
     }

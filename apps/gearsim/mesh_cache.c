@@ -43,6 +43,11 @@ int mesh_cache_check(const config *conf, const gear_mesh *gears) {
                         "must be off with friction, which the tables do not hold (got on)");
         return EXIT_BAD_INPUT;
     }
+    if (config_has_corners(conf)) {
+        config_complain(conf, "solver.lookup",
+                        "must be off with corner contact, which the tables do not hold (got on)");
+        return EXIT_BAD_INPUT;
+    }
     if (conf->lookup_depth > deepest) {
         config_complain(conf, "solver.lookup_depth_um",
                         "must be at most a quarter of the base pitch, %.9g (got %.9g)",

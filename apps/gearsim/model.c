@@ -115,6 +115,8 @@ int model_init(gear_model *model, const config *conf, const gear_mesh *gears) {
     model->noise = NULL;
     model->cache = NULL;
     model->mesh = conf->model;
+    model->jumps =
+        conf->model == MODEL_3D && gears->pair.face_advance == 0.0 && !config_has_corners(conf);
     if (drive_create(&model->drive, conf) != 0) {
         return EXIT_RUN_FAILED;
     }
@@ -575,12 +577,13 @@ int model_derivative_and_tangent(const gear_model *model, double time, const dou
  * Share of a tooth that a step may take. The force of a spur gear jumps twice in a tooth, where a pair comes and where
  * one leaves: if both are close together, all steps could pass over what lies between.
  */
-static double tooth_share(const gm_pair *pair) {
+static double tooth_share(const gear_model *model) {
+    const gm_pair *pair = &model->gears->pair;
     const double usual = 1.0 / steps_per_tooth;
     const double rest = pair->transverse_contact_ratio - floor(pair->transverse_contact_ratio);
     const double between = fmin(rest, 1.0 - rest);
 
-    return pair->face_advance == 0.0 ? fmin(usual, fmax(0.5 * between, least_share)) : usual;
+    return model->jumps ? fmin(usual, fmax(0.5 * between, least_share)) : usual;
 }
 
 /* Part of a turn that a step may take: of a tooth, which the simple model does not have, and of a ripple. */
@@ -589,7 +592,7 @@ static double step_angle(const gear_model *model) {
     const double order = highest_order(model);
     const double wave = order > 0.0 ? two_pi / order / steps_per_tooth : HUGE_VAL;
     const double tooth =
-        model->mesh == MODEL_3D ? tooth_share(pair) * pair->pinion.pitch_angle : HUGE_VAL;
+        model->mesh == MODEL_3D ? tooth_share(model) * pair->pinion.pitch_angle : HUGE_VAL;
 
     return fmin(tooth, wave);
 }
@@ -659,8 +662,7 @@ double model_max_step(const gear_model *model, double time, const double state[]
 }
 
 static double jump_share(const gear_model *model) {
-    const int jumps = model->mesh == MODEL_3D && model->gears->pair.face_advance == 0.0;
-    return jumps ? share_of_jumps : 1.0;
+    return model->jumps ? share_of_jumps : 1.0;
 }
 
 void model_error_weights(const gear_model *model, double relative_tolerance,

@@ -44,6 +44,7 @@ enum model_state {
 typedef struct gear_model {
     const gear_mesh *gears;
     enum mesh_model mesh;
+    int jumps; /* the force does, where a pair of spur gears comes or goes */
     pinion_drive drive;
     load_signal load;
     double pinion_mobility;   /* r_bp^2 / I_p, 0 if its speed is prescribed (1/kg) */
