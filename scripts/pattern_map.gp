@@ -63,7 +63,7 @@ do for [format in formats] {
             set colorbox user origin screen left + 0.322, screen above - 0.33 size screen 0.014, screen 0.33
             set cbtics step(k) format '%g'
             set cblabel name(k) . ' / (' . unit(k) . ')' offset 0.4,0 noenhanced
-            set xlabel 'z / mm, from face I (left) to face II' offset 0,0.3
+            set xlabel (i == 1 ? 'z / mm, from face I (left) to face II' : '') offset 0,0.3
             set ylabel 'diameter / mm, from root to tip' offset 0,0
             set label 3 gear(i) . ', ' . name(k) at graph 0, graph 1.045 left font ',13'
             set arrow 1 from z_low, low(i) to z_high, low(i) nohead front dt (8,5) lw 1 lc rgb grey

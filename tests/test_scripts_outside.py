@@ -261,7 +261,12 @@ class Packages(Case):
             self.assertEqual(self.call(script)[0], 2)
             self.assertEqual(self.call(script, "--no-such-option", "x")[0], 2)
             self.assertIn("there is no such folder", self.call(script, "run.csv", "--output", "no/where")[2])
-
+        for script in ("cases", "report", "summary", "sweep"):
+            status, stdout, stderr = self.call(script, "--help")
+            self.assertEqual((status, stderr), (0, ""))
+            self.assertIn("Exit status:", stdout)
+            self.assertRegex(stdout, rf"(?m)^    scripts/{script} ")
+            self.assertEqual(self.call(script, "--no-such-option", "x")[0], 2)
 
     def test_help_of_the_bash_scripts_is_their_whole_head(self):
         for name in ("bench", "demo", "reference", "setup", "test"):

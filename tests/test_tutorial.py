@@ -2,8 +2,8 @@
 # SPDX-FileCopyrightText: The gearmesh authors
 # SPDX-License-Identifier: BSD-3-Clause
 """
-The commands of libgearmesh/docs/tutorial.md are run as they stand there, one after the other, and what it says of their
-results holds.
+The commands of libgearmesh/docs/tutorial.md, and then those of gallery.md, are run as they stand there, one after the
+other, and what the tutorial says of their results holds.
 
     test_tutorial.py FOLDER_OF_BUILD [-v]
 """
@@ -17,19 +17,27 @@ import unittest
 
 ROOT = os.path.abspath(os.path.join(os.path.dirname(os.path.abspath(__file__)), os.pardir))
 BUILD = []
-TUTORIAL = os.path.join(ROOT, "libgearmesh", "docs", "tutorial.md")
+TUTORIAL, GALLERY = (os.path.join(ROOT, "libgearmesh", "docs", name) for name in ("tutorial.md", "gallery.md"))
+BLOCK = re.compile(r"<!-- Run by the test script.tutorial. -->\n```sh\n(.*?)```", re.DOTALL)
 
 
 class Tutorial(unittest.TestCase):
     def test_all_of_it(self):
         with open(TUTORIAL, encoding="utf-8") as file:
             text = file.read()
-        blocks = re.findall(r"<!-- Run by the test script.tutorial. -->\n```sh\n(.*?)```", text, re.DOTALL)
+        blocks = BLOCK.findall(text)
         self.assertEqual(len(blocks), len(re.findall(r"(?m)^## \d", text)))
+
+        # The gallery goes on with what the tutorial has made.
+        with open(GALLERY, encoding="utf-8") as file:
+            gallery = file.read()
+        blocks += BLOCK.findall(gallery)
+        self.assertEqual(len(BLOCK.findall(gallery)), gallery.count("```sh"))
 
         folder = tempfile.mkdtemp()
         self.addCleanup(shutil.rmtree, folder)
-        os.symlink(os.path.join(ROOT, "scripts"), os.path.join(folder, "scripts"))
+        for name in ("scripts", "data"):
+            os.symlink(os.path.join(ROOT, name), os.path.join(folder, name))
         os.makedirs(os.path.join(folder, "build"))
         os.symlink(BUILD[0], os.path.join(folder, "build", "release"))
         environment = {**os.environ, "GEARMESH_BUILD_DIR": BUILD[0]}
