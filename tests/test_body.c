@@ -242,6 +242,34 @@ static void any_teeth_may_meet(void) {
     }
 }
 
+/* The teeth that meet are those within half a base pitch once the helix has turned the shift of the face into x. */
+static void an_axial_shift_counts_in_which_teeth_meet(void) {
+    const gm_pair pair = reference_pair(REFERENCE_FACE_WIDTH);
+    const double p_bt = pair.transverse_base_pitch, tangent = tan(pair.base_helix_angle);
+    static const struct {
+        double offset, shift,
+            expected; /* x as the bodies stand, dz tan(beta_b), x that counts: in base pitches */
+    } cases[] = {{0.3, 0.4, -0.7},  {0.095, 0.4, 0.095},    {0.105, 0.4, -0.895},
+                 {-0.3, -0.4, 0.7}, {-0.095, -0.4, -0.095}, {0.3, -0.4, 0.3},
+                 {0.0, 0.497, 0.0}, {0.0, 0.503, -1.0}};
+    plain_mesh room;
+    gm_mesh *mesh;
+    GM_ASSERT_INT(plain_mesh_make(&room, &pair, NULL, NULL, 1e8, 0.0, &mesh), GM_OK);
+    for (int i = 0; i < (int)(sizeof cases / sizeof cases[0]); ++i) {
+        gm_test_context("case %d", i);
+        const motion_plan plan = {
+            .angle = {0.3, (pair.pinion.base_radius * 0.3 - cases[i].offset * p_bt) /
+                               pair.wheel.base_radius},
+            .pose = {.axial_shift = cases[i].shift * p_bt / tangent}};
+        gm_body bodies[2];
+        gm_motion motion;
+        moving_bodies(&pair, &plan, bodies);
+        GM_ASSERT_INT(gm_motion_of_bodies(mesh, &bodies[0], &bodies[1], &motion, NULL), GM_OK);
+        GM_ASSERT_ABS(motion.position.offset, cases[i].expected * p_bt, 1e-13);
+    }
+    gm_test_context("%s", "");
+}
+
 /* ---------------------------------------------------------------------------------------------
  * Loads
  * ------------------------------------------------------------------------------------------- */
@@ -691,6 +719,7 @@ int main(int argc, char **argv) {
     static const gm_test tests[] = {
         GM_TEST(motion_is_the_one_that_bodies_were_built_from),
         GM_TEST(any_teeth_may_meet),
+        GM_TEST(an_axial_shift_counts_in_which_teeth_meet),
         GM_TEST(loads_are_in_balance_and_turn_with_the_frame),
         GM_TEST(power_is_force_times_speed_of_approach),
         GM_TEST(friction_takes_its_loss),

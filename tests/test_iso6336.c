@@ -158,6 +158,23 @@ static void stiffness_is_that_of_the_pair(void) {
     GM_ASSERT_INT(gm_iso6336_warnings(&swapped), warnings);
 }
 
+/* Of gears with as many teeth as each other 1 is the one with the larger shift. */
+static void of_equal_numbers_of_teeth_the_larger_shift_is_first(void) {
+    for (int swapped = 0; swapped < 2; ++swapped) {
+        gm_pair_params params = plain_spur(25, 25);
+        params.pinion_profile_shift = swapped ? 0.1 : 0.3;
+        params.wheel_profile_shift = swapped ? 0.3 : 0.1;
+        params.center_distance = 0.0507;
+        const gm_pair pair = pair_of(&params);
+        const double q = 0.04723 + (0.15551 + 0.25791) / 25.0 - 0.00635 * 0.3 -
+                         0.11654 * 0.3 / 25.0 - 0.00193 * 0.1 - 0.24188 * 0.1 / 25.0 +
+                         0.00529 * 0.09 + 0.00182 * 0.01;
+        GM_ASSERT_REL(gm_iso6336_single_stiffness(&pair, 1.0), 0.8 / q * per_mm_um, 1e-12);
+        GM_ASSERT_REL(gm_iso6336_single_stiffness(&pair, 5e-4), 4e-4 / q * per_mm_um, 1e-12);
+        GM_ASSERT_INT(gm_iso6336_warnings(&pair), 0);
+    }
+}
+
 static void gears_outside_the_fit_are_told(void) {
     gm_pair_params params = nrel_stage_3();
     gm_pair pair = pair_of(&params);
@@ -179,6 +196,19 @@ static void gears_outside_the_fit_are_told(void) {
     params.center_distance = 0.0935;
     pair = pair_of(&params);
     GM_ASSERT_INT(gm_iso6336_warnings(&pair), GM_WARN_ISO6336_SHIFT_SUM);
+
+    /* Sums on the limits are within them. */
+    static const double within[4][2] = {{0.0, -0.5}, {1.5, 0.5}, {0.0, -0.5005}, {1.5, 0.5005}};
+    for (int k = 0; k < 4; ++k) {
+        gm_test_context("sum %g", within[k][0] + within[k][1]);
+        params = plain_spur(30, 60);
+        params.pinion_profile_shift = within[k][0];
+        params.wheel_profile_shift = within[k][1];
+        params.center_distance = k % 2 == 0 ? 0.0890 : 0.0935;
+        pair = pair_of(&params);
+        GM_ASSERT_INT(gm_iso6336_warnings(&pair), k < 2 ? 0 : GM_WARN_ISO6336_SHIFT_SUM);
+    }
+    gm_test_context("%s", "");
 
     params = plain_spur(30, 60);
     params.helix_angle = -46.0 * degree;
@@ -262,6 +292,7 @@ int main(int argc, char **argv) {
         GM_TEST(a_ring_is_as_stiff_as_a_rack),
         GM_TEST(profile_shifts_by_hand),
         GM_TEST(stiffness_is_that_of_the_pair),
+        GM_TEST(of_equal_numbers_of_teeth_the_larger_shift_is_first),
         GM_TEST(gears_outside_the_fit_are_told),
         GM_TEST(mesh_has_the_single_stiffness_over_the_common_face),
         GM_TEST(gears_without_a_stiffness_are_refused),

@@ -273,8 +273,31 @@ static void mean_stiffness_and_eigenfrequency_are_those_of_the_contact_ratio(voi
             2.0 * 3.14159265358979323846 * gm_mesh_eigenfrequency(mesh, 1.7e-3, 2.1e-3);
         GM_ASSERT_REL(omega * omega, spring * (r_bp * r_bp / 1.7e-3 + r_bw * r_bw / 2.1e-3), 1e-14);
         GM_ASSERT_NAN(gm_mesh_eigenfrequency(mesh, 0.0, 2.1e-3));
+        GM_ASSERT_NAN(gm_mesh_eigenfrequency(mesh, 2.1e-3, 0.0));
+        GM_ASSERT_NAN(gm_mesh_eigenfrequency(mesh, 2.1e-3, -1.0));
         GM_ASSERT_NAN(gm_mesh_eigenfrequency(mesh, 1.0, NAN));
+        GM_ASSERT_NAN(gm_mesh_eigenfrequency(mesh, NAN, 1.0));
+
+        /* Of gears for a watch, and of two bodies that are both prescribed. */
+        const double small =
+            2.0 * 3.14159265358979323846 * gm_mesh_eigenfrequency(mesh, 1e-9, 2e-9);
+        GM_ASSERT_REL(small * small, spring * (r_bp * r_bp / 1e-9 + r_bw * r_bw / 2e-9), 1e-14);
+        GM_ASSERT(gm_mesh_eigenfrequency(mesh, HUGE_VAL, HUGE_VAL) == 0.0);
     }
+
+    /* A law with a stiffness of its own: c' times the common face. */
+    plain_mesh room;
+    gm_mesh *mesh;
+    gm_mesh_params params;
+    gm_mesh_params_default(&params);
+    params.law = GM_LAW_ISO6336;
+    params.iso_blank_factor = 0.9;
+    GM_ASSERT_INT(gm_mesh_init(&mesh, &params, &pair, NULL, NULL, room.memory, sizeof room.memory),
+                  GM_OK);
+    GM_ASSERT_REL(gm_mesh_mean_stiffness(mesh),
+                  gm_iso6336_single_stiffness(&pair, 0.9) * REFERENCE_FACE_WIDTH *
+                      pair.transverse_contact_ratio,
+                  1e-14);
     GM_ASSERT_NAN(gm_mesh_mean_stiffness(NULL));
     GM_ASSERT_NAN(gm_mesh_mean_damping(NULL));
     GM_ASSERT_NAN(gm_mesh_eigenfrequency(NULL, 1.0, 1.0));

@@ -127,6 +127,7 @@ static void both_ways_to_a_position_agree(void) {
     GM_ASSERT_REL(a.phase, b.phase, 0.0);
     GM_ASSERT_REL(a.offset, b.offset, 0.0);
     /* [Paper, Eq. 11] */
+    GM_ASSERT(a.pinion_speed == 100.0 && b.pinion_speed == 0.0);
     GM_ASSERT_REL(a.offset_rate, 100.0 * pair.pinion.base_radius - 109.0 * pair.wheel.base_radius,
                   1e-14);
 }
@@ -176,6 +177,36 @@ static void angles_are_taken_up_to_1e9_rad(void) {
         state.wheel_angle = s * 1.1e9;
         GM_ASSERT_INT(gm_position_from_state(&pair, &state, &position), GM_STATE_OUT_OF_RANGE);
         GM_ASSERT_NAN(position.offset);
+    }
+}
+
+/* Speeds of both gears, x and its rate: the last number that is taken, and one beyond, either way. */
+static void speeds_and_offsets_have_their_limits(void) {
+    const gm_pair pair = reference_pair(REFERENCE_FACE_WIDTH);
+    gm_position position;
+    for (int s = -1; s <= 1; s += 2) {
+        gm_test_context("sign %d", s);
+        for (int gear = 0; gear < 2; ++gear) {
+            gm_state state = {.pinion_angle = 0.1, .wheel_angle = 0.11};
+            double *const speed = gear == 0 ? &state.pinion_speed : &state.wheel_speed;
+            *speed = s * 1e9;
+            GM_ASSERT_INT(gm_position_from_state(&pair, &state, &position), GM_OK);
+            *speed = s * 1.0000001e9;
+            GM_ASSERT_INT(gm_position_from_state(&pair, &state, &position), GM_STATE_OUT_OF_RANGE);
+            GM_ASSERT_NAN(position.offset_rate);
+        }
+        GM_ASSERT_INT(gm_position_from_pinion_angle(&pair, 0.1, s * 1e18, 0.0, &position), GM_OK);
+        GM_ASSERT_INT(gm_position_from_pinion_angle(&pair, 0.1, s * 1.0000001e18, 0.0, &position),
+                      GM_STATE_OUT_OF_RANGE);
+        GM_ASSERT_NAN(position.phase);
+        GM_ASSERT_INT(gm_position_from_pinion_angle(&pair, 0.1, 0.0, s * 1e9, &position), GM_OK);
+        GM_ASSERT_INT(gm_position_from_pinion_angle(&pair, 0.1, 0.0, s * 1.0000001e9, &position),
+                      GM_STATE_OUT_OF_RANGE);
+        GM_ASSERT_NAN(position.offset);
+        GM_ASSERT_NAN(position.phase);
+        GM_ASSERT_NAN(position.pinion_speed);
+        GM_ASSERT_INT(position.pinion_tooth, 0);
+        GM_ASSERT_INT(position.wheel_tooth, 0);
     }
 }
 
@@ -237,6 +268,7 @@ int main(int argc, char **argv) {
         GM_TEST(both_ways_to_a_position_agree),
         GM_TEST(half_a_base_pitch_is_the_limit_of_the_3d_model),
         GM_TEST(angles_are_taken_up_to_1e9_rad),
+        GM_TEST(speeds_and_offsets_have_their_limits),
         GM_TEST(numbers_that_are_none_are_refused),
         GM_TEST(null_pointers_are_refused),
     };
