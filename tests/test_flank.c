@@ -7,6 +7,8 @@
 #include "internal.h" /* what the objects hold */
 #include "reference_gear.h"
 
+#include <string.h>
+
 #define MEMORY_DOUBLES 4096
 
 static const gm_flanks_params small_sizes = {.teeth = 45,
@@ -292,6 +294,114 @@ static void peak_is_the_most_material_of_any_tooth(void) {
     GM_ASSERT_REL(flanks->side[GM_COAST].peak, 0.0, 0.0);
 }
 
+/* Whatever is changed, in any order: against a list of the highest node and the pitch of each tooth. */
+static void peak_follows_every_change(void) {
+    enum { TEETH = 7, TABLES = 8, NODES = 6 };
+    const gm_flanks_params sizes = {.teeth = TEETH,
+                                    .drive_tables = TABLES,
+                                    .drive_face_nodes = 2,
+                                    .drive_profile_nodes = 3,
+                                    .coast_tables = TABLES,
+                                    .coast_face_nodes = 3,
+                                    .coast_profile_nodes = 2};
+    uint64_t seed = 11;
+    for (int run = 0; run < 40; ++run) {
+        gm_flanks *flanks = small_flanks(&sizes);
+        double highest[2][TEETH] = {{0.0}}, pitch[2][TEETH] = {{0.0}};
+        int places[2] = {0, 0};
+        for (int change = 0; change < 60; ++change) {
+            gm_test_context("run %d, change %d", run, change);
+            const int side = (int)gm_test_uniform(&seed, 0.0, 2.0);
+            const int tooth = (int)gm_test_uniform(&seed, -1.0, TEETH) + (change % 9 ? 0 : -1);
+            const int one = tooth < 0 ? GM_ALL_TEETH : tooth;
+            double value = gm_test_uniform(&seed, -5e-6, 5e-6);
+            if (change % 4 == 0 && places[side] < TABLES) {
+                double values[NODES];
+                value = -1.0;
+                for (int k = 0; k < NODES; ++k) {
+                    values[k] = gm_test_uniform(&seed, -9e-6, 3e-6);
+                    value = fmax(value, values[k]);
+                }
+                GM_ASSERT_INT(gm_flanks_set_table(flanks, side, one, values, 1.0), GM_OK);
+                ++places[side];
+                for (int k = 0; k < TEETH; ++k) {
+                    highest[side][k] = one == GM_ALL_TEETH || one == k ? value : highest[side][k];
+                }
+            } else {
+                GM_ASSERT_INT(gm_flanks_set_pitch(flanks, side, one, value), GM_OK);
+                for (int k = 0; k < TEETH; ++k) {
+                    pitch[side][k] = one == GM_ALL_TEETH || one == k ? value : pitch[side][k];
+                }
+            }
+            for (int s = GM_DRIVE; s <= GM_COAST; ++s) {
+                double expected = -1.0;
+                for (int k = 0; k < TEETH; ++k) {
+                    expected = fmax(expected, highest[s][k] + pitch[s][k]);
+                }
+                GM_ASSERT_ABS(gm_flanks_peak(flanks, s), expected, 1e-20);
+            }
+        }
+    }
+    gm_test_context("%s", "");
+}
+
+/* Rows lie one behind the other, and tables too; a step from one to the next is none of the profile. */
+static void slope_is_that_of_the_steepest_cell_within_a_row(void) {
+    enum { FACES = 3, PROFILES = 5, TABLES = 3 };
+    const gm_flanks_params sizes = {.teeth = 45,
+                                    .drive_tables = TABLES,
+                                    .drive_face_nodes = FACES,
+                                    .drive_profile_nodes = PROFILES,
+                                    .coast_face_nodes = 2,
+                                    .coast_profile_nodes = 2};
+    uint64_t seed = 12;
+    for (int run = 0; run < 60; ++run) {
+        gm_test_context("run %d", run);
+        gm_flanks *flanks = small_flanks(&sizes);
+        double steepest = 0.0;
+        for (int table = 0; table < TABLES; ++table) {
+            double values[FACES][PROFILES];
+            for (int face = 0; face < FACES; ++face) {
+                const double height = gm_test_uniform(&seed, -50e-6, 50e-6);
+                for (int k = 0; k < PROFILES; ++k) {
+                    values[face][k] = height + gm_test_uniform(&seed, -1e-6, 1e-6);
+                    steepest = k == 0 ? steepest
+                                      : fmax(steepest, fabs(values[face][k] - values[face][k - 1]));
+                }
+            }
+            GM_ASSERT_INT(gm_flanks_set_table(flanks, GM_DRIVE, table, &values[0][0], 1.0), GM_OK);
+        }
+        GM_ASSERT_REL(gm_flanks_profile_slope(flanks, GM_DRIVE), steepest * (PROFILES - 1), 1e-9);
+    }
+    gm_test_context("%s", "");
+}
+
+/* Memory that is not clean, and no flanks where there can be none. */
+static void memory_may_hold_anything_before(void) {
+    static double memory[MEMORY_DOUBLES];
+    gm_flanks *flanks;
+    memset(memory, 0x5a, sizeof memory);
+    GM_ASSERT_INT(gm_flanks_init(&flanks, &small_sizes, memory, sizeof memory), GM_OK);
+    for (int side = GM_DRIVE; side <= GM_COAST; ++side) {
+        GM_ASSERT(gm_flanks_peak(flanks, side) == 0.0);
+        GM_ASSERT(gm_flanks_profile_slope(flanks, side) == 0.0);
+        const gm_penetration real = probe(flanks, side, 0.1), ideal = probe(NULL, side, 0.1);
+        GM_ASSERT_REL(real.drive, ideal.drive, 1e-11);
+        GM_ASSERT_REL(real.coast, ideal.coast, 1e-11);
+    }
+
+    gm_flanks_params wrong = small_sizes;
+    wrong.teeth = 0;
+    GM_ASSERT_INT(gm_flanks_init(&flanks, &wrong, memory, sizeof memory), GM_ERR_PARAMETER);
+    GM_ASSERT(flanks == NULL);
+    flanks = (gm_flanks *)memory;
+    GM_ASSERT_INT(gm_flanks_init(&flanks, &small_sizes, memory, 8), GM_ERR_MEMORY);
+    GM_ASSERT(flanks == NULL);
+    flanks = (gm_flanks *)memory;
+    GM_ASSERT_INT(gm_flanks_init(&flanks, &small_sizes, NULL, sizeof memory), GM_ERR_NULL);
+    GM_ASSERT(flanks == NULL);
+}
+
 /* ---------------------------------------------------------------------------------------------
  * Ramps
  * ------------------------------------------------------------------------------------------- */
@@ -503,6 +613,9 @@ int main(int argc, char **argv) {
         GM_TEST(the_callers_table_is_copied),
         GM_TEST(pitch_deviations_replace_each_other),
         GM_TEST(peak_is_the_most_material_of_any_tooth),
+        GM_TEST(peak_follows_every_change),
+        GM_TEST(slope_is_that_of_the_steepest_cell_within_a_row),
+        GM_TEST(memory_may_hold_anything_before),
         GM_TEST(ramps_replace_each_other_and_take_the_factor),
         GM_TEST(ramps_that_cannot_be_change_nothing),
         GM_TEST(teeth_and_sides_that_do_not_exist_are_refused),

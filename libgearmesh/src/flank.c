@@ -53,15 +53,12 @@ size_t gm_flanks_size(const gm_flanks_params *params) {
     return bytes <= SIZE_MAX / 2 ? (size_t)bytes : 0;
 }
 
-/* Lays one side out from `doubles` and `ints` on and returns the next free double. */
+/* Lays one side, all zero, out from `doubles` and `ints` on and returns the next free double. */
 static double *side_init(gmi_tables *side, int tables, int face_nodes, int profile_nodes, int teeth,
                          double *doubles, int *ints) {
     side->face_nodes = tables == 0 ? 0 : face_nodes;
     side->profile_nodes = tables == 0 ? 0 : profile_nodes;
     side->capacity = tables;
-    side->count = 0;
-    side->ramp_count = 0;
-    side->peak = 0.0;
 
     /* Tables, their peaks and the pitch deviations one behind the other. */
     side->values = doubles;
