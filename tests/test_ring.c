@@ -224,7 +224,7 @@ static void corners_meet_where_pairs_are_refused(void) {
         gm_test_context("60/-%d, teeth %d", teeth, i / 17);
         gm_pair_params params =
             ring_params(60, teeth, 2e-3, (teeth - 60) * 1e-3, 0.02 * (i % 5), -0.02 * (i % 5));
-        params.backlash = 10e-6 * (i % 3);
+        params.backlash = 100e-6 * (i % 3);
         params.pinion_tip_alteration = -0.04 * (i / 17);
         params.wheel_tip_alteration = -0.04 * (i / 17);
         const char *requirement;
