@@ -43,12 +43,6 @@ typedef struct flank_files {
     char *tooth_stiffness; /* factors of single teeth, NULL = 1 */
 } flank_files;
 
-/* Of the second half of a double-helical gear, NULL = as in the first. */
-typedef struct second_flank_files {
-    char *deviations;
-    char *pitch;
-} second_flank_files;
-
 /* Keys of one modification; MODIFICATION_SHAPE is the only one that is no number. */
 enum modification_field {
     MODIFICATION_AMOUNT,
@@ -75,8 +69,8 @@ typedef struct config {
 
     flank_files pinion_flanks;
     flank_files wheel_flanks;
-    second_flank_files pinion_second_flanks;
-    second_flank_files wheel_second_flanks;
+    flank_files pinion_second_flanks; /* of a double-helical gear, NULL = as in the first half */
+    flank_files wheel_second_flanks;
     double flank_scale;
     enum deviation_direction deviation_direction;
     double profile_from, profile_to, profile_blend;

@@ -254,6 +254,8 @@ void config_free(config *conf) {
     key_entries_free(conf->entries, gearsim_keys.count);
     free_flank_files(&conf->pinion_flanks);
     free_flank_files(&conf->wheel_flanks);
+    free_flank_files(&conf->pinion_second_flanks);
+    free_flank_files(&conf->wheel_second_flanks);
     free(conf->drive_file);
     free(conf->load_file);
     free(conf->output_file);

@@ -17,7 +17,7 @@ typedef struct flank_task {
 } flank_task;
 
 int gear_flanks_has_second(const config *conf, enum gm_role gear) {
-    const second_flank_files *files =
+    const flank_files *files =
         gear == GM_PINION ? &conf->pinion_second_flanks : &conf->wheel_second_flanks;
 
     return files->deviations != NULL || files->pitch != NULL;
@@ -33,7 +33,7 @@ static flank_task task_of(const config *conf, const gm_pair *pair, enum gm_role 
                        .pitch = files->pitch,
                        .gear = gear,
                        .teeth = is_pinion ? pair->pinion.teeth : pair->wheel.teeth};
-    const second_flank_files *second =
+    const flank_files *second =
         is_pinion ? &conf->pinion_second_flanks : &conf->wheel_second_flanks;
     if (half == 1 && second->deviations != NULL) {
         task.deviations_key = is_pinion ? "flanks.pinion_second_half" : "flanks.wheel_second_half";
