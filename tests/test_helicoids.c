@@ -141,6 +141,7 @@ static facing facing_of(const gm_pair *p, const gm_pose *pose, int side, int i, 
 /* Numbers of the whole test. */
 typedef struct tally {
     int cases, rings, points, ends;
+    int reaching;                  /* lines that only tilted axes bring in */
     double worst_point, worst_end; /* of what is allowed */
 } tally;
 
@@ -180,7 +181,7 @@ static void compare_line(const gm_pair *p, const gm_pose *pose, const gmi_engage
     gmi_tilted_line tilted;
     gmi_line_part part;
     gmi_tilt_line(p, at, side, origin, &tilted);
-    gmi_tilt_clip(p, at, side, origin, delta, 0, &part);
+    gmi_tilt_clip(p, at, side, origin, delta, 0, 0, &part);
     if (!(part.from < part.to)) {
         return;
     }
@@ -224,6 +225,32 @@ static void compare_line(const gm_pair *p, const gm_pose *pose, const gmi_engage
     }
 }
 
+/* A line that misses the path between parallel axes by more than its ends can move has no part on both flanks. */
+static void check_reach(const gm_pair *p, const gmi_engagement *at, int side, double phi_p,
+                        double phi_w, tally *all) {
+    gm_position position = {.phase = p->pinion.base_radius * phi_p + at->phase_shift};
+    position.offset =
+        p->pinion.base_radius * phi_p - p->wheel.base_radius * phi_w + at->offset_shift;
+    gmi_lines lines;
+    double reach;
+    gmi_lines_find(p, at, side, &position, &lines);
+    (void)gmi_tilt_bound(p, at, side, &reach);
+
+    /* Just as far from the path as that, before it and behind it. */
+    const double origins[2] = {lines.lower - lines.rise - reach, lines.upper - lines.fall + reach};
+    for (int k = 0; k < 2; ++k) {
+        gmi_line_part part;
+        gmi_tilt_clip(p, at, side, origins[k], lines.delta, 0, 0, &part);
+        const int is_outside = !(part.to - part.from > 1e-9);
+        GM_ASSERT(is_outside);
+
+        /* And some of it is needed. */
+        gmi_tilt_clip(p, at, side, k == 0 ? lines.lower - lines.rise : lines.upper - lines.fall,
+                      lines.delta, 0, 0, &part);
+        all->reaching += part.to - part.from > 1e-6;
+    }
+}
+
 /* Lengths within mm or so, as the tolerances above are for gears. */
 static int is_usual(const gm_pair *p) {
     return fabs(p->helix_angle) < 0.7 && p->normal_module > 0.5e-3 && p->normal_module < 20e-3 &&
@@ -234,7 +261,7 @@ static int is_usual(const gm_pair *p) {
 
 static void lines_between_posed_gears_are_those_of_helicoids(void) {
     uint64_t seed = UINT64_C(301);
-    tally all = {0, 0, 0, 0, 0.0, 0.0};
+    tally all = {0, 0, 0, 0, 0, 0.0, 0.0};
     for (int n = 0; all.cases < 400 && n < 6000; ++n) {
         gm_pair_params params;
         model_pair model;
@@ -277,6 +304,9 @@ static void lines_between_posed_gears_are_those_of_helicoids(void) {
             const double x = mirror * (0.5 * at.backlash + overlap) - at.offset_shift;
             const double phi_p = gm_test_uniform(&seed, -0.02, 0.02);
             const double phi_w = (pair.pinion.base_radius * phi_p - x) / pair.wheel.base_radius;
+            if (at.is_tilted) {
+                check_reach(&pair, &at, side, phi_p, phi_w, &all);
+            }
             const double middle = 0.5 * (pair.path_start + pair.path_end);
             const double origin = at.phase_origin[side] + mirror * pair.pinion.base_radius * phi_p;
             const int nearest = (int)floor((middle - origin) / pair.transverse_base_pitch);
@@ -286,6 +316,7 @@ static void lines_between_posed_gears_are_those_of_helicoids(void) {
         }
     }
     gm_test_context("all cases");
+    GM_ASSERT(all.reaching > 100);
     printf("%d cases, %d rings, %d points within %.2g, %d ends within %.2g of what is allowed ",
            all.cases, all.rings, all.points, all.worst_point, all.ends, all.worst_end);
     GM_ASSERT_INT(all.cases, 400);

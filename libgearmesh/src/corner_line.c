@@ -428,7 +428,7 @@ static OWN_STACK void tilt_line(const view *v, whole_line *whole) {
     const gmi_engagement *at = &v->mesh->engagement;
     gmi_line_part part;
     gmi_tilted_line tilted;
-    gmi_tilt_clip(pair, at, v->side, whole->origin, v->lines.delta, FACES_ALONE, &part);
+    gmi_tilt_clip(pair, at, v->side, whole->origin, v->lines.delta, FACES_ALONE, 1, &part);
     gmi_tilt_line(pair, at, v->side, whole->origin, &tilted);
     whole->gain = tilted.gain;
     for (int k = 0; k < 2; ++k) {

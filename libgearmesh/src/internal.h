@@ -157,8 +157,9 @@ void gmi_meshing_find_angles(const gm_pair *pair, double center_distance, gmi_me
  * what evaluates it knows nothing of rings: lengths of a ring, the centre distance and T are then below 0.
  */
 typedef struct gmi_engagement {
-    double center_distance;               /* x of the wheel's axis (m) */
-    double working_pressure_angle;        /* alpha_wt (rad) */
+    double center_distance;        /* x of the wheel's axis (m) */
+    double working_pressure_angle; /* alpha_wt (rad) */
+    double sin_pressure_angle, cos_pressure_angle;
     double line_of_action;                /* T = rho_p + rho_w of points that touch (m) */
     double wheel_base_radius;             /* (m) */
     double backlash;                      /* (m) */
@@ -176,12 +177,18 @@ typedef struct gmi_engagement {
 
     /* of the wheel's axis, seen from the pinion's, counter-clockwise from +x (rad) */
     double axis_direction;
+    double axis[2]; /* its unit vector */
 
     /* The wheel's rotation vector about the middle of its own face, along the line of action and across it. */
     int is_tilted;
     double along[2], across[2]; /* [side] -+theta.e, -+theta.t, upper signs drive (rad) */
     double face_center;         /* z of that middle (m) */
 } gmi_engagement;
+
+static inline int gmi_is_at_rest(const gm_pose *pose) {
+    return pose->center_distance_change == 0.0 && pose->offset == 0.0 && pose->axial_shift == 0.0 &&
+           pose->skew == 0.0 && pose->inclination == 0.0;
+}
 
 /* How fast the flanks of one side approach each other: the same all over it but for what a tilt does. */
 typedef struct gmi_rates {
@@ -191,6 +198,18 @@ typedef struct gmi_rates {
     /* Of the wheel's body across the line of action, as friction has it, at t1 = 0 and more of it per t1 (m/s). */
     double sideways[2];
 } gmi_rates;
+
+/* Line of action of a side in the transverse section: e along it, t across, clockwise from e on the drive side. */
+typedef struct gmi_plane {
+    double e[2], t[2];
+} gmi_plane;
+
+static inline gmi_plane gmi_plane_of(const gmi_engagement *at, double sign) {
+    const double s = at->sin_pressure_angle, c = sign * at->cos_pressure_angle;
+    const double e[2] = {at->axis[0] * s - at->axis[1] * c, at->axis[1] * s + at->axis[0] * c};
+    const gmi_plane plane = {{e[0], e[1]}, {sign * e[1], -sign * e[0]}};
+    return plane;
+}
 
 void gmi_rates_find(const gm_pair *pair, const gmi_engagement *at, double offset_rate,
                     const gm_pose *pose_rate, gmi_rates rates[2]);
@@ -448,8 +467,7 @@ typedef struct gmi_line_tangent {
     double t1_zero, per_place; /* t1 = t1_zero + per_place times the place in line.c */
     double direction[2];       /* of both tables in the order of line.c */
     double face
-        [2]
-        [2]; /* of the wheel's table where the walk is: slope across the face, and its rate; of the other */
+        [2]; /* of the wheel's table where a piece begins: slope across the face, and its rate */
     double part_contact[4];
     double part_slopes[3][2]; /* of the pinion's table by v2, the wheel's, the wheel's by v1 */
 } gmi_line_tangent;
@@ -526,9 +544,12 @@ typedef struct gmi_line_part {
     double from_by[GMI_COORDINATES], to_by[GMI_COORDINATES];
 } gmi_line_part;
 
-/* tables: a sum of 1 = the pinion's, 2 = the wheel's ends the line too, 4 = tips and starts do not. */
+/*
+ * tables: a sum of 1 = the pinion's, 2 = the wheel's ends the line too, 4 = tips and starts do not. from_by and to_by only
+ * with_gradients, and where there is a part.
+ */
 void gmi_tilt_clip(const gm_pair *pair, const gmi_engagement *at, int side, double rho_origin,
-                   double delta, int tables, gmi_line_part *part);
+                   double delta, int tables, int with_gradients, gmi_line_part *part);
 
 /* How far a line is beyond the tip of a gear: at_zero + per_t1 t1 (m), and how it moves. */
 typedef struct gmi_beyond {
@@ -553,6 +574,11 @@ typedef struct gmi_tilted_line {
 void gmi_tilt_line(const gm_pair *pair, const gmi_engagement *at, int side, double rho_origin,
                    gmi_tilted_line *line);
 
+/* Both at once; 0 where there is no part. */
+int gmi_tilt_follow(const gm_pair *pair, const gmi_engagement *at, int side, double rho_origin,
+                    double delta, int tables, int with_gradients, gmi_line_part *part,
+                    gmi_tilted_line *line);
+
 /* What the polynomials of a tangent are. */
 void gmi_tilt_tangent(const gm_pair *pair, const gmi_engagement *at, int side, double rho_origin,
                       double delta, const gmi_rates *rates, gmi_line_tangent *tangent);
@@ -560,8 +586,8 @@ void gmi_tilt_tangent(const gm_pair *pair, const gmi_engagement *at, int side, d
 /* d f / d delta of a side (1). */
 double gmi_tilt_gain(const gm_pair *pair, const gmi_engagement *at, int side);
 
-/* f exceeds delta nowhere on a side by more than this (m). */
-double gmi_tilt_bound(const gm_pair *pair, const gmi_engagement *at, int side);
+/* f exceeds delta nowhere on a side by more than this; and ends of lines move along rho_p by no more than *reach (m). */
+double gmi_tilt_bound(const gm_pair *pair, const gmi_engagement *at, int side, double *reach);
 
 /* penetration.c: the sums over all lines of one side. */
 
@@ -574,6 +600,7 @@ typedef struct gmi_side {
     int ramps;         /* of both flanks */
     int is_tilted;     /* the axes are */
     double tilt_bound; /* what tilted axes add to the overlap at most (m) */
+    double tilt_reach; /* by what they move the ends of lines at most (m) */
     double flank_peak; /* most material of both flanks (m) */
     double peak;       /* both: nothing touches at a delta <= -peak (m) */
 } gmi_side;
@@ -843,8 +870,8 @@ void gmi_wrench_add_by_direction(const gm_pair *pair, const gmi_engagement *at,
 /* And where all of it turns about z. */
 void gmi_wrench_add_by_turn(const gm_wrench *wrench, double turn_by, gm_wrench *by);
 
-/* From the frame in which the posed wheel's axis is on +x to that of the drawing. */
-void gmi_wrench_turn(gm_wrench *wrench, double angle);
+/* From the frame in which the posed wheel's axis is on +x to that of the drawing: where that axis is there. */
+void gmi_wrench_turn(gm_wrench *wrench, const double axis[2]);
 
 static inline void gmi_wrench_set(gm_wrench *wrench, double value) {
     for (int k = 0; k < 3; ++k) {

@@ -22,7 +22,8 @@
 
 #include <math.h>
 
-#define NO_CROSSING 1e300 /* farther ahead than any place on a line */
+#define NO_CROSSING 1e300    /* farther ahead than any place on a line */
+#define NOWHERE     (-1e300) /* place where flanks touch since, while they do not */
 
 /* Spur gears: the line climbs by nothing that could be seen, and yet u follows from the crossing ahead. */
 #define LEAST_RATE     1e-30
@@ -148,7 +149,7 @@ SPECIALIZED double begin(trace *path, const gmi_grid *grid, const double *table,
     return s + larger(grid->profile_cells - u, LEAST_DISTANCE) * grid->profile_spacing;
 }
 
-/* The slope across the face, from where begin() has left the trace. */
+/* The slope across the face and its rate, from where begin() has left the trace. */
 static void begin_face_slope(const trace *path, const gmi_grid *grid, double s, double *face) {
     const double *behind = path->ahead - grid->step;
     const double along_face = behind[grid->row] - behind[0];
@@ -172,7 +173,7 @@ SPECIALIZED void cross_face(trace *path, const gmi_grid *grid, double s, int wan
     if (wanted & (GMI_DERIVATIVES | GMI_TANGENT)) {
         path->slope_rate -= grid->face_ratio * back;
     }
-    if (wanted & GMI_TANGENT) {
+    if (wanted & GMI_TANGENT && face != NULL) {
         face[0] += ahead + distance * back;
         face[1] -= grid->rate * back;
     }
@@ -190,7 +191,7 @@ SPECIALIZED void cross_profile(trace *path, const gmi_grid *grid, double p, int 
         path->slope += kink;
         path->slope_rate += grid->face_ratio * change;
     }
-    if (wanted & GMI_TANGENT) {
+    if (wanted & GMI_TANGENT && face != NULL) {
         face[1] += grid->rate * change;
     }
     path->ahead += grid->step;
@@ -224,18 +225,25 @@ static inline void add_moments(const piece *part, double begin, double end, gmi_
     total->contact_t1 += s * length;
 }
 
-/* Moments of the part up to the third, and of the slopes of the tables there. */
-static void add_tangent(const piece *part, double begin, double end, gmi_line_tangent *tangent) {
-    const double length = (end - begin) * tangent->per_place;
-    const double middle = 0.5 * (begin + end);
-    const double t1 = tangent->t1_zero + (part->s + middle) * tangent->per_place;
+/* A stretch of the line, from place to place, along which the flanks touch: moments up to the third. */
+static void add_stretch(double from, double to, gmi_line_tangent *tangent) {
+    const double length = (to - from) * tangent->per_place;
+    const double t1 = tangent->t1_zero + 0.5 * (from + to) * tangent->per_place;
     const double spread = length * length * (1.0 / 12.0);
     tangent->part_contact[0] += length;
     tangent->part_contact[1] += length * t1;
     tangent->part_contact[2] += length * (t1 * t1 + spread);
     tangent->part_contact[3] += length * t1 * (t1 * t1 + 3.0 * spread);
+}
 
-    const double *face = tangent->face[0]; /* where the piece begins */
+/* A part of a piece, and moments of the slopes of the tables there. */
+static void add_tangent(const piece *part, double begin, double end, gmi_line_tangent *tangent) {
+    add_stretch(part->s + begin, part->s + end, tangent);
+    const double length = (end - begin) * tangent->per_place;
+    const double middle = 0.5 * (begin + end);
+    const double t1 = tangent->t1_zero + (part->s + middle) * tangent->per_place;
+    const double spread = length * length * (1.0 / 12.0);
+    const double *face = tangent->face; /* where the piece begins */
     const double slopes[3] = {part->first_slope + middle * part->first_rate,
                               part->second_slope + middle * part->second_rate,
                               face[0] + middle * face[1]};
@@ -272,7 +280,7 @@ static void add_tangent_root(const piece *part, double root, double per_slope,
     }
     add_ordered_slopes(tangent, part->first_slope + root * part->first_rate,
                        part->second_slope + root * part->second_rate,
-                       tangent->face[0][0] + root * tangent->face[0][1], by);
+                       tangent->face[0] + root * tangent->face[1], by);
     for (int k = 0; k < GMI_COORDINATES; ++k) {
         tangent->flow_by[k][0] += flow * by[k];
         tangent->flow_by[k][1] += flow * by[k] * t1;
@@ -406,6 +414,16 @@ typedef struct walk_state {
     double two_first, two_second; /* twice the sums of d deviation / d u of both flanks */
 } walk_state;
 
+/* Of a tangent, over whole pieces so far; places are counted from the first face line on. */
+typedef struct tangent_walk {
+    double touching_from; /* where the flanks touch since, or NOWHERE */
+    double face[2];       /* slope of the wheel's table across the face here, and its rate */
+    double moment;        /* twelve times the first moment of f */
+    double slopes
+        [3]
+        [2]; /* twice the integrals of the slopes of both tables and of the wheel's face, six times moments */
+} tangent_walk;
+
 SPECIALIZED piece piece_ahead(const walk_state *at, double length, int wanted) {
     const piece part = {wanted & GMI_MOMENTS ? at->faces + at->s : 0.0,
                         length,
@@ -417,8 +435,23 @@ SPECIALIZED piece piece_ahead(const walk_state *at, double length, int wanted) {
     return part;
 }
 
-/* Integrates the piece up to `end` and goes there. */
-SPECIALIZED void advance(walk_state *at, double end, int wanted, gmi_line_sum *split) {
+SPECIALIZED void end_stretch(tangent_walk *walked, double place, gmi_line_tangent *tangent) {
+    if (walked->touching_from > NOWHERE) {
+        add_stretch(walked->touching_from, place, tangent);
+        walked->touching_from = NOWHERE;
+    }
+}
+
+/* What grows from `from` to `to` over a length at a place, straight. */
+SPECIALIZED void add_slope(double place, double length, double from, double to, double sums[2]) {
+    const double twice = length * (from + to);
+    sums[0] += twice;
+    sums[1] += 3.0 * place * twice + length * length * (from + 2.0 * to);
+}
+
+/* Integrates the piece up to `end` and goes there. walked: of a tangent. */
+SPECIALIZED void advance(walk_state *at, double end, int wanted, tangent_walk *walked,
+                         gmi_line_sum *split) {
     /* A quadratic stays within the hull of its three Bezier points, and their mean is its own. */
     const double length = end - at->s;
     const double value = at->f.value;
@@ -429,28 +462,45 @@ SPECIALIZED void advance(walk_state *at, double end, int wanted, gmi_line_sum *s
     /* The slopes of both tables at the end. */
     const double first_slope = at->first.slope + length * at->first.slope_rate;
     const double second_slope = at->second.slope + length * at->second.slope_rate;
+    const double face_slope =
+        wanted & GMI_TANGENT ? walked->face[0] + length * walked->face[1] : 0.0;
 
     /* Touching all along, which is two pieces of three; or in part; or not at all. */
     if (smaller(smaller(value, control), end_value) > 0.0) {
-        at->three_sums += length * (value + control + end_value);
+        const double three = length * (value + control + end_value);
+        at->three_sums += three;
         at->contact += length;
         if (wanted & GMI_DERIVATIVES) {
             at->two_first += length * (at->first.slope + first_slope);
             at->two_second += length * (at->second.slope + second_slope);
         }
-        if (wanted & GMI_MOMENTS) {
+        if (wanted & GMI_TANGENT) {
+            const double place = at->faces + at->s;
+            if (walked->touching_from == NOWHERE) {
+                walked->touching_from = place;
+            }
+            walked->moment +=
+                4.0 * place * three + length * length * (value + 2.0 * control + 3.0 * end_value);
+            add_slope(place, length, at->first.slope, first_slope, walked->slopes[0]);
+            add_slope(place, length, at->second.slope, second_slope, walked->slopes[1]);
+            add_slope(place, length, walked->face[0], face_slope, walked->slopes[2]);
+        } else if (wanted & GMI_MOMENTS) {
             const piece part = piece_ahead(at, length, wanted);
             add_moments(&part, 0.0, length, split);
-            if (wanted & GMI_TANGENT) {
-                add_tangent(&part, 0.0, length, split->tangent);
-            }
         }
-    } else if (larger(larger(value, control), end_value) > 0.0) {
-        const piece part = piece_ahead(at, length, wanted);
+    } else {
         if (wanted & GMI_TANGENT) {
-            add_split_tangent(&part, wanted, split);
-        } else {
-            add_split(&part, wanted, split);
+            end_stretch(walked, at->faces + at->s, split->tangent);
+        }
+        if (larger(larger(value, control), end_value) > 0.0) {
+            const piece part = piece_ahead(at, length, wanted);
+            if (wanted & GMI_TANGENT) {
+                split->tangent->face[0] = walked->face[0];
+                split->tangent->face[1] = walked->face[1];
+                add_split_tangent(&part, wanted, split);
+            } else {
+                add_split(&part, wanted, split);
+            }
         }
     }
 
@@ -463,13 +513,14 @@ SPECIALIZED void advance(walk_state *at, double end, int wanted, gmi_line_sum *s
         at->second.slope = second_slope;
     }
     if (wanted & GMI_TANGENT) {
-        split->tangent->face[0][0] += length * split->tangent->face[0][1];
+        walked->face[0] = face_slope;
     }
 }
 
-/* Slope across the face and its rate in the first table of the walk or in the second; that of the wheel counts. */
-SPECIALIZED double *face_of(int table, int wanted, gmi_line_sum *split) {
-    return wanted & GMI_TANGENT ? split->tangent->face[split->tangent->wheel_leads == table] : NULL;
+/* That of the first table of the walk or of the second: the wheel's counts. */
+SPECIALIZED double *face_of(int table, int wanted, const gmi_line_sum *split,
+                            tangent_walk *walked) {
+    return wanted & GMI_TANGENT && split->tangent->wheel_leads == !table ? walked->face : NULL;
 }
 
 /*
@@ -477,7 +528,8 @@ SPECIALIZED double *face_of(int table, int wanted, gmi_line_sum *split) {
  * face lines serve both. `wanted` and `same_faces` are constants at each call.
  */
 SPECIALIZED void walk_cell(walk_state *at, const gmi_grid *first, const gmi_grid *second,
-                           double end, int wanted, int same_faces, gmi_line_sum *split) {
+                           double end, int wanted, int same_faces, tangent_walk *walked,
+                           gmi_line_sum *split) {
     for (;;) {
         const double face_line =
             same_faces || at->second.faces <= 0 ? end : smaller(end, at->second.next_face);
@@ -488,25 +540,28 @@ SPECIALIZED void walk_cell(walk_state *at, const gmi_grid *first, const gmi_grid
                 if (!(at->first.next_profile < face_line)) {
                     break;
                 }
-                advance(at, at->first.next_profile, wanted, split);
-                cross_profile(&at->first, first, at->s, wanted, &at->f, face_of(0, wanted, split));
+                advance(at, at->first.next_profile, wanted, walked, split);
+                cross_profile(&at->first, first, at->s, wanted, &at->f,
+                              face_of(0, wanted, split, walked));
             } else {
                 if (!(at->second.next_profile < face_line)) {
                     break;
                 }
-                advance(at, at->second.next_profile, wanted, split);
+                advance(at, at->second.next_profile, wanted, walked, split);
                 const double p =
                     same_faces ? at->s : 1.0 - (at->second.next_face - at->s) * second->face_ratio;
-                cross_profile(&at->second, second, p, wanted, &at->f, face_of(1, wanted, split));
+                cross_profile(&at->second, second, p, wanted, &at->f,
+                              face_of(1, wanted, split, walked));
             }
         }
 
         /* On to the face line of the second table, or to the end. */
-        advance(at, face_line, wanted, split);
+        advance(at, face_line, wanted, walked, split);
         if (same_faces || !(face_line < end)) {
             return;
         }
-        cross_face(&at->second, second, face_line, wanted, &at->f, face_of(1, wanted, split));
+        cross_face(&at->second, second, face_line, wanted, &at->f,
+                   face_of(1, wanted, split, walked));
         at->second.faces -= 1;
         at->second.next_face += 1.0 / second->face_ratio;
     }
@@ -514,7 +569,8 @@ SPECIALIZED void walk_cell(walk_state *at, const gmi_grid *first, const gmi_grid
 
 /* Across the face line of the leading table, where s begins again. */
 SPECIALIZED void enter_next_cell(walk_state *at, const gmi_grid *first, const gmi_grid *second,
-                                 int wanted, int same_faces, gmi_line_sum *split) {
+                                 int wanted, int same_faces, tangent_walk *walked,
+                                 gmi_line_sum *split) {
     at->s = 0.0;
     if (wanted & GMI_MOMENTS) {
         at->faces += 1.0;
@@ -528,9 +584,9 @@ SPECIALIZED void enter_next_cell(walk_state *at, const gmi_grid *first, const gm
         at->second.next_face -= 1.0;
     }
 
-    cross_face(&at->first, first, 0.0, wanted, &at->f, face_of(0, wanted, split));
+    cross_face(&at->first, first, 0.0, wanted, &at->f, face_of(0, wanted, split, walked));
     if (same_faces) {
-        cross_face(&at->second, second, 0.0, wanted, &at->f, face_of(1, wanted, split));
+        cross_face(&at->second, second, 0.0, wanted, &at->f, face_of(1, wanted, split, walked));
     }
 }
 
@@ -539,17 +595,22 @@ SPECIALIZED void enter_next_cell(walk_state *at, const gmi_grid *first, const gm
  * "pinion" is the first flank.
  */
 SPECIALIZED void walk(walk_state at, const gmi_grid *first, const gmi_grid *second, double end,
-                      int wanted, int same_faces, gmi_line_sum *result) {
+                      int wanted, int same_faces, tangent_walk *walked, gmi_line_sum *result) {
     const double end_in_last = end - (double)at.first.faces;
     for (;;) {
         const int is_last = at.first.faces <= 0;
-        walk_cell(&at, first, second, is_last ? end_in_last : 1.0, wanted, same_faces, result);
+        walk_cell(&at, first, second, is_last ? end_in_last : 1.0, wanted, same_faces, walked,
+                  result);
         if (is_last) {
             break;
         }
-        enter_next_cell(&at, first, second, wanted, same_faces, result);
+        enter_next_cell(&at, first, second, wanted, same_faces, walked, result);
     }
 
+    if (wanted & GMI_TANGENT) {
+        end_stretch(walked, at.faces + at.s, result->tangent);
+        result->sum_t1 += walked->moment * (1.0 / 12.0);
+    }
     const double per_rate = 1.0 / first->face_rate; /* from s to t1 */
     result->sum = per_rate * (result->sum + at.three_sums * (1.0 / 3.0));
     result->contact = per_rate * (result->contact + at.contact);
@@ -600,9 +661,9 @@ static void integrate_ideal(const gmi_line *line, int wanted, gmi_line_sum *resu
 static OWN_STACK void walk_apart(walk_state at, const gmi_grid *first, const gmi_grid *second,
                                  double end, int wanted, gmi_line_sum *result) {
     if (wanted == GMI_SUM) {
-        walk(at, first, second, end, GMI_SUM, 0, result);
+        walk(at, first, second, end, GMI_SUM, 0, NULL, result);
     } else {
-        walk(at, first, second, end, wanted & ~GMI_TANGENT, 0, result);
+        walk(at, first, second, end, wanted & ~GMI_TANGENT, 0, NULL, result);
     }
 }
 
@@ -611,16 +672,29 @@ static OWN_STACK void walk_tangent(walk_state at, const gmi_grid *first, const g
                                    double end, int has_second, int same_faces,
                                    gmi_line_sum *result) {
     enum { TANGENT = GMI_TANGENT | GMI_MOMENTS };
-    begin_face_slope(&at.first, first, at.s, face_of(0, TANGENT, result));
-    if (has_second) {
-        begin_face_slope(&at.second, second, at.s, face_of(1, TANGENT, result));
+    gmi_line_tangent *tangent = result->tangent;
+    const double per_place = 1.0 / first->face_rate;
+    tangent_walk walked = {NOWHERE, {0.0, 0.0}, 0.0, {{0.0, 0.0}, {0.0, 0.0}, {0.0, 0.0}}};
+    if (tangent->wheel_leads) {
+        begin_face_slope(&at.first, first, at.s, walked.face);
+    } else if (has_second) {
+        begin_face_slope(&at.second, second, at.s, walked.face);
     }
-    lead_tangent(result->tangent, result->tangent->wheel_leads, 1.0 / first->face_rate,
-                 -first->face_base / first->face_rate, first->direction, second->direction);
+    lead_tangent(tangent, tangent->wheel_leads, per_place, -first->face_base * per_place,
+                 first->direction, second->direction);
     if (same_faces) {
-        walk(at, first, second, end, TANGENT, 1, result);
+        walk(at, first, second, end, TANGENT, 1, &walked, result);
     } else {
-        walk(at, first, second, end, TANGENT, 0, result);
+        walk(at, first, second, end, TANGENT, 0, &walked, result);
+    }
+
+    /* From places to t1. */
+    result->contact_t1 = tangent->part_contact[1];
+    for (int k = 0; k < 3; ++k) {
+        const double slopes = 0.5 * per_place * walked.slopes[k][0];
+        tangent->part_slopes[k][0] += slopes;
+        tangent->part_slopes[k][1] +=
+            tangent->t1_zero * slopes + per_place * per_place * (1.0 / 6.0) * walked.slopes[k][1];
     }
 }
 
@@ -679,15 +753,15 @@ SPECIALIZED void walk_tables(const gmi_line *line, const gmi_grid *first, const 
     } else if (!same_faces) {
         walk_apart(at, first, second, end, wanted, result);
     } else if (wanted == GMI_SUM) {
-        walk(at, first, second, end, GMI_SUM, 1, result);
+        walk(at, first, second, end, GMI_SUM, 1, NULL, result);
     } else if (wanted == GMI_DERIVATIVES) {
-        walk(at, first, second, end, GMI_DERIVATIVES, 1, result);
+        walk(at, first, second, end, GMI_DERIVATIVES, 1, NULL, result);
     } else if (wanted == DAMPED) {
-        walk(at, first, second, end, DAMPED, 1, result);
+        walk(at, first, second, end, DAMPED, 1, NULL, result);
     } else if (wanted == GMI_MOMENTS) {
-        walk(at, first, second, end, GMI_MOMENTS, 1, result);
+        walk(at, first, second, end, GMI_MOMENTS, 1, NULL, result);
     } else {
-        walk(at, first, second, end, wanted & ~GMI_TANGENT, 1, result);
+        walk(at, first, second, end, wanted & ~GMI_TANGENT, 1, NULL, result);
     }
 }
 
@@ -705,7 +779,7 @@ static OWN_STACK void integrate_tangent(const gmi_line *line, const gmi_grid *pi
     gmi_line_tangent *tangent = line->tangent;
     const int wheel_leads = line->pinion == NULL && line->wheel != NULL;
     result->tangent = tangent;
-    tangent->face[0][0] = tangent->face[0][1] = 0.0; /* without a table */
+    tangent->face[0] = tangent->face[1] = 0.0; /* without a table */
     lead_tangent(tangent, wheel_leads, 1.0, 0.0, 0.0, 0.0);
     if (wheel_leads) {
         walk_tables(line, wheel, line->wheel, line->wheel_profile, &ideal_grid, NULL, 0.0, wanted,

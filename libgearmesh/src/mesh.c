@@ -491,7 +491,7 @@ SPECIALIZED void set_forces(const gm_mesh *mesh, const gmi_side_force *drive_for
                                     &result->wrench);
         }
         if (mesh->engagement.axis_direction != 0.0) {
-            gmi_wrench_turn(&result->wrench, mesh->engagement.axis_direction);
+            gmi_wrench_turn(&result->wrench, mesh->engagement.axis);
         }
     } else {
         gmi_wrench_set(&result->wrench, gmi_nan());
@@ -662,7 +662,7 @@ static void add_tip(const gm_mesh *mesh, const gmi_tip_load *force, int role, in
         gm_wrench of_tip;
         gmi_wrench_set(&of_tip, 0.0);
         gmi_wrench_add_tip(pair, &mesh->engagement, force, role, side, &of_tip);
-        gmi_wrench_turn(&of_tip, mesh->engagement.axis_direction);
+        gmi_wrench_turn(&of_tip, mesh->engagement.axis);
         for (int k = 0; k < 3; ++k) {
             result->wrench.pinion_force[k] += of_tip.pinion_force[k];
             result->wrench.pinion_moment[k] += of_tip.pinion_moment[k];
@@ -835,11 +835,6 @@ static gm_pose both_poses(const gm_pose *a, const gm_pose *b) {
     return both;
 }
 
-static int is_at_rest(const gm_pose *pose) {
-    return pose->center_distance_change == 0.0 && pose->offset == 0.0 && pose->axial_shift == 0.0 &&
-           pose->skew == 0.0 && pose->inclination == 0.0;
-}
-
 static int move_mesh(const gm_mesh *mesh, const gm_pose *pose, gm_mesh *moved) {
     const gm_pose both = both_poses(&mesh->pose, pose);
     *moved = *mesh;
@@ -858,7 +853,9 @@ static int move_mesh(const gm_mesh *mesh, const gm_pose *pose, gm_mesh *moved) {
     if (mesh->side[GM_DRIVE].wheel != NULL) {
         gmi_engagement_keep_tables(mesh->pair, GM_WHEEL, &moved->engagement);
     }
-    gmi_friction_place(mesh->pair, &moved->engagement, &moved->friction);
+    if (mesh->friction.is_on) {
+        gmi_friction_place(mesh->pair, &moved->engagement, &moved->friction);
+    }
     moved->is_posed = moved->engagement.offset_shift != 0.0 || moved->engagement.phase_shift != 0.0;
     for (int side = GM_DRIVE; side <= GM_COAST; ++side) {
         gmi_side_move(&moved->side[side], mesh->pair, &moved->engagement, side);
@@ -867,16 +864,8 @@ static int move_mesh(const gm_mesh *mesh, const gm_pose *pose, gm_mesh *moved) {
 }
 
 /* As the axes move, each side has an approach speed of its own: its mean over what touches. */
-static int evaluate_moving(const gm_mesh *mesh, const gm_position *position,
-                           const gmi_rates rates[2], int wanted, gm_workspace *workspace,
-                           gm_mesh_result *result) {
-    const int is_tilting = rates[GM_DRIVE].along != 0.0 || rates[GM_DRIVE].across != 0.0;
-    const int mask = accumulated(mesh, 1, wanted) | (is_tilting ? GMI_MOMENTS : GMI_SUM) |
-                     (is_elastic(mesh) ? GMI_ROLL : GMI_SUM);
-
-    /* The sums of both sides. */
-    gmi_side_sum sums[2];
-    double approach[2];
+static int sum_moving(const gm_mesh *mesh, const gm_position *position, const gmi_rates rates[2],
+                      int mask, gm_workspace *workspace, gmi_side_sum sums[2], double approach[2]) {
     for (int side = GM_DRIVE; side <= GM_COAST; ++side) {
         if (mesh->model == GM_MODEL_SIMPLE) {
             gmi_side_sum_simple(mesh->pair, &mesh->engagement, side, position->offset, &sums[side]);
@@ -890,12 +879,32 @@ static int evaluate_moving(const gm_mesh *mesh, const gm_position *position,
         approach[side] =
             gmi_rates_mean_approach(&rates[side], mesh->pair, &mesh->engagement, side, &sums[side]);
     }
+    return GM_OK;
+}
+
+/* That speed alone, for friction, which follows the lines itself. */
+static OWN_STACK int find_approach(const gm_mesh *mesh, const gm_position *position,
+                                   const gmi_rates rates[2], double approach[2]) {
+    gmi_side_sum sums[2];
+    return sum_moving(mesh, position, rates, GMI_MOMENTS, NULL, sums, approach);
+}
+
+static OWN_STACK int evaluate_moving(const gm_mesh *mesh, const gm_position *position,
+                                     const gmi_rates rates[2], int wanted, gm_workspace *workspace,
+                                     gm_mesh_result *result) {
+    const int is_tilting = rates[GM_DRIVE].along != 0.0 || rates[GM_DRIVE].across != 0.0;
+    const int mask = accumulated(mesh, 1, wanted) | (is_tilting ? GMI_MOMENTS : GMI_SUM) |
+                     (is_elastic(mesh) ? GMI_ROLL : GMI_SUM);
+    gmi_side_sum sums[2];
+    double approach[2];
+    const int status = sum_moving(mesh, position, rates, mask, workspace, sums, approach);
+    if (status != GM_OK) {
+        return status;
+    }
 
     /* And what they mean. */
     if (is_elastic(mesh)) {
         finish_elastic(mesh, position, sums, approach, rates, wanted, mask, workspace, result);
-    } else if (mesh->friction.is_on) {
-        evaluate_sliding(mesh, position, approach, rates, wanted, result);
     } else {
         set_result(mesh, &sums[GM_DRIVE], &sums[GM_COAST], NULL, approach, wanted, result);
     }
@@ -931,6 +940,9 @@ static int is_finite_pose(const gm_pose *pose) {
 
 /* Speeds are bounded as those of angles are. */
 static int check_rate(const gm_pose *rate) {
+    if (gmi_is_at_rest(rate)) {
+        return GM_OK;
+    }
     if (!is_finite_pose(rate)) {
         return GM_STATE_NOT_FINITE;
     }
@@ -976,15 +988,21 @@ static OWN_STACK int evaluate_posed(const gm_mesh *mesh, const gm_motion *motion
     if (status != GM_OK) {
         return status;
     }
-    if (is_at_rest(&motion->pose_rate)) {
+    if (gmi_is_at_rest(&motion->pose_rate)) {
         return gmi_mesh_evaluate_exact(&moved, &position, wanted, workspace, result);
     }
     if (mesh->has_corners) {
         evaluate_corners(&moved, &position, rates, wanted, result);
         return GM_OK;
     }
+    if (mesh->friction.is_on && !is_elastic(mesh)) {
+        double approach[2];
+        status = find_approach(&moved, &position, rates, approach);
+        evaluate_sliding(&moved, &position, approach, rates, wanted, result);
+        return status;
+    }
     const int is_tilting = rates[GM_DRIVE].along != 0.0 || rates[GM_DRIVE].across != 0.0;
-    if (is_tilting && !is_elastic(mesh) && !mesh->friction.is_on) {
+    if (is_tilting && !is_elastic(mesh)) {
         evaluate_tilting(&moved, &position, rates, wanted, result);
         return GM_OK;
     }
@@ -1002,7 +1020,7 @@ int gm_mesh_evaluate_posed(const gm_mesh *mesh, const gm_motion *motion, int wan
     }
 
     /* Where nothing but the angles moves it is the plain evaluation. */
-    if (is_at_rest(&motion->pose) && is_at_rest(&motion->pose_rate)) {
+    if (gmi_is_at_rest(&motion->pose) && gmi_is_at_rest(&motion->pose_rate)) {
         return gm_mesh_evaluate_at(mesh, &motion->position, wanted, workspace, result);
     }
     return evaluate_posed(mesh, motion, wanted, workspace, result);

@@ -169,6 +169,7 @@ static gmi_engagement drawn(const gm_pair *pair) {
     const gmi_engagement at = {
         .center_distance = pair->center_distance,
         .working_pressure_angle = pair->working_pressure_angle,
+        .axis = {1.0, 0.0},
         .line_of_action = pair->line_of_action,
         .wheel_base_radius = wheel->base_radius,
         .backlash = pair->backlash,
@@ -188,6 +189,11 @@ static gmi_engagement drawn(const gm_pair *pair) {
     return at;
 }
 
+static void set_drawn_angles(gmi_engagement *at) {
+    at->sin_pressure_angle = sin(at->working_pressure_angle);
+    at->cos_pressure_angle = cos(at->working_pressure_angle);
+}
+
 /* The one place where a ring's lengths get their sign. */
 static void give_signs(const gm_pair *pair, gmi_engagement *at) {
     const double sign = pair->wheel.sign;
@@ -204,7 +210,7 @@ static int move_axes(const gm_pair *pair, double along_x, double along_y, gmi_en
     /* Of the wheel's axis from the pinion's; a ring's is on the other side, where distances are below 0. */
     const double sign = pair->wheel.sign;
     const double apart = pair->center_distance + sign * along_x;
-    const double distance = hypot(apart, along_y);
+    const double distance = sqrt(apart * apart + along_y * along_y);
     gmi_meshing moved;
     if (!gmi_meshing_find(pair, distance, &moved)) {
         return GM_POSE_OUT_OF_MESH;
@@ -224,6 +230,8 @@ static int move_axes(const gm_pair *pair, double along_x, double along_y, gmi_en
 
     at->center_distance = distance;
     at->working_pressure_angle = moved.working_pressure_angle;
+    at->sin_pressure_angle = moved.line_of_action / distance;
+    at->cos_pressure_angle = fabs(gmi_base_sum(pair)) / distance;
     at->line_of_action = moved.line_of_action;
     at->backlash = moved.backlash;
     const gm_gear *gears[2] = {&pair->pinion, &pair->wheel};
@@ -236,6 +244,8 @@ static int move_axes(const gm_pair *pair, double along_x, double along_y, gmi_en
     /* Both gears have turned back by the direction of the axes: phi_p - psi, and phi_w + psi, or - psi with a ring. */
     const double psi = atan2(sign * along_y, apart);
     at->axis_direction = psi;
+    at->axis[0] = apart / distance;
+    at->axis[1] = sign * along_y / distance;
     at->phase_shift = -pair->pinion.base_radius * psi;
     at->offset_shift = -gmi_base_sum(pair) * psi;
     return GM_OK;
@@ -269,14 +279,14 @@ static int tilt_axis(const gm_pair *pair, const gm_pose *pose, gmi_engagement *a
     }
 
     /* In the frame in which the wheel's axis is on the x axis. */
-    const double cosine = cos(at->axis_direction);
-    const double sine = sin(at->axis_direction);
+    const double cosine = at->axis[0];
+    const double sine = at->axis[1];
     const double about_x = cosine * pose->skew + sine * pose->inclination;
     const double about_y = cosine * pose->inclination - sine * pose->skew;
 
     /* e = (sin(alpha), +-cos(alpha)), t = (cos(alpha), -+sin(alpha)). */
-    const double sin_alpha = sin(at->working_pressure_angle);
-    const double cos_alpha = cos(at->working_pressure_angle);
+    const double sin_alpha = at->sin_pressure_angle;
+    const double cos_alpha = at->cos_pressure_angle;
     for (int side = GM_DRIVE; side <= GM_COAST; ++side) {
         const double sign = gmi_side_sign(side);
         at->along[side] = -sign * (about_x * sin_alpha + sign * about_y * cos_alpha);
@@ -289,6 +299,7 @@ static int tilt_axis(const gm_pair *pair, const gm_pose *pose, gmi_engagement *a
 int gmi_engagement_find(const gm_pair *pair, const gm_pose *pose, gmi_engagement *engagement) {
     *engagement = drawn(pair);
     if (pose == NULL) {
+        set_drawn_angles(engagement);
         give_signs(pair, engagement);
         return GM_OK;
     }
@@ -304,6 +315,8 @@ int gmi_engagement_find(const gm_pair *pair, const gm_pose *pose, gmi_engagement
     int status = GM_OK;
     if (along_x != 0.0 || along_y != 0.0) {
         status = move_axes(pair, along_x, along_y, engagement);
+    } else {
+        set_drawn_angles(engagement);
     }
     if (status == GM_OK && along_z != 0.0) {
         status = move_face(pair, along_z, engagement);
@@ -330,15 +343,19 @@ void gmi_engagement_keep_tables(const gm_pair *pair, int role, gmi_engagement *a
  */
 void gmi_rates_find(const gm_pair *pair, const gmi_engagement *at, double offset_rate,
                     const gm_pose *pose_rate, gmi_rates rates[2]) {
+    if (gmi_is_at_rest(pose_rate)) {
+        for (int side = GM_DRIVE; side <= GM_COAST; ++side) {
+            const gmi_rates still = {.delta = gmi_side_sign(side) * offset_rate};
+            rates[side] = still;
+        }
+        return;
+    }
+
     for (int side = GM_DRIVE; side <= GM_COAST; ++side) {
         const double sign = gmi_side_sign(side);
         const double tau = sign * pair->face_advance / pair->face_width;
-
-        /* e and t = e turned by a right angle, clockwise on the drive side. */
-        const double direction =
-            at->axis_direction + sign * (0.25 * GMI_TWO_PI - at->working_pressure_angle);
-        const double e[2] = {cos(direction), sin(direction)};
-        const double t[2] = {sign * e[1], -sign * e[0]};
+        const gmi_plane plane = gmi_plane_of(at, sign);
+        const double *e = plane.e, *t = plane.t;
         rates[side].delta = sign * offset_rate - e[0] * pose_rate->center_distance_change -
                             e[1] * pose_rate->offset + tau * pose_rate->axial_shift;
         rates[side].along = -sign * (e[0] * pose_rate->skew + e[1] * pose_rate->inclination);

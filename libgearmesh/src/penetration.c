@@ -50,7 +50,10 @@ void gmi_side_init(gmi_side *prepared, const gm_pair *pair, const gmi_engagement
 
 void gmi_side_move(gmi_side *prepared, const gm_pair *pair, const gmi_engagement *at, int side) {
     prepared->is_tilted = at->is_tilted;
-    prepared->tilt_bound = at->is_tilted ? gmi_tilt_bound(pair, at, side) : 0.0;
+    prepared->tilt_bound = prepared->tilt_reach = 0.0;
+    if (at->is_tilted) {
+        prepared->tilt_bound = gmi_tilt_bound(pair, at, side, &prepared->tilt_reach);
+    }
     prepared->peak = prepared->tilt_bound + prepared->flank_peak;
     if (prepared->pinion == NULL && prepared->wheel == NULL) {
         return;
@@ -181,19 +184,18 @@ static inline void add_moments(const gmi_lines *lines, double rho_origin, const 
  * Between tilted axes the line has ends of its own, and the overlap is a parabola along it. False where none of it is on
  * both flanks. Tables are read where parallel axes would have them touch: a line ends where that leaves one of them.
  */
-static int tilt_line(side_view *view, double rho_origin, gmi_line *line) {
+static int tilt_line(side_view *view, double rho_origin, int wanted, gmi_line *line) {
     const gmi_side *prepared = view->prepared;
     const int is_helical = view->lines.advance != 0.0;
     const int tables = is_helical ? (prepared->pinion != NULL) + 2 * (prepared->wheel != NULL) : 0;
     gmi_line_part *part = &view->tilted_part;
-    gmi_tilt_clip(view->pair, view->at, view->side, rho_origin, view->lines.delta, tables, part);
-    if (!(part->from < part->to)) {
+    gmi_tilted_line *tilted = &view->tilted;
+    if (!gmi_tilt_follow(view->pair, view->at, view->side, rho_origin, view->lines.delta, tables,
+                         (wanted & ~GMI_MOMENTS) != 0, part, tilted)) {
         return 0;
     }
 
     /* The parabola as seen from the line's beginning. */
-    gmi_tilted_line *tilted = &view->tilted;
-    gmi_tilt_line(view->pair, view->at, view->side, rho_origin, tilted);
     const double *shift = tilted->shift;
     line->from = part->from;
     line->to = part->to;
@@ -388,7 +390,7 @@ static void add_line_in_parts(side_view *view, const gmi_line *line, double rho_
     int touches = 0;
     double to;
     if (wanted & GMI_TANGENT && !prepared->is_tilted) {
-        gmi_tilt_clip(view->pair, view->at, view->side, rho_origin, view->lines.delta, 0,
+        gmi_tilt_clip(view->pair, view->at, view->side, rho_origin, view->lines.delta, 0, 1,
                       &view->tilted_part);
     }
     for (double from = line->from; from < line->to; from = to) {
@@ -450,7 +452,7 @@ SPECIALIZED void add_line(side_view *view, const gmi_flank *pinion, const gmi_fl
         (view->wheel_reach - rho_origin) * prepared->wheel_grid.per_rho,
         NULL,
     };
-    if (is_tilted && !tilt_line(view, rho_origin, &line)) {
+    if (is_tilted && !tilt_line(view, rho_origin, wanted, &line)) {
         return;
     }
 
@@ -492,7 +494,7 @@ SPECIALIZED void add_line(side_view *view, const gmi_flank *pinion, const gmi_fl
     if (wanted & GMI_TANGENT) {
         const gmi_interval whole = {line.from, line.to};
         if (!is_tilted) {
-            gmi_tilt_clip(pair, view->at, view->side, rho_origin, view->lines.delta, 0,
+            gmi_tilt_clip(pair, view->at, view->side, rho_origin, view->lines.delta, 0, 1,
                           &view->tilted_part);
         }
         add_tangent(view, rho_origin, &whole, &sum);
@@ -511,8 +513,13 @@ SPECIALIZED void follow_lines(const gm_pair *pair, const gmi_engagement *at,
     view->ends = gmi_line_ends_find(pair, at, &view->lines);
     if (prepared->is_tilted) {
         /* That may bring a line in that is just outside, and its ends are not those of parallel axes. */
-        --view->lines.first;
-        ++view->lines.last;
+        const gmi_lines *lines = &view->lines;
+        const double pitch = pair->transverse_base_pitch;
+        const double before = lines->origin + (double)(lines->first - 1) * pitch + lines->rise;
+        const double behind = lines->origin + (double)(lines->last + 1) * pitch + lines->fall;
+        const double reach = prepared->tilt_reach;
+        view->lines.first -= before > lines->lower - reach;
+        view->lines.last += behind < lines->upper + reach;
         view->ends.face_from = HUGE_VAL;
         view->ends.face_to = -HUGE_VAL;
     }

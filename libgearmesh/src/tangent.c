@@ -30,10 +30,8 @@ static void find_jacobian(const gm_mesh *mesh, int side, side_jacobian *jacobian
     *jacobian = none;
     const double sign = jacobian->sign;
     const double tau = sign * pair->face_advance / pair->face_width;
-    const double direction =
-        at->axis_direction + sign * (0.25 * GMI_TWO_PI - at->working_pressure_angle);
-    const double e[2] = {cos(direction), sin(direction)};
-    const double t[2] = {sign * e[1], -sign * e[0]};
+    const gmi_plane plane = gmi_plane_of(at, sign);
+    const double *e = plane.e, *t = plane.t;
     const double r_bp = pair->pinion.base_radius;
     const double length = at->line_of_action;
     jacobian->tau = tau;
@@ -119,8 +117,8 @@ static void add_wrenches(const gm_pair *pair, const gmi_engagement *at, int side
                          const side_gradient *gradient, const gmi_side_force *force,
                          gm_tangent *tangent) {
     /* The x axis of the posed axes; alpha_wt and the distance change along it. */
-    const double x[2] = {cos(at->axis_direction), sin(at->axis_direction)};
-    const double angle_by = 1.0 / (tan(at->working_pressure_angle) * at->center_distance);
+    const double *x = at->axis;
+    const double angle_by = at->cos_pressure_angle / (at->sin_pressure_angle * at->center_distance);
     for (int k = 0; k < GM_COORDINATES; ++k) {
         const gmi_side_force by = force_of(gradient->by[k]);
         const gmi_side_force by_rate = force_of(gradient->by_rate[k]);
@@ -202,14 +200,14 @@ int gm_mesh_tangent(const gm_mesh *mesh, const gm_motion *motion, gm_tangent *ta
     }
 
     /* From the frame of the posed axes to that of the drawing, with the direction of the axes by y. */
-    const double psi = moved.engagement.axis_direction;
+    const double *axis = moved.engagement.axis;
     const double by_y = 1.0 / moved.engagement.center_distance;
-    gmi_wrench_add_by_turn(&wrench, -sin(psi) * by_y,
+    gmi_wrench_add_by_turn(&wrench, -axis[1] * by_y,
                            &tangent->wrench_by[GM_CENTER_DISTANCE_CHANGE]);
-    gmi_wrench_add_by_turn(&wrench, cos(psi) * by_y, &tangent->wrench_by[GM_OFFSET]);
+    gmi_wrench_add_by_turn(&wrench, axis[0] * by_y, &tangent->wrench_by[GM_OFFSET]);
     for (int k = 0; k < GM_COORDINATES; ++k) {
-        gmi_wrench_turn(&tangent->wrench_by[k], psi);
-        gmi_wrench_turn(&tangent->wrench_by_rate[k], psi);
+        gmi_wrench_turn(&tangent->wrench_by[k], axis);
+        gmi_wrench_turn(&tangent->wrench_by_rate[k], axis);
     }
     return GM_OK;
 }

@@ -31,6 +31,14 @@ typedef struct straight {
     double at_zero, per_t1;
 } straight;
 
+static inline double larger(double a, double b) {
+    return a > b ? a : b;
+}
+
+static inline double smaller(double a, double b) {
+    return a < b ? a : b;
+}
+
 static inline double value_at(straight line, double t1) {
     return line.at_zero + line.per_t1 * t1;
 }
@@ -49,8 +57,8 @@ typedef struct tilted {
     straight rho_p, rho_w, zeta, u;
 } tilted;
 
-static tilted tilted_of(const gm_pair *pair, const gmi_engagement *at, int side,
-                        double rho_origin) {
+SPECIALIZED tilted tilted_of(const gm_pair *pair, const gmi_engagement *at, int side,
+                             double rho_origin) {
     const double advance = gmi_side_sign(side) * pair->face_advance;
     tilted line;
     line.a = at->along[side];
@@ -71,9 +79,9 @@ static tilted tilted_of(const gm_pair *pair, const gmi_engagement *at, int side,
  * ------------------------------------------------------------------------------------------- */
 
 /* What ends a line: a place on either gear, between two limits. Tables are read where parallel axes would touch. */
-enum { ROLL_PINION, ROLL_WHEEL, FACE_PINION, FACE_WHEEL, TABLE_PINION, TABLE_WHEEL, PLACES };
+enum { ROLL_PINION, ROLL_WHEEL, FACE_PINION, FACE_WHEEL, TABLE_PINION, TABLE_WHEEL };
 
-static straight place_of(const gm_pair *pair, const tilted *line, double delta, int place) {
+SPECIALIZED straight place_of(const gm_pair *pair, const tilted *line, double delta, int place) {
     const double a = line->a, g = line->g, tau = line->tau;
     const straight rho_w = {line->rho_w.at_zero + delta, line->rho_w.per_t1};
     switch (place) {
@@ -93,7 +101,7 @@ static straight place_of(const gm_pair *pair, const tilted *line, double delta, 
     }
 }
 
-static gmi_interval limits_of(const gm_pair *pair, const gmi_engagement *at, int place) {
+SPECIALIZED gmi_interval limits_of(const gm_pair *pair, const gmi_engagement *at, int place) {
     const gm_gear *pinion = &pair->pinion, *wheel = &pair->wheel;
     switch (place) {
     case ROLL_PINION:
@@ -169,45 +177,74 @@ static void set_end(const gm_pair *pair, const gmi_engagement *at, const tilted 
     }
 }
 
-void gmi_tilt_clip(const gm_pair *pair, const gmi_engagement *at, int side, double rho_origin,
-                   double delta, int tables, gmi_line_part *part) {
-    const tilted line = tilted_of(pair, at, side, rho_origin);
-    int from_place = FACE_PINION, to_place = FACE_PINION, from_is_lower = 1, to_is_lower = 0;
-    part->from = -HUGE_VAL;
-    part->to = HUGE_VAL;
-    for (int place = 0; place < PLACES; ++place) {
-        if ((place == TABLE_PINION && !(tables & 1)) || (place == TABLE_WHEEL && !(tables & 2)) ||
-            ((place == ROLL_PINION || place == ROLL_WHEEL) && tables & 4)) {
-            continue;
-        }
+/* What ends the part so far. */
+typedef struct clip {
+    double from, to;
+    int from_place, to_place, from_is_lower, to_is_lower;
+} clip;
 
-        /* A place that climbs enters at its lower limit, one that falls at the upper one. */
-        const straight own = place_of(pair, &line, delta, place);
-        const gmi_interval limits = limits_of(pair, at, place);
-        const int climbs = own.per_t1 > 0.0;
-        const double enter = ((climbs ? limits.from : limits.to) - own.at_zero) / own.per_t1;
-        const double leave = ((climbs ? limits.to : limits.from) - own.at_zero) / own.per_t1;
-        if (own.per_t1 == 0.0) { /* all along, or not at all */
-            if (!(own.at_zero >= limits.from && own.at_zero <= limits.to)) {
-                part->to = part->from;
-            }
-            continue;
+/* Cuts off what is beyond the limits of a place, a constant at each call. */
+SPECIALIZED void cut(const gm_pair *pair, const gmi_engagement *at, const tilted *line,
+                     double delta, int place, clip *part) {
+    const straight own = place_of(pair, line, delta, place);
+    const gmi_interval limits = limits_of(pair, at, place);
+    if (own.per_t1 == 0.0) { /* all along, or not at all */
+        if (!(own.at_zero >= limits.from && own.at_zero <= limits.to)) {
+            part->to = part->from;
         }
-        if (enter > part->from) {
-            part->from = enter;
-            from_place = place;
-            from_is_lower = climbs;
-        }
-        if (leave < part->to) {
-            part->to = leave;
-            to_place = place;
-            to_is_lower = !climbs;
-        }
+        return;
     }
-    if (part->from < part->to) {
-        set_end(pair, at, &line, delta, part->from, from_place, from_is_lower, part->from_by);
-        set_end(pair, at, &line, delta, part->to, to_place, to_is_lower, part->to_by);
+
+    /* A place that climbs enters at its lower limit, one that falls at the upper one. */
+    const double per_place = 1.0 / own.per_t1;
+    const double at_lower = (limits.from - own.at_zero) * per_place;
+    const double at_upper = (limits.to - own.at_zero) * per_place;
+    const int climbs = at_lower < at_upper;
+    const double enter = smaller(at_lower, at_upper);
+    const double leave = larger(at_lower, at_upper);
+    if (enter > part->from) {
+        part->from_place = place;
+        part->from_is_lower = climbs;
     }
+    if (leave < part->to) {
+        part->to_place = place;
+        part->to_is_lower = !climbs;
+    }
+    part->from = larger(enter, part->from);
+    part->to = smaller(leave, part->to);
+}
+
+/* with_gradients: a constant at each call. */
+SPECIALIZED void find_part(const gm_pair *pair, const gmi_engagement *at, const tilted *line,
+                           double delta, int tables, int with_gradients, gmi_line_part *part) {
+    clip found = {-HUGE_VAL, HUGE_VAL, FACE_PINION, FACE_PINION, 1, 0};
+    if (!(tables & 4)) {
+        cut(pair, at, line, delta, ROLL_PINION, &found);
+        cut(pair, at, line, delta, ROLL_WHEEL, &found);
+    }
+    cut(pair, at, line, delta, FACE_PINION, &found);
+    cut(pair, at, line, delta, FACE_WHEEL, &found);
+    if (tables & 1) {
+        cut(pair, at, line, delta, TABLE_PINION, &found);
+    }
+    if (tables & 2) {
+        cut(pair, at, line, delta, TABLE_WHEEL, &found);
+    }
+
+    part->from = found.from;
+    part->to = found.to;
+    if (with_gradients && part->from < part->to) {
+        set_end(pair, at, line, delta, part->from, found.from_place, found.from_is_lower,
+                part->from_by);
+        set_end(pair, at, line, delta, part->to, found.to_place, found.to_is_lower, part->to_by);
+    }
+}
+
+OWN_STACK void gmi_tilt_clip(const gm_pair *pair, const gmi_engagement *at, int side,
+                             double rho_origin, double delta, int tables, int with_gradients,
+                             gmi_line_part *part) {
+    const tilted line = tilted_of(pair, at, side, rho_origin);
+    find_part(pair, at, &line, delta, tables, with_gradients, part);
 }
 
 void gmi_tilt_beyond(const gm_pair *pair, const gmi_engagement *at, int side, double rho_origin,
@@ -231,19 +268,17 @@ double gmi_tilt_gain(const gm_pair *pair, const gmi_engagement *at, int side) {
     return 1.0 + gmi_side_sign(side) * (pair->face_advance / pair->face_width) * at->across[side];
 }
 
-void gmi_tilt_line(const gm_pair *pair, const gmi_engagement *at, int side, double rho_origin,
-                   gmi_tilted_line *result) {
-    const tilted line = tilted_of(pair, at, side, rho_origin);
-    const double a = line.a, g = line.g, tau = line.tau;
+SPECIALIZED void find_overlap(const tilted *line, gmi_tilted_line *result) {
+    const double a = line->a, g = line->g, tau = line->tau;
     const double gain = 1.0 + tau * g;
-    const straight u = line.u;
-    const straight second = combined(line.rho_w, tau, line.zeta, 0.0);
+    const straight u = line->u;
+    const straight second = combined(line->rho_w, tau, line->zeta, 0.0);
 
     /* As a polynomial in t1. */
-    const double square = -0.5 * a * a / line.length; /* of u */
+    const double square = -0.5 * a * a / line->length; /* of u */
     const double linear = -gain * g - 0.5 * a * a * tau;
     result->gain = gain;
-    result->shift[0] = -gain * tau * a * line.r_bw - 0.5 * a * g * line.r_bw +
+    result->shift[0] = -gain * tau * a * line->r_bw - 0.5 * a * g * line->r_bw +
                        u.at_zero * (linear + square * u.at_zero) + 0.5 * g * g * second.at_zero;
     result->shift[1] = u.per_t1 * (linear + 2.0 * square * u.at_zero) + 0.5 * g * g * second.per_t1;
     result->shift[2] = square * u.per_t1 * u.per_t1;
@@ -251,6 +286,28 @@ void gmi_tilt_line(const gm_pair *pair, const gmi_engagement *at, int side, doub
     /* With the line's origin rho_w falls, and u grows by tau. */
     result->by_origin[0] = tau * (linear + 2.0 * square * u.at_zero) - 0.5 * g * g;
     result->by_origin[1] = tau * 2.0 * square * u.per_t1;
+}
+
+void gmi_tilt_line(const gm_pair *pair, const gmi_engagement *at, int side, double rho_origin,
+                   gmi_tilted_line *result) {
+    const tilted line = tilted_of(pair, at, side, rho_origin);
+    find_overlap(&line, result);
+}
+
+int gmi_tilt_follow(const gm_pair *pair, const gmi_engagement *at, int side, double rho_origin,
+                    double delta, int tables, int with_gradients, gmi_line_part *part,
+                    gmi_tilted_line *result) {
+    const tilted line = tilted_of(pair, at, side, rho_origin);
+    if (with_gradients) {
+        gmi_tilt_clip(pair, at, side, rho_origin, delta, tables, 1, part);
+    } else {
+        find_part(pair, at, &line, delta, tables, 0, part);
+    }
+    if (!(part->from < part->to)) {
+        return 0;
+    }
+    find_overlap(&line, result);
+    return 1;
 }
 
 void gmi_tilt_tangent(const gm_pair *pair, const gmi_engagement *at, int side, double rho_origin,
@@ -294,7 +351,7 @@ void gmi_tilt_tangent(const gm_pair *pair, const gmi_engagement *at, int side, d
 }
 
 /* Of each term of the shift its largest on flanks and face, but for the term that is the same everywhere. */
-double gmi_tilt_bound(const gm_pair *pair, const gmi_engagement *at, int side) {
+double gmi_tilt_bound(const gm_pair *pair, const gmi_engagement *at, int side, double *reach) {
     const tilted line = tilted_of(pair, at, side, 0.0);
     const double a = fabs(line.a), g = fabs(line.g), tau = fabs(line.tau);
     const double length = fabs(line.length), r_bw = fabs(line.r_bw);
@@ -302,13 +359,16 @@ double gmi_tilt_bound(const gm_pair *pair, const gmi_engagement *at, int side) {
 
     /* rho_w runs from 0 to the wheel's tip, or a little beyond; on a ring from the tip to the start. */
     const double tip_or_start =
-        fmax(fabs(at->tip_roll_length[GM_WHEEL]), fabs(at->start_roll_length[GM_WHEEL]));
-    const double rho_w = fmax(tip_or_start, length);
-    const double zeta = fmax(fabs(line.zeta.at_zero), fabs(line.zeta.at_zero + line.zeta.per_t1));
+        larger(fabs(at->tip_roll_length[GM_WHEEL]), fabs(at->start_roll_length[GM_WHEEL]));
+    const double rho_w = larger(tip_or_start, length);
+    const double zeta = larger(fabs(line.zeta.at_zero), fabs(line.zeta.at_zero + line.zeta.per_t1));
     const double u = zeta + tau * rho_w;
     const double first_order = fabs(gain) * g * u - gain * line.tau * line.a * line.r_bw;
     const double second_order =
         0.5 * (g * g * (rho_w + tau * zeta) + a * g * r_bw + a * a * u * (tau + u / length));
+
+    /* By what roll lengths move, and by what the wheel's face does along the line. */
+    *reach = a * u * (fabs(line.r_bp) + r_bw) / length + tau * (3.0 * a * r_bw + 2.0 * g * rho_w);
 
     /* The gain acts on any delta. */
     return first_order + second_order + fabs(gain - 1.0) * pair->transverse_base_pitch;

@@ -53,16 +53,15 @@ SPECIALIZED void add_side(const gm_pair *pair, const gmi_engagement *at, const g
 
 void gmi_wrench_add_side(const gm_pair *pair, const gmi_engagement *at, const gmi_side_force *side,
                          int side_of_teeth, gm_wrench *wrench) {
-    add_side(pair, at, side, side_of_teeth, sin(at->working_pressure_angle),
-             cos(at->working_pressure_angle), 0, wrench);
+    add_side(pair, at, side, side_of_teeth, at->sin_pressure_angle, at->cos_pressure_angle, 0,
+             wrench);
 }
 
 void gmi_wrench_add_by_direction(const gm_pair *pair, const gmi_engagement *at,
                                  const gmi_side_force *side, int side_of_teeth, double angle_by,
                                  double distance_by, gm_wrench *wrench) {
-    const double alpha = at->working_pressure_angle;
-    add_side(pair, at, side, side_of_teeth, angle_by * cos(alpha), -angle_by * sin(alpha), 1,
-             wrench);
+    add_side(pair, at, side, side_of_teeth, angle_by * at->cos_pressure_angle,
+             -angle_by * at->sin_pressure_angle, 1, wrench);
 
     /* The wheel's axis moves along x under the axial force. */
     const double axial =
@@ -88,8 +87,8 @@ void gmi_wrench_add_by_turn(const gm_wrench *wrench, double turn_by, gm_wrench *
 void gmi_wrench_add_tip(const gm_pair *pair, const gmi_engagement *at, const gmi_tip_load *load,
                         int role, int side_of_teeth, gm_wrench *wrench) {
     const double sign = gmi_side_sign(side_of_teeth);
-    const double sine = sin(at->working_pressure_angle);
-    const double cosine = cos(at->working_pressure_angle);
+    const double sine = at->sin_pressure_angle;
+    const double cosine = at->cos_pressure_angle;
     const double e[2] = {sine, sign * cosine}, n[2] = {cosine, -sign * sine};
     const double base_sum = pair->pinion.base_radius + at->wheel_base_radius;
     const double tip_base = role == GM_PINION ? pair->pinion.base_radius : at->wheel_base_radius;
@@ -130,8 +129,7 @@ void gmi_wrench_add_friction(const gm_pair *pair, const gmi_engagement *at,
                              const gmi_friction_sum *friction, int side_of_teeth,
                              gm_wrench *wrench) {
     const double sign = gmi_side_sign(side_of_teeth);
-    const double across[2] = {-sign * cos(at->working_pressure_angle),
-                              sin(at->working_pressure_angle)};
+    const double across[2] = {-sign * at->cos_pressure_angle, at->sin_pressure_angle};
     const double force = friction->force.value;
     const double z_force = pair->face_start * force + pair->face_width * friction->force_t1;
 
@@ -157,9 +155,9 @@ static void turn(double vector[3], double cosine, double sine) {
     vector[1] = sine * x + cosine * vector[1];
 }
 
-void gmi_wrench_turn(gm_wrench *wrench, double angle) {
-    const double cosine = cos(angle);
-    const double sine = sin(angle);
+void gmi_wrench_turn(gm_wrench *wrench, const double axis[2]) {
+    const double cosine = axis[0];
+    const double sine = axis[1];
     turn(wrench->pinion_force, cosine, sine);
     turn(wrench->pinion_moment, cosine, sine);
     turn(wrench->wheel_force, cosine, sine);

@@ -62,37 +62,58 @@ static void run_wrench(const bench *b, long count) {
     run_positions(b, count, GM_WANT_WRENCH);
 }
 
-/* As a solver with shafts that bend asks: another pose at every call. */
-static gm_motion bench_motion(const bench_gears *g, long k) {
+/*
+ * As a solver with shafts that bend asks: another pose at every call. A shift along the axis moves the face lines of both
+ * tables apart.
+ */
+static gm_motion bench_motion(const bench_gears *g, long k, double axial_shift) {
     const double part = (double)(k % BENCH_STATES) / BENCH_STATES;
     const gm_motion motion = {
         g->positions[k % BENCH_STATES],
-        {1e-6 * part, 1e-7 * part, 2e-6 * part, 1e-5 * part, -1e-5 * part},
+        {1e-6 * part, 1e-7 * part, axial_shift * part, 1e-5 * part, -1e-5 * part},
         {0.0, 0.0, 0.0, 0.0, 0.0},
     };
     return motion;
 }
 
-static void run_posed(const bench *b, long count) {
+static const double bench_shift = 2e-6;
+
+static void evaluate_posed(const bench *b, long count, double axial_shift) {
     gm_mesh_result result;
     double sum = 0.0;
     for (long k = 0; k < count; ++k) {
-        const gm_motion motion = bench_motion(b->gears, k);
+        const gm_motion motion = bench_motion(b->gears, k, axial_shift);
         (void)gm_mesh_evaluate_posed(b->gears->mesh, &motion, GM_WANT_FORCE, NULL, &result);
         sum += result.force;
     }
     sink = sum;
 }
 
-static void run_tangent(const bench *b, long count) {
+static void run_posed(const bench *b, long count) {
+    evaluate_posed(b, count, bench_shift);
+}
+
+static void run_tilted(const bench *b, long count) {
+    evaluate_posed(b, count, 0.0);
+}
+
+static void differentiate(const bench *b, long count, double axial_shift) {
     gm_tangent tangent;
     double sum = 0.0;
     for (long k = 0; k < count; ++k) {
-        const gm_motion motion = bench_motion(b->gears, k);
+        const gm_motion motion = bench_motion(b->gears, k, axial_shift);
         (void)gm_mesh_tangent(b->gears->mesh, &motion, &tangent);
         sum += tangent.force_by[GM_SKEW];
     }
     sink = sum;
+}
+
+static void run_tangent(const bench *b, long count) {
+    differentiate(b, count, bench_shift);
+}
+
+static void run_tilted_tangent(const bench *b, long count) {
+    differentiate(b, count, 0.0);
 }
 
 static void run_angles(const bench *b, long count) {
@@ -178,6 +199,8 @@ static const bench_case cases[] = {
     {"tables.wrench", "   wrench", TABLES, run_wrench},
     {"tables.posed", "   force, in a pose of each call", TABLES, run_posed},
     {"tables.tangent", "   all derivatives of force and wrench there", TABLES, run_tangent},
+    {"tables.tilted", "   force, there without a shift along the axis", TABLES, run_tilted},
+    {"tables.tilted_tangent", "   all derivatives there", TABLES, run_tilted_tangent},
     {"tables.equilibrium", "   equilibrium", TABLES, run_equilibrium},
     {"tables.curve", "   static curve, 1000 positions", TABLES, run_curve},
     {"ramps.force", "linear reliefs, force", RAMPS, run_force},
