@@ -69,11 +69,16 @@ def gears_of(path, provenance, options, needed=True):
             return None
         digits = text.removeprefix("-") if gear == "wheel" else text  # of a ring
         if not (digits.isascii() and digits.isdigit() and 3 <= int(digits[:9]) and len(digits) <= 5):
+            if option is not None:
+                raise program.InputError(f"--{gear}-teeth: must be 3 to 99999 (got {text})")
             raise runup.RunError(f"{path}: no gears.{gear}_teeth (3 to 99999) in its head lines; please give --{gear}-teeth")
         return int(digits)
 
     pinion, wheel = teeth("pinion", options.pinion_teeth), teeth("wheel", options.wheel_teeth)
     if pinion is None or wheel is None:
+        if pinion is not wheel:
+            known, other = ("pinion", "wheel") if pinion else ("wheel", "pinion")
+            raise program.InputError(f"{path}: has the teeth of the {known} only; please give --{other}-teeth as well")
         return None
     return runup.Gears(pinion, wheel, options.eigenfrequency or eigenfrequency_of(provenance))
 

@@ -165,8 +165,10 @@ class Analysis:
         self.strong = strong_lines(self.order, power, self.long_turns)
         self.tracked = (asked or [line.order for line in self.known if line.kind == "mesh"]
                         or [Fraction(peak) for peak, _ in self.strong[:HARMONICS]])
-        if not self.tracked:
-            raise runup.RunError(f"{signal.path}: no line stands out of its order spectrum; please give --orders")
+        self.nothing_stands_out = not self.tracked
+        if self.nothing_stands_out:
+            loud = np.where(self.order * self.long_turns > 3.0, self.mean, -np.inf)
+            self.tracked = [Fraction(float(f"{self.order[np.nanargmax(loud)]:.5g}"))]
 
         # The map.
         over_time = run.is_constant if options.over is None else options.over == "time"

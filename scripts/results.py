@@ -138,7 +138,7 @@ def check_times(path, name, time_s):
     steps_s = np.diff(time_s)
     mean_s = (time_s[-1] - time_s[0]) / len(steps_s)
     if mean_s <= 0 or np.abs(steps_s - mean_s).max() > 0.1 * mean_s:
-        raise RunError(f"{path}: {name} is not evenly spaced (more output.digits may help)")
+        raise RunError(f"{path}: {name} must be evenly spaced (rows are missing, or too few digits: more output.digits)")
 
 
 def check_turning(path, name, speed_rpm, angle_rad):

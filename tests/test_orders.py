@@ -328,6 +328,14 @@ class Files(Case):
             self.assertEqual(result.returncode, 0, result.stderr)
             np.testing.assert_allclose(self.table("a_tracks.csv")[1][:, 3], expected, rtol=0.01)
 
+    def test_a_record_without_a_line_is_drawn_too(self):
+        noise = np.random.default_rng(1).standard_normal(len(self.time_s))
+        self.write_text("a.csv", "time,n,p\n", (self.time_s, self.speed_rpm, noise))
+        result = self.orders("a.csv", "--speed", "n", "--signal", "p", "--no-pictures")
+        self.assertEqual(result.returncode, 0)
+        self.assertIn("no line stands out of its order spectrum", result.stderr)
+        self.assertEqual(self.table("a_tracks.csv")[1].shape[1], 4)
+
     def test_hdf5_in_groups(self):
         with h5py.File(self.path("a.h5"), "w") as file:
             file["m/time"], file["m/n"], file["m/acc"] = self.time_s, self.speed_rpm, self.values
@@ -353,6 +361,9 @@ class Files(Case):
         self.write_text("a.csv", "time,n,p\n", (self.time_s, self.speed_rpm, self.values))
         self.write_text("still.csv", "time,n,p\n", (self.time_s, 0 * self.speed_rpm, self.values))
         for arguments, message in (
+            (["a.csv", "--signal", "3", "--speed", "n", "--pinion-teeth", "23"], "please give --wheel-teeth as well"),
+            (["a.csv", "--signal", "3", "--speed", "n", "--pinion-teeth", "2", "--wheel-teeth", "9"],
+             "--pinion-teeth: must be 3 to 99999 (got 2)"),
             (["a.csv"], "no column pinion_speed_rpm; please give --speed, --pulses or --rpm (it has time, n, p)"),
             (["a.csv", "--speed", "m"], "no column 'm' (--speed); it has time, n, p"),
             (["a.csv", "--speed", "n", "--speed-unit", "furlong"], "--speed-unit: must be rpm, Hz"),
