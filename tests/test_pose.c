@@ -588,6 +588,83 @@ static void a_shorter_common_face_carries_less(void) {
                   -0.75 * REFERENCE_FACE_WIDTH * half.wrench.wheel_force[1], 1e-12);
 }
 
+/*
+ * A wheel moved along its axis is one drawn there, turned by the helix: the same lines of contact on the same faces, whose
+ * common width is another one. Faces of their own on both gears, which may begin anywhere.
+ */
+static void a_shifted_face_is_another_drawing(void) {
+    uint64_t seed = UINT64_C(303);
+    int compared = 0;
+    for (int i = 0; i < 200; ++i) {
+        gm_test_context("case %d", i);
+        gm_pair_params params = reference_params((double)NAN);
+        params.pinion_face_width = gm_test_uniform(&seed, 10e-3, 25e-3);
+        params.wheel_face_width = gm_test_uniform(&seed, 10e-3, 25e-3);
+        params.axial_offset = gm_test_uniform(&seed, -6e-3, 6e-3);
+        params.helix_angle *= i % 2 ? 1.0 : -1.0;
+        const double shift = gm_test_uniform(&seed, -6e-3, 6e-3);
+        gm_pair_params there = params;
+        there.axial_offset += shift;
+        gm_pair from, to;
+        if (gm_pair_init(&from, &params) != GM_OK || gm_pair_init(&to, &there) != GM_OK) {
+            continue;
+        }
+
+        /* Turned by less than half a tooth, so that the same teeth meet. */
+        const double turned = shift * tan(from.base_helix_angle);
+        const double x = gm_test_uniform(&seed, 60e-6, 80e-6);
+        if (!(fabs(x - turned) < 0.49 * from.transverse_base_pitch)) {
+            continue;
+        }
+        const double phi = gm_test_uniform(&seed, -3.0, 3.0);
+        gm_position position, other_position;
+        gm_mesh_result posed, other;
+        const gm_pose pose = {0.0, 0.0, shift, 0.0, 0.0}, none = {0.0, 0.0, 0.0, 0.0, 0.0};
+        GM_ASSERT_INT(gm_position_from_pinion_angle(&to, phi, x, 1e-3, &other_position), GM_OK);
+        GM_ASSERT_INT(gm_position_from_pinion_angle(&from, phi, x - turned, 1e-3, &position),
+                      GM_OK);
+        GM_ASSERT_INT(evaluate_posed(&from, NULL, NULL, &pose, &position, &posed), GM_OK);
+        GM_ASSERT_INT(evaluate_posed(&to, NULL, NULL, &none, &other_position, &other), GM_OK);
+
+        /* K belongs to the common face as drawn. */
+        const double share = from.face_width / to.face_width;
+        GM_ASSERT(other.force > 100.0);
+        GM_ASSERT_REL(posed.force * share, other.force, 1e-8);
+        GM_ASSERT_REL(posed.wrench.wheel_moment[0] * share, other.wrench.wheel_moment[0], 1e-7);
+        GM_ASSERT_REL(posed.contact.drive_contact * share, other.contact.drive_contact, 1e-9);
+        ++compared;
+    }
+    gm_test_context("%s", "");
+    GM_ASSERT(compared > 80);
+}
+
+/* Moved closer, the tip that has less clearance meets its mate's root first, of whichever gear it is. */
+static void either_tip_may_meet_a_root(void) {
+    for (int role = GM_PINION; role <= GM_WHEEL; ++role) {
+        gm_test_context("role %d", role);
+        gm_pair_params params = reference_params(REFERENCE_FACE_WIDTH);
+        *(role == GM_PINION ? &params.wheel_rack_dedendum : &params.pinion_rack_dedendum) = 1.65;
+        const gm_pair pair = make_pair(&params);
+        const double least =
+            role == GM_PINION ? pair.pinion_tip_clearance : pair.wheel_tip_clearance;
+        const double most =
+            role == GM_PINION ? pair.wheel_tip_clearance : pair.pinion_tip_clearance;
+        GM_ASSERT(least > 0.1e-3 && most > least + 0.05e-3);
+        for (int beyond = 0; beyond < 2; ++beyond) {
+            plain_mesh room;
+            gm_mesh *mesh;
+            gm_mesh_params law;
+            gm_mesh_params_default(&law);
+            law.stiffness = 1e8;
+            law.pose.center_distance_change = -least + (beyond ? -1e-6 : 1e-6);
+            GM_ASSERT_INT(
+                gm_mesh_init(&mesh, &law, &pair, NULL, NULL, room.memory, sizeof room.memory),
+                beyond ? GM_POSE_OUT_OF_MESH : GM_OK);
+        }
+    }
+    gm_test_context("%s", "");
+}
+
 int main(int argc, char **argv) {
     static const gm_test tests[] = {
         GM_TEST(transmission_error_is_that_of_displaced_helicoids),
@@ -600,6 +677,8 @@ int main(int argc, char **argv) {
         GM_TEST(a_cache_of_a_posed_mesh_is_as_good),
         GM_TEST(no_pose_is_the_drawing_to_the_last_bit),
         GM_TEST(poses_out_of_mesh_are_refused),
+        GM_TEST(either_tip_may_meet_a_root),
+        GM_TEST(a_shifted_face_is_another_drawing),
         GM_TEST(a_shorter_common_face_carries_less),
     };
     return gm_test_main("unit.pose", tests, GM_TEST_COUNT(tests), argc, argv);
