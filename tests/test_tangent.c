@@ -94,6 +94,11 @@ static int random_motion(const random_case *c, uint64_t *seed, int i, double til
         (gm_pose){gm_test_uniform(seed, -0.01, 0.01) * m, gm_test_uniform(seed, -0.01, 0.01) * m,
                   gm_test_uniform(seed, -0.05, 0.05) * m, gm_test_uniform(seed, -tilted, tilted),
                   gm_test_uniform(seed, -tilted, tilted)};
+
+    /* Some axes as drawn: without tables, which would have a kink there. */
+    if (i % 4 == 0 && may_be_parallel) {
+        motion->pose.center_distance_change = motion->pose.offset = 0.0;
+    }
     const double v = i % 3 == 0 ? 0.0 : 1e-3 * m;
     motion->pose_rate =
         (gm_pose){gm_test_uniform(seed, -v, v), gm_test_uniform(seed, -v, v),
