@@ -21,7 +21,8 @@ PARAMETERS = {"gm_pair_params": "PairParameters", "gm_pose": "Pose", "gm_mesh_pa
               "gm_modification": "ModificationParameters", "gm_body": "Body"}
 RECORDS = {"gm_gear": "Gear", "gm_pair": "PairRecord"}
 ARRAYS = {"gm_gradient": "Gradient", "gm_penetration": "Penetration", "gm_wrench": "Wrench",
-          "gm_mesh_result": "MeshResult", "gm_tangent": "Tangent"}
+          "gm_mesh_result": "MeshResult", "gm_tangent": "Tangent", "gm_line_load_point": "LineLoadPoint",
+          "gm_line_loads": "LineLoads"}
 
 
 def declared(struct, types):

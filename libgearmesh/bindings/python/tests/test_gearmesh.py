@@ -230,6 +230,38 @@ def test_bodies_get_the_torques_of_the_angles_and_balance_each_other(pair, mesh)
         mesh.evaluate_bodies({**pinion, "position": 1.0}, wheel)
 
 
+def test_line_loads_are_uniform_with_a_constant_stiffness_and_add_up_to_the_force(pair, mesh):
+    offset = mesh.static(0.1, 20.0).offset
+    load, points = mesh.line_loads(0.1, offset)
+    force = mesh.evaluate_offset(0.1, offset).force
+    # The overlap of ideal flanks is the same all along the lines; its integral over z is the force.
+    assert load.face_load_factor == pytest.approx(1.0, rel=1e-12)
+    assert points.line_load == pytest.approx(load.largest_line_load, rel=1e-12)
+    assert load.largest_line_load * load.touching_width == pytest.approx(force, rel=1e-9)
+    assert set(points.side) == {0}
+    # rho_p + rho_w is the line of action.
+    assert points.pinion_roll_length + points.wheel_roll_length == pytest.approx(pair.line_of_action, rel=1e-3)
+
+    # Beside each other and out of range.
+    assert np.isnan(mesh.line_loads(0.1, 0.0).load.largest_line_load)
+    assert len(mesh.line_loads(0.1, 1.0).points) == 0
+    with pytest.raises(gearmesh.Error):
+        gearmesh.Mesh(pair, model="simple", **LAW).line_loads(0.1, offset)
+
+
+def test_line_loads_of_elastic_teeth_add_up_to_the_force(pair):
+    mesh = gearmesh.Mesh(pair, law="elastic", stations=49)
+    static = mesh.static(0.1, 20.0)
+    load, points = mesh.line_loads(0.1, static.offset)
+    # Trapezoids between the stations of each line leave out its ends, less than 1 of 48 parts of the face at each; at one
+    # of them a line goes over a tip, where its load is small.
+    total = sum(np.trapezoid(line.line_load, line.z) if len(line) > 1 else 0.0
+                for line in (points[points.pinion_tooth == tooth] for tooth in set(points.pinion_tooth)))
+    assert 0.95 < total / static.result.force <= 1.01
+    assert load.largest_pressure >= points.pressure.max() > 1e7
+    assert load.face_load_factor > 1.0
+
+
 def test_elastic_teeth_have_a_workspace_in_every_thread(pair):
     mesh = gearmesh.Mesh(pair, law="elastic", stations=5)
     angle = np.linspace(0, 0.14, 8)

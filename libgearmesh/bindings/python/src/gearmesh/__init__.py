@@ -18,10 +18,10 @@ from ._gearmesh import ffi, lib
 from ._memory import Error
 from ._records import Gear, MeshResult
 from .flanks import Flanks, Modification
-from .mesh import BodiesResult, Mesh, StaticResult
+from .mesh import BodiesResult, LineLoadsResult, Mesh, StaticResult
 from .pair import Pair
 from .runs import Run, gearsim, read_run
 
 __version__ = ffi.string(lib.gm_version()).decode()
-__all__ = ["BodiesResult", "Error", "Flanks", "Gear", "Mesh", "MeshResult", "Modification", "Pair", "Run",
-           "StaticResult", "ffi", "gearsim", "lib", "read_run"]
+__all__ = ["BodiesResult", "Error", "Flanks", "Gear", "LineLoadsResult", "Mesh", "MeshResult", "Modification", "Pair",
+           "Run", "StaticResult", "ffi", "gearsim", "lib", "read_run"]

@@ -95,6 +95,8 @@ def dtype_of(kind: Any) -> np.dtype:
 STATE, POSE, BODY, LOAD = (dtype_of(ffi.typeof(name)) for name in ("gm_state", "gm_pose", "gm_body", "gm_load"))
 TANGENT = np.dtype((np.record, dtype_of(ffi.typeof("gm_tangent"))))
 RESULT = np.dtype((np.record, dtype_of(ffi.typeof("gm_mesh_result"))))
+POINT = np.dtype((np.record, dtype_of(ffi.typeof("gm_line_load_point"))))
+LINE_LOADS = np.dtype((np.record, dtype_of(ffi.typeof("gm_line_loads"))))
 
 
 def filled(kind: np.dtype, values: Mapping[str, Any], *, required: bool = False) -> Any:

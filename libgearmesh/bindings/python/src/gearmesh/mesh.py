@@ -12,8 +12,9 @@ from numpy.typing import ArrayLike, NDArray
 
 from . import _records
 from ._gearmesh import ffi, lib
-from ._memory import BODY, LOAD, POSE, RESULT, STATE, TANGENT, Error, doubles, enum_value, fill, filled, refusal, status_text
-from ._records import Body, MeshResult, Tangent
+from ._memory import (BODY, LINE_LOADS, LOAD, POINT, POSE, RESULT, STATE, TANGENT, Error, doubles, enum_value, fill, filled,
+                      refusal, status_text)
+from ._records import Body, LineLoadPoint, LineLoads, MeshResult, Tangent
 from .flanks import Flanks
 from .pair import Pair
 
@@ -29,6 +30,16 @@ class StaticResult(NamedTuple):
 
     result: MeshResult
     """the mesh there, with derivatives"""
+
+
+class LineLoadsResult(NamedTuple):
+    """How a mesh is loaded at one position."""
+
+    load: LineLoads
+    """largest line load and pressure, face load factor, touching width"""
+
+    points: LineLoadPoint
+    """[points] along the lines of contact, in the order of sides, lines and z: `z`, `line_load`, `pressure`, `gap` ..."""
 
 
 class BodiesResult(NamedTuple):
@@ -169,6 +180,26 @@ class Mesh:
                                   _pointer("double *", offsets), _pointer("gm_mesh_result *", results))
         _check(status)
         return StaticResult(offsets[()], _shown(results))
+
+    def line_loads(self, pinion_angle: float, offset: float) -> LineLoadsResult:
+        """
+        Load along the lines of contact at one pinion angle (rad) and x (m), as static() gives it, without damping.
+
+        Of the points, those of a pair are `points[points.pinion_tooth == tooth]`. Where evaluate_offset() gives NaN, `load`
+        is NaN and there are no points. Raises Error for a mesh of the simple model.
+        """
+        position = ffi.new("gm_position *")
+        points: Any = np.empty(lib.gm_mesh_line_load_points(self._struct), POINT)
+        load: Any = np.empty((), LINE_LOADS)
+        # What is refused as an angle or x is NaN in the position, and refused again.
+        status = lib.gm_position_from_pinion_angle(self.pair._struct, pinion_angle, offset, 0.0, position)
+        if status >= lib.GM_OK:
+            status = lib.gm_mesh_line_loads(self._struct, position, self._workspace(),
+                                            _pointer("gm_line_load_point *", points), points.size,
+                                            _pointer("gm_line_loads *", load))
+        if status < lib.GM_OK:
+            raise Error(status_text(status))
+        return LineLoadsResult(load[()], points[:load["points"]].view(LineLoadPoint))
 
     def eigenfrequency(self, pinion_inertia: float, wheel_inertia: float) -> float:
         """Of two bodies (kg m2; math.inf: its motion is prescribed) on the mean stiffness of the mesh (Hz)."""
