@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: The gearmesh authors
 # SPDX-License-Identifier: BSD-3-Clause
-"""The FMUs in two importers, FMPy and libcosim, against gearsim and the Python package."""
+"""The FMUs in three importers, FMPy, libcosim and ecos, against gearsim and the Python package."""
 import ctypes
 import pathlib
 import shutil
@@ -345,3 +345,19 @@ def test_libcosim_moves_the_gear_pair_as_gearsim_does(fmu, run):
     offset, force = observer.last_real_values(slave, [variables["offset"], variables["force"]])
     assert 1e6 * offset == pytest.approx(-expected["dte_um"][-1], abs=1e-3)
     assert force == pytest.approx(expected["contact_force_N"][-1], abs=0.2)
+
+
+@pytest.mark.parametrize("version", VERSIONS)
+def test_ecos_moves_the_gear_pair_as_gearsim_does(fmu, run, version):
+    from ecospy import EcosSimulation, EcosSimulationStructure
+
+    expected = run()
+    structure = EcosSimulationStructure()
+    structure.add_model("pair", fmu("GearPair", version))
+    start = {**start_of(expected), "relative_tolerance": 1e-8}
+    structure.add_parameter_set("start", {f"pair::{name}": float(value) for name, value in start.items()})
+    with EcosSimulation(structure=structure, step_size=1e-4) as simulation:
+        simulation.init(parameter_set="start")
+        simulation.step(200)
+        assert 1e6 * simulation.get_real("pair::offset") == pytest.approx(-expected["dte_um"][-1], abs=1e-3)
+        assert simulation.get_real("pair::force") == pytest.approx(expected["contact_force_N"][-1], abs=0.2)
