@@ -73,9 +73,9 @@ static double next_edge(const traces *ramps, double from, double to) {
  * Takes ramps first .. last - 1, those of one flank, off a part of the line that no edge cuts: what a ramp does in its
  * middle it does all along. Returns their sum by v2 of the flank (m), and *per_face by v1, if wanted.
  */
-static double take_off(gmi_line *part, const traces *ramps, int first, int last,
-                       const gmi_tables *tables, const gmi_grid *grid, int wanted,
-                       double *per_face) {
+SPECIALIZED double take_off(gmi_line *part, const traces *ramps, int first, int last,
+                            const gmi_tables *tables, const gmi_grid *grid, int wanted,
+                            double *per_face) {
     const double middle = 0.5 * (part->from + part->to);
     double per_profile = 0.0;
     *per_face = 0.0;
@@ -104,13 +104,17 @@ static void add_ramp_slopes(gmi_line_tangent *tangent, double pinion, double whe
     }
 }
 
-static void add_part(const gmi_line_sum *part, int wanted, gmi_line_sum *result) {
+SPECIALIZED void add_part(const gmi_line_sum *part, int wanted, gmi_line_sum *result) {
     result->sum += part->sum;
     result->contact += part->contact;
-    result->pinion += part->pinion;
-    result->wheel += part->wheel;
-    result->sum_t1 += part->sum_t1;
-    result->contact_t1 += part->contact_t1;
+    if (wanted & GMI_DERIVATIVES) {
+        result->pinion += part->pinion;
+        result->wheel += part->wheel;
+    }
+    if (wanted & GMI_MOMENTS) {
+        result->sum_t1 += part->sum_t1;
+        result->contact_t1 += part->contact_t1;
+    }
     if (wanted & GMI_CONTACT_DERIVATIVES) {
         result->roots += part->roots;
         result->roots_pinion += part->roots_pinion;
@@ -118,9 +122,10 @@ static void add_part(const gmi_line_sum *part, int wanted, gmi_line_sum *result)
     }
 }
 
-void gmi_ramps_integrate(const gmi_line *line, const gmi_grid *pinion, const gmi_grid *wheel,
-                         const gmi_tables *pinion_tables, const gmi_tables *wheel_tables,
-                         int wanted, gmi_line_sum *result) {
+/* wanted: a constant where it matters. */
+SPECIALIZED void follow_edges(const gmi_line *line, const gmi_grid *pinion, const gmi_grid *wheel,
+                              const gmi_tables *pinion_tables, const gmi_tables *wheel_tables,
+                              int wanted, gmi_line_sum *result) {
     const gmi_line_sum none = {.sum = 0.0};
     traces ramps;
     ramps.all = 0;
@@ -152,8 +157,10 @@ void gmi_ramps_integrate(const gmi_line *line, const gmi_grid *pinion, const gmi
         if (wanted & GMI_TANGENT) {
             add_ramp_slopes(line->tangent, by_pinion, by_wheel, wheel_face);
         }
-        sum.pinion -= by_pinion * sum.contact;
-        sum.wheel -= by_wheel * sum.contact;
+        if (wanted & GMI_DERIVATIVES) {
+            sum.pinion -= by_pinion * sum.contact;
+            sum.wheel -= by_wheel * sum.contact;
+        }
         if (wanted & GMI_CONTACT_DERIVATIVES) {
             sum.roots_pinion -= by_pinion * sum.roots;
             sum.roots_wheel -= by_wheel * sum.roots;
@@ -165,5 +172,29 @@ void gmi_ramps_integrate(const gmi_line *line, const gmi_grid *pinion, const gmi
         }
         result->at_to = sum.at_to;
         from = part.to;
+    }
+}
+
+/* Most calls want the sum alone. */
+static OWN_STACK void integrate_sum(const gmi_line *line, const gmi_grid *pinion,
+                                    const gmi_grid *wheel, const gmi_tables *pinion_tables,
+                                    const gmi_tables *wheel_tables, gmi_line_sum *result) {
+    follow_edges(line, pinion, wheel, pinion_tables, wheel_tables, GMI_SUM, result);
+}
+
+static OWN_STACK void integrate_all(const gmi_line *line, const gmi_grid *pinion,
+                                    const gmi_grid *wheel, const gmi_tables *pinion_tables,
+                                    const gmi_tables *wheel_tables, int wanted,
+                                    gmi_line_sum *result) {
+    follow_edges(line, pinion, wheel, pinion_tables, wheel_tables, wanted, result);
+}
+
+void gmi_ramps_integrate(const gmi_line *line, const gmi_grid *pinion, const gmi_grid *wheel,
+                         const gmi_tables *pinion_tables, const gmi_tables *wheel_tables,
+                         int wanted, gmi_line_sum *result) {
+    if (wanted == GMI_SUM) {
+        integrate_sum(line, pinion, wheel, pinion_tables, wheel_tables, result);
+    } else {
+        integrate_all(line, pinion, wheel, pinion_tables, wheel_tables, wanted, result);
     }
 }
