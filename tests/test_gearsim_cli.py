@@ -928,8 +928,9 @@ class Geometry(Case):
 
         # What cannot be.
         key = "--set gears.double_helical_gap_mm: "
-        self.refused(key, "must be less than the common face width, 17.5 (got 17.5)",
-                     arguments=["--set", "gears.double_helical_gap_mm=17.5"])
+        for gap in ("17.5", "17.4999"):
+            self.refused(key, f"must leave teeth on both sides: less than the common face width, 17.5 (got {gap})",
+                         arguments=["--set", f"gears.double_helical_gap_mm={gap}"])
         self.refused_value("gears", "double_helical_gap_mm", "-1", "from 0 to 1e+12")
         self.refused("--set gears.axial_offset_mm: ", "must be 0 with gears.double_helical_gap_mm", "(got 1)",
                      arguments=[*halves, "--set", "gears.axial_offset_mm=1"])

@@ -89,15 +89,17 @@ static int refuse_double_helical(const config *conf, const gm_pair *pair) {
                         "where both halves carry the same (got %.9g)",
                         1e3 * conf->gears.axial_offset);
     } else {
-        config_complain(conf, "gears.double_helical_gap_mm",
-                        "must be less than the common face width, %.9g (got %.9g)",
-                        1e3 * pair->face_width, 1e3 * conf->double_helical_gap);
+        config_complain(
+            conf, "gears.double_helical_gap_mm",
+            "must leave teeth on both sides: less than the common face width, %.9g (got "
+            "%.9g)",
+            1e3 * pair->face_width, 1e3 * conf->double_helical_gap);
     }
     return EXIT_BAD_INPUT;
 }
 
 int drawing_derive(gm_pair *pair, const config *conf) {
-    int status = gm_pair_init(pair, &conf->gears);
+    const int status = gm_pair_init(pair, &conf->gears);
     if (status != GM_OK) {
         return refuse_geometry(conf, status);
     }
@@ -105,13 +107,15 @@ int drawing_derive(gm_pair *pair, const config *conf) {
         return 0;
     }
 
-    /* Of a double-helical pair one half. */
-    gm_pair_params half;
-    if (gm_double_helical_half(&conf->gears, conf->double_helical_gap, &half) != GM_OK) {
+    /* Of a double-helical pair one half; what was right of the whole is only too narrow now. */
+    gm_pair_params params;
+    gm_pair half;
+    if (gm_double_helical_half(&conf->gears, conf->double_helical_gap, &params) != GM_OK ||
+        gm_pair_init(&half, &params) != GM_OK) {
         return refuse_double_helical(conf, pair);
     }
-    status = gm_pair_init(pair, &half);
-    return status == GM_OK ? 0 : refuse_geometry(conf, status);
+    *pair = half;
+    return 0;
 }
 
 /* ---------------------------------------------------------------------------------------------
