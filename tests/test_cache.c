@@ -239,7 +239,7 @@ static void error_can_be_measured(void) {
     GM_ASSERT_NAN(spoilt.contact_largest);
 }
 
-/* How the derivative by x changes with phase behind a node is how that by phase changes with x around it. */
+/* How the derivative by x changes with phase behind a node is how that by phase changes from node to node around it. */
 static void assert_mixed(fixture *f, const gm_position *node, const gm_penetration *there) {
     const double dphase = 1e-10, dx = f->cache->step;
     gm_position behind = *node, left = *node, right = *node;
@@ -248,49 +248,64 @@ static void assert_mixed(fixture *f, const gm_position *node, const gm_penetrati
     right.offset += dx;
     const gm_penetration r = looked_up_at(f, &behind);
     if (was_looked_up(f, &r)) {
-        const gm_penetration a = exact_at(f, &left), b = exact_at(f, &right);
+        const gm_penetration a = looked_up_at(f, &left), b = looked_up_at(f, &right);
+        if (!was_looked_up(f, &a) || !was_looked_up(f, &b)) {
+            return;
+        }
         const double expected = (by_phase(f, &b) - by_phase(f, &a)) / (2.0 * dx);
         /* Of some 1000 / m; dphase is 1e-4 of the narrowest cell. */
         GM_ASSERT_NEAR((by_x(f, &r) - by_x(f, there)) / dphase, expected, 1e-3, 5.0);
     }
 }
 
-/* Nodes are kept in single precision. */
-static void nodes_are_exact(void) {
-    for (int side = GM_DRIVE; side <= GM_COAST; ++side) {
-        gm_test_context("side %d", side);
-        const gm_cache_params params = params_of(side, 16, 20, 20e-6);
-        fixture f;
-        make_paper(&f, &params);
-        uint64_t seed = UINT64_C(82);
-        int above_zero = 0;
-        for (int i = 0; i < 500; ++i) {
-            gm_position position = random_position(&f, &seed);
-            const int column = gm_test_integer(&seed, 0, f.cache->columns - 2);
-            const int node = gm_test_integer(&seed, 1, f.cache->nodes - 2);
-            position.phase = f.cache->phases[column];
-            (void)looked_up_at(&f, &position); /* fills it */
-            position.offset = offset_of(&f, 0.0);
-            (void)looked_up_at(&f, &position);
-            const double start =
-                f.cache->starts[hunting_pass(&f, &position) * (size_t)f.cache->columns +
-                                (size_t)column];
-            position.offset = offset_of(&f, start + node * f.cache->step);
-            const gm_penetration exact = exact_at(&f, &position);
-            const gm_penetration r = looked_up_at(&f, &position);
-            if (!was_looked_up(&f, &r)) {
-                continue; /* the other column is at its end */
-            }
-            above_zero += looked_up_sum(&f, &exact) > 0.0;
-            GM_ASSERT_NEAR(r.penetration, exact.penetration, 0x1p-23, 1e-18);
-            GM_ASSERT_NEAR(by_x(&f, &r), by_x(&f, &exact), 0x1p-22, 1e-9);
-            GM_ASSERT_NEAR(by_phase(&f, &r), by_phase(&f, &exact), 0x1p-22, 1e-9);
-            if (node > 1) {
-                assert_mixed(&f, &position, &r);
-            }
+/* Nodes of random columns against the exact evaluation: root mean square of the sum's error (m). */
+static double error_of_nodes(int side, double depth) {
+    const gm_cache_params params = params_of(side, 16, 20, depth);
+    fixture f;
+    make_paper(&f, &params);
+    uint64_t seed = UINT64_C(82);
+    int count = 0;
+    double squares = 0.0;
+    for (int i = 0; i < 500; ++i) {
+        gm_position position = random_position(&f, &seed);
+        const int column = gm_test_integer(&seed, 0, f.cache->columns - 2);
+        const int node = gm_test_integer(&seed, 1, f.cache->nodes - 2);
+        position.phase = f.cache->phases[column];
+        (void)looked_up_at(&f, &position); /* fills it */
+        position.offset = offset_of(&f, 0.0);
+        (void)looked_up_at(&f, &position);
+        const double start =
+            f.cache
+                ->starts[hunting_pass(&f, &position) * (size_t)f.cache->columns + (size_t)column];
+        position.offset = offset_of(&f, start + node * f.cache->step);
+        const gm_penetration exact = exact_at(&f, &position);
+        const gm_penetration r = looked_up_at(&f, &position);
+        if (!was_looked_up(&f, &r)) {
+            continue; /* the other column is at its end */
         }
-        GM_ASSERT(above_zero > 300);
-        free_fixture(&f);
+        ++count;
+        squares += pow(r.penetration - exact.penetration, 2);
+        GM_ASSERT_ABS(r.penetration, exact.penetration, 1e-4 * sum_at_20_Nm);
+        GM_ASSERT_ABS(by_x(&f, &r), by_x(&f, &exact), 0.03);
+        if (node > 1) {
+            assert_mixed(&f, &position, &r);
+        }
+    }
+    GM_ASSERT(count > 300);
+    free_fixture(&f);
+    return sqrt(squares / count);
+}
+
+/*
+ * One walk serves many nodes, to second order in their distance from it: over a kink of the flanks, the slope that it
+ * adds times the way behind it. The way to a kink is as often short as long, which leaves the power of 1.5 in the mean.
+ */
+static void nodes_are_exact_to_second_order(void) {
+    for (int side = GM_DRIVE; side <= GM_COAST; ++side) {
+        const double far = error_of_nodes(side, 20e-6), near = error_of_nodes(side, 5e-6);
+        gm_test_context("side %d: %g m, %g m", side, far, near);
+        GM_ASSERT(far < 2e-5 * sum_at_20_Nm);
+        GM_ASSERT(near * 6.0 < far);
     }
 }
 
@@ -892,7 +907,7 @@ int main(int argc, char **argv) {
     static const gm_test tests[] = {
         GM_TEST(error_is_as_stated),
         GM_TEST(error_can_be_measured),
-        GM_TEST(nodes_are_exact),
+        GM_TEST(nodes_are_exact_to_second_order),
         GM_TEST(derivatives_are_those_of_the_sum),
         GM_TEST(beyond_the_depth_it_is_exact),
         GM_TEST(below_the_first_touch_it_is_zero),

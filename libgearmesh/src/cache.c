@@ -348,23 +348,105 @@ static void set_node(const gm_cache *cache, float *node, double value, const gmi
     node[NODE_BY_PHASE] = (float)(cache->side == GM_DRIVE ? sum->by_origin : -sum->by_origin);
 }
 
+/* Whether a walk tells of many depths: with flanks of tables and teeth of a constant stiffness. */
+static int is_walked(const gm_cache *cache) {
+    const gmi_side *side = &cache->mesh->side[cache->side];
+
+    return cache->mesh->elastic == NULL && side->ramps == 0 && !side->is_tilted &&
+           (side->pinion != NULL || side->wheel != NULL);
+}
+
+/* Walks at a delta, for nodes first .. first + count - 1 of a column that begins at `start`. */
+static void walk_at(const gm_cache *cache, gm_position *position, double delta, double start,
+                    int first, int count, gmi_depths *depths) {
+    const gm_mesh *mesh = cache->mesh;
+    position->offset = gmi_side_sign(cache->side) * (delta + 0.5 * mesh->engagement.backlash);
+    memset(depths, 0, sizeof *depths);
+    depths->count = count;
+    depths->from = start - delta + (double)first * cache->step;
+    depths->step = cache->step;
+    depths->last = count > 0 ? depths->from + (double)(count - 1) * cache->step : -HUGE_VAL;
+    depths->touch = HUGE_VAL;
+    gmi_side_sum_depths(mesh->pair, &mesh->engagement, &mesh->side[cache->side], cache->side,
+                        position, depths);
+}
+
+static void set_nodes(const gm_cache *cache, float *values, int first, const gmi_depths *depths) {
+    for (int n = 0; n < depths->count; ++n) {
+        const gmi_depth_sum *at = &depths->part[n];
+        const gmi_side_sum sum = {.by_delta = at->by_delta, .by_origin = at->by_origin};
+        set_node(cache, values + (first + n) * NODE_VALUES, at->sum, &sum);
+    }
+}
+
+/*
+ * A column from a few walks. The first ones find where contact begins: each is off by what is of second order in its
+ * distance. They begin where the tips of even flanks would touch, so that no column depends on another one. The last of
+ * them, where contact begins, serves the nodes as well; of a column with many nodes the first ones.
+ */
+static OWN_STACK double walk_column(const gm_cache *cache, gm_position *position, float *values) {
+    enum { WALKS = 8 };
+    const double fine = ldexp(cache->depth, -START_BISECTIONS);
+    int first = cache->nodes < GMI_DEPTHS_MAX ? cache->nodes : GMI_DEPTHS_MAX;
+    gmi_depths depths;
+    double start = 0.0, touch = 0.0, moved = HUGE_VAL;
+    for (int k = 0; k < 2 || (k < WALKS && fabs(moved) > 0.45 * fine); ++k) {
+        start = touch - 0.5 * fine; /* a little below */
+        walk_at(cache, position, touch, start, 0, k > 0 ? first : 0, &depths);
+        moved = depths.touch;
+        if (!(moved < HUGE_VAL)) {
+            return HUGE_VAL;
+        }
+        touch += moved;
+    }
+    set_nodes(cache, values, 0, &depths);
+
+    /* The others from walks in their middle. */
+    while (first < cache->nodes) {
+        const int left = cache->nodes - first;
+        const int count = left < GMI_DEPTHS_MAX ? left : GMI_DEPTHS_MAX;
+        const double middle = start + ((double)first + 0.5 * (double)count) * cache->step;
+        walk_at(cache, position, middle, start, first, count, &depths);
+        set_nodes(cache, values, first, &depths);
+        first += count;
+    }
+
+    /* Even flanks touch all at once, others with a power of 1.5: the slope of a parabola to the next node serves both. */
+    const float slope = 2.0F * values[NODE_VALUES + NODE_SUM] - values[NODE_VALUES + NODE_BY_DELTA];
+    values[NODE_SUM] = 0.0F;
+    values[NODE_BY_DELTA] = slope > 0.0F ? slope : 0.0F;
+
+    return start;
+}
+
+/* Nodes from the first touch on, each by an evaluation; none where no line exists. */
+static double evaluate_column(const gm_cache *cache, gm_position *position, float *values,
+                              gm_workspace *workspace) {
+    const double start = find_start(cache, position, workspace);
+    if (!(start < HUGE_VAL)) {
+        return start;
+    }
+
+    /* Even flanks touch all at once: the slope at the start is the one behind it. */
+    gmi_side_sum sum =
+        exact_at(cache, position, start + ldexp(cache->depth, -START_BISECTIONS), workspace);
+    set_node(cache, values, 0.0, &sum);
+    for (int n = 1; n < cache->nodes; ++n) {
+        sum = exact_at(cache, position, start + (double)n * cache->step, workspace);
+        set_node(cache, values + n * NODE_VALUES, sum.sum, &sum);
+    }
+    return start;
+}
+
 static void fill_column(gm_cache *cache, int pass, int index, gm_workspace *workspace) {
     const size_t column = (size_t)pass * (size_t)cache->columns + (size_t)index;
+    float *values = values_of(cache, column);
     gm_position position = {.phase = cache->phases[index]};
     set_teeth(cache, pass, &position);
 
-    /* Nodes from the first touch on; none where no line exists. */
-    const double start = find_start(cache, &position, workspace);
+    const double start = is_walked(cache) ? walk_column(cache, &position, values)
+                                          : evaluate_column(cache, &position, values, workspace);
     if (start < HUGE_VAL) {
-        float *values = values_of(cache, column);
-        /* Even flanks touch all at once: the slope at the start is the one behind it. */
-        gmi_side_sum sum =
-            exact_at(cache, &position, start + ldexp(cache->depth, -START_BISECTIONS), workspace);
-        set_node(cache, values, 0.0, &sum);
-        for (int n = 1; n < cache->nodes; ++n) {
-            sum = exact_at(cache, &position, start + (double)n * cache->step, workspace);
-            set_node(cache, values + n * NODE_VALUES, sum.sum, &sum);
-        }
         set_mixed(values, cache->nodes);
     }
     cache->starts[column] = start;

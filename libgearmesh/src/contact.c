@@ -51,6 +51,11 @@ static void find_limits(const gmi_engagement *at, gmi_lines *lines) {
     }
 }
 
+void gmi_lines_limit(const gmi_engagement *at, double delta, gmi_lines *lines) {
+    lines->delta = delta;
+    find_limits(at, lines);
+}
+
 void gmi_lines_find(const gm_pair *pair, const gmi_engagement *at, int side,
                     const gm_position *position, gmi_lines *lines) {
     const double direction = gmi_side_sign(side);

@@ -227,7 +227,8 @@ enum gmi_wanted {
     GMI_MOMENTS = 2,             /* first moments over t1 and rho_p */
     GMI_ROLL = 8,                /* what a common roll of all lines does to the energy */
     GMI_CONTACT_DERIVATIVES = 4, /* of the touching part; only together with GMI_DERIVATIVES */
-    GMI_TANGENT = 16             /* all of gmi_side_tangent; only together with GMI_MOMENTS */
+    GMI_TANGENT = 16,            /* all of gmi_side_tangent; only together with GMI_MOMENTS */
+    GMI_DEPTHS = 32 /* gmi_depths in place of the sums; only together with GMI_DERIVATIVES */
 };
 
 /* The sums over all lines of one side. */
@@ -321,6 +322,9 @@ void gmi_lines_find(const gm_pair *pair, const gmi_engagement *at, int side,
 
 /* The same lines with other limits: also those that meet these. */
 void gmi_lines_widen(const gm_pair *pair, double lower, double upper, gmi_lines *lines);
+
+/* The same lines at another delta, which moves their limits. */
+void gmi_lines_limit(const gmi_engagement *at, double delta, gmi_lines *lines);
 gmi_line_ends gmi_line_ends_find(const gm_pair *pair, const gmi_engagement *at,
                                  const gmi_lines *lines);
 gmi_teeth gmi_lines_teeth(const gm_pair *pair, int side, const gm_position *position,
@@ -498,6 +502,32 @@ static inline gmi_line gmi_line_between(const gmi_line *line, double from, doubl
     return part;
 }
 
+/* At one depth: the sum and its derivatives by delta and by the origin of the lines. */
+typedef struct gmi_depth_sum {
+    double sum, by_delta, by_origin;
+} gmi_depth_sum;
+
+/*
+ * A side at many depths from one walk along its lines (GMI_DEPTHS): delta is that of the walk and a shift. With the shift f
+ * grows by itself and by the slope of the wheel's flank, whose place moves; where the wheel sets the ends of lines these
+ * move. What is left out is of second order in the shift.
+ */
+enum { GMI_DEPTHS_MAX = 48 };
+typedef struct gmi_depths {
+    int count;
+    double from, step; /* shift n is from + n step (m) */
+    double last;       /* the last one; -infinite without any */
+    double touch;      /* least shift at which anything touches (m) */
+
+    /* Of pieces that touch all along from depth n on, without shift; of those that touch in part, and of the ends. */
+    gmi_depth_sum whole[GMI_DEPTHS_MAX], part[GMI_DEPTHS_MAX];
+
+    /* Of the line at hand, by the slopes of the table that leads and of the other one: */
+    double per_place;                 /* from its places to t1 */
+    double shift_first, shift_second; /* d f / d shift */
+    double origin_first, origin_second;
+} gmi_depths;
+
 /* Integrals over the part of a line where f > 0. */
 typedef struct gmi_line_sum {
     double sum;        /* of f (m) */
@@ -515,6 +545,7 @@ typedef struct gmi_line_sum {
     double at_from; /* f itself at both ends (m) */
     double at_to;
     gmi_line_tangent *tangent; /* that of the line */
+    gmi_depths *depths;        /* GMI_DEPTHS */
 } gmi_line_sum;
 
 /* What the tables add to d f / d coordinate, from the slopes of the pinion, of the wheel and of the wheel's face. */
@@ -528,6 +559,9 @@ static inline void gmi_line_add_slopes(const gmi_line_tangent *tangent, double p
     by[GMI_BY_AXIAL] -= tangent->face_per_length * face;
 }
 
+/* The same at all depths; the result has f at both ends of the line at the depth of the walk. */
+void gmi_line_integrate_depths(const gmi_line *line, const gmi_grid *pinion, const gmi_grid *wheel,
+                               gmi_depths *depths, gmi_line_sum *result);
 void gmi_line_integrate(const gmi_line *line, const gmi_grid *pinion, const gmi_grid *wheel,
                         int wanted, gmi_line_sum *result);
 
@@ -610,6 +644,12 @@ void gmi_side_init(gmi_side *prepared, const gm_pair *pair, const gmi_engagement
 
 /* The same side in another pose. */
 void gmi_side_move(gmi_side *prepared, const gm_pair *pair, const gmi_engagement *at, int side);
+
+/*
+ * A side of flanks without ramps between parallel axes at all depths from one walk: `part` has the sums in the end.
+ */
+void gmi_side_sum_depths(const gm_pair *pair, const gmi_engagement *at, const gmi_side *prepared,
+                         int side, const gm_position *position, gmi_depths *depths);
 
 void gmi_side_sum_tables(const gm_pair *pair, const gmi_engagement *at, const gmi_side *prepared,
                          int side, const gm_position *position, int wanted, gmi_side_sum *total);

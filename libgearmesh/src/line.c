@@ -435,6 +435,115 @@ SPECIALIZED piece piece_ahead(const walk_state *at, double length, int wanted) {
     return part;
 }
 
+/* What f is at three points that hold the piece in their hull, and how it grows with the shift. */
+typedef struct hull {
+    double value[3], grows[3];
+} hull;
+
+static inline double lowest_of(const hull *points, double shift) {
+    return smaller(smaller(points->value[0] + shift * points->grows[0],
+                           points->value[1] + shift * points->grows[1]),
+                   points->value[2] + shift * points->grows[2]);
+}
+
+static inline double highest_of(const hull *points, double shift) {
+    return larger(larger(points->value[0] + shift * points->grows[0],
+                         points->value[1] + shift * points->grows[1]),
+                  points->value[2] + shift * points->grows[2]);
+}
+
+/* The least shift at which the piece touches: at an end, or at the top of a hump. */
+static double touch_of(const piece *part, const hull *points) {
+    const quadratic *f = &part->f;
+    const double touch =
+        smaller(-points->value[0] / points->grows[0], -points->value[2] / points->grows[2]);
+    const double top = -f->half_slope / f->curvature;
+    if (!(f->curvature < 0.0 && top > 0.0 && top < part->length)) {
+        return touch;
+    }
+    const double share = top / part->length;
+    const double grows = points->grows[0] + share * (points->grows[2] - points->grows[0]);
+    return smaller(touch, -(f->value + top * f->half_slope) / grows);
+}
+
+/* A part of the piece touches at depth n. */
+static void add_part_depth(const piece *part, const hull *points, int n, gmi_depths *depths) {
+    const double shift = depths->from + (double)n * depths->step;
+    const double grows_rate = (points->grows[2] - points->grows[0]) / part->length;
+    piece moved = *part;
+    gmi_line_sum sum = {.sum = 0.0};
+    moved.f.value += shift * points->grows[0];
+    moved.f.half_slope += 0.5 * shift * grows_rate;
+    add_split(&moved, GMI_DERIVATIVES, &sum);
+
+    gmi_depth_sum *at = &depths->part[n];
+    at->sum += depths->per_place * sum.sum;
+    at->by_delta += depths->per_place * (sum.contact + depths->shift_first * sum.pinion +
+                                         depths->shift_second * sum.wheel);
+    at->by_origin +=
+        depths->per_place * (depths->origin_first * sum.pinion + depths->origin_second * sum.wheel);
+}
+
+/* The first depth behind a place between them. */
+static int depth_behind(double place, int count) {
+    return place < 0.0 ? 0 : place < (double)count ? (int)place + 1 : count;
+}
+
+/* The depths at which a part of the piece touches, one by one. Returns the first one at which all of it does. */
+static OWN_STACK int add_part_depths(const piece *part, const hull *points, gmi_depths *depths) {
+    double some = HUGE_VAL, all = -HUGE_VAL;
+    for (int k = 0; k < 3; ++k) {
+        const double touch = -points->value[k] / points->grows[k];
+        some = smaller(some, touch);
+        all = larger(all, touch);
+    }
+
+    const double per_step = 1.0 / depths->step;
+    const int whole = depth_behind((all - depths->from) * per_step, depths->count);
+    for (int n = depth_behind((some - depths->from) * per_step, depths->count); n < whole; ++n) {
+        add_part_depth(part, points, n, depths);
+    }
+    return whole;
+}
+
+/* A piece at all depths: at the small ones none of it touches, then a part, then all of it. */
+SPECIALIZED void add_depths(const piece *part, gmi_depths *depths) {
+    const double length = part->length;
+    if (!(length > 0.0)) {
+        return;
+    }
+
+    /* The three points of advance(). */
+    const quadratic *f = &part->f;
+    const double control = f->value + length * f->half_slope;
+    const double end = control + length * (f->half_slope + length * f->curvature);
+    const double grows =
+        1.0 + depths->shift_first * part->first_slope + depths->shift_second * part->second_slope;
+    const double grows_by = length * (depths->shift_first * part->first_rate +
+                                      depths->shift_second * part->second_rate);
+    const hull points = {{f->value, control, end},
+                         {grows, grows + 0.5 * grows_by, grows + grows_by}};
+    if (highest_of(&points, depths->touch) > 0.0) {
+        depths->touch = smaller(depths->touch, touch_of(part, &points));
+    }
+    if (!(highest_of(&points, depths->last) > 0.0)) {
+        return;
+    }
+    const int whole =
+        lowest_of(&points, depths->from) > 0.0 ? 0 : add_part_depths(part, &points, depths);
+
+    /* From there on all of it does: linear in the shift. */
+    if (whole < depths->count) {
+        const double weight = depths->per_place * length;
+        const double first = part->first_slope + 0.5 * length * part->first_rate;
+        const double second = part->second_slope + 0.5 * length * part->second_rate;
+        gmi_depth_sum *at = &depths->whole[whole];
+        at->sum += weight * (f->value + control + end) * (1.0 / 3.0);
+        at->by_delta += weight * points.grows[1];
+        at->by_origin += weight * (depths->origin_first * first + depths->origin_second * second);
+    }
+}
+
 SPECIALIZED void end_stretch(tangent_walk *walked, double place, gmi_line_tangent *tangent) {
     if (walked->touching_from > NOWHERE) {
         add_stretch(walked->touching_from, place, tangent);
@@ -466,7 +575,10 @@ SPECIALIZED void advance(walk_state *at, double end, int wanted, tangent_walk *w
         wanted & GMI_TANGENT ? walked->face[0] + length * walked->face[1] : 0.0;
 
     /* Touching all along, which is two pieces of three; or in part; or not at all. */
-    if (smaller(smaller(value, control), end_value) > 0.0) {
+    if (wanted & GMI_DEPTHS) {
+        const piece part = piece_ahead(at, length, wanted);
+        add_depths(&part, split->depths);
+    } else if (smaller(smaller(value, control), end_value) > 0.0) {
         const double three = length * (value + control + end_value);
         at->three_sums += three;
         at->contact += length;
@@ -663,7 +775,7 @@ static OWN_STACK void walk_apart(walk_state at, const gmi_grid *first, const gmi
     if (wanted == GMI_SUM) {
         walk(at, first, second, end, GMI_SUM, 0, NULL, result);
     } else {
-        walk(at, first, second, end, wanted & ~GMI_TANGENT, 0, NULL, result);
+        walk(at, first, second, end, wanted & ~(GMI_TANGENT | GMI_DEPTHS), 0, NULL, result);
     }
 }
 
@@ -698,11 +810,25 @@ static OWN_STACK void walk_tangent(walk_state at, const gmi_grid *first, const g
     }
 }
 
+/* The walk at all depths, apart like that of a tangent. */
+static OWN_STACK void walk_depths(walk_state at, const gmi_grid *first, const gmi_grid *second,
+                                  double end, int same_faces, gmi_line_sum *result) {
+    enum { AT_DEPTHS = GMI_DEPTHS | GMI_DERIVATIVES };
+    if (same_faces) {
+        walk(at, first, second, end, AT_DEPTHS, 1, NULL, result);
+    } else {
+        walk(at, first, second, end, AT_DEPTHS, 0, NULL, result);
+    }
+}
+
+/* What a walk is for, beside sums. */
+enum walk_kind { WALK_SUMS, WALK_TANGENT, WALK_DEPTHS };
+
 /* `first` has a table, `second` may have one. */
 SPECIALIZED void walk_tables(const gmi_line *line, const gmi_grid *first, const double *first_table,
                              double first_profile, const gmi_grid *second,
                              const double *second_table, double second_profile, int wanted,
-                             int has_tangent, gmi_line_sum *result) {
+                             enum walk_kind kind, gmi_line_sum *result) {
     const double v1 = line->from * first->face_rate + first->face_base;
     const double to = line->to * first->face_rate + first->face_base;
     const int face = cell_of(v1, first->last_face);
@@ -748,8 +874,13 @@ SPECIALIZED void walk_tables(const gmi_line *line, const gmi_grid *first, const 
 
     /* A walk of its own for each mask that solvers use: what is not wanted costs nothing in it. */
     enum { DAMPED = GMI_DERIVATIVES | GMI_CONTACT_DERIVATIVES };
-    if (has_tangent) {
+    if (kind == WALK_TANGENT) {
         walk_tangent(at, first, second, end, second_table != NULL, same_faces, result);
+    } else if (kind == WALK_DEPTHS) {
+        if (same_faces) {
+            at.second.next_face = NO_CROSSING;
+        }
+        walk_depths(at, first, second, end, same_faces, result);
     } else if (!same_faces) {
         walk_apart(at, first, second, end, wanted, result);
     } else if (wanted == GMI_SUM) {
@@ -761,7 +892,7 @@ SPECIALIZED void walk_tables(const gmi_line *line, const gmi_grid *first, const 
     } else if (wanted == GMI_MOMENTS) {
         walk(at, first, second, end, GMI_MOMENTS, 1, NULL, result);
     } else {
-        walk(at, first, second, end, wanted & ~GMI_TANGENT, 1, NULL, result);
+        walk(at, first, second, end, wanted & ~(GMI_TANGENT | GMI_DEPTHS), 1, NULL, result);
     }
 }
 
@@ -770,7 +901,7 @@ static void integrate_tables(const gmi_line *line, const gmi_grid *first, const 
                              const double *second_table, double second_profile, int wanted,
                              gmi_line_sum *result) {
     walk_tables(line, first, first_table, first_profile, second, second_table, second_profile,
-                wanted, 0, result);
+                wanted, WALK_SUMS, result);
 }
 
 /* Apart, so that gcc compiles the other one as if this one were not there. */
@@ -783,14 +914,45 @@ static OWN_STACK void integrate_tangent(const gmi_line *line, const gmi_grid *pi
     lead_tangent(tangent, wheel_leads, 1.0, 0.0, 0.0, 0.0);
     if (wheel_leads) {
         walk_tables(line, wheel, line->wheel, line->wheel_profile, &ideal_grid, NULL, 0.0, wanted,
-                    1, result);
+                    WALK_TANGENT, result);
     } else if (line->pinion != NULL) {
         walk_tables(line, pinion, line->pinion, line->pinion_profile, wheel, line->wheel,
-                    line->wheel_profile, wanted, 1, result);
+                    line->wheel_profile, wanted, WALK_TANGENT, result);
     } else {
         integrate_ideal(line, wanted, result);
     }
     finish_tangent(tangent);
+}
+
+void gmi_line_integrate_depths(const gmi_line *line, const gmi_grid *pinion, const gmi_grid *wheel,
+                               gmi_depths *depths, gmi_line_sum *result) {
+    const double by_pinion = pinion->direction * pinion->per_rho;
+    const double by_wheel = wheel->direction * wheel->per_rho;
+    result->sum = result->contact = result->pinion = result->wheel = 0.0;
+    result->depths = depths;
+    depths->shift_first = depths->shift_second = 0.0;
+    depths->origin_first = depths->origin_second = 0.0;
+
+    if (line->pinion != NULL) {
+        depths->per_place = 1.0 / pinion->face_rate;
+        depths->shift_second = line->wheel != NULL ? by_wheel : 0.0;
+        depths->origin_first = by_pinion;
+        depths->origin_second = -depths->shift_second;
+        walk_tables(line, pinion, line->pinion, line->pinion_profile, wheel, line->wheel,
+                    line->wheel_profile, GMI_DERIVATIVES, WALK_DEPTHS, result);
+    } else if (line->wheel != NULL) {
+        depths->per_place = 1.0 / wheel->face_rate;
+        depths->shift_first = by_wheel;
+        depths->origin_first = -by_wheel;
+        walk_tables(line, wheel, line->wheel, line->wheel_profile, &ideal_grid, NULL, 0.0,
+                    GMI_DERIVATIVES, WALK_DEPTHS, result);
+    } else {
+        const quadratic f = {line->overlap, 0.0, 0.0};
+        const piece whole = {0.0, line->to - line->from, f, 0.0, 0.0, 0.0, 0.0};
+        depths->per_place = 1.0;
+        add_depths(&whole, depths);
+        result->at_from = result->at_to = line->overlap;
+    }
 }
 
 void gmi_line_integrate(const gmi_line *line, const gmi_grid *pinion, const gmi_grid *wheel,

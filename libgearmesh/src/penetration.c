@@ -428,6 +428,24 @@ static void add_line_in_parts(side_view *view, const gmi_line *line, double rho_
  * All lines of a side
  * ------------------------------------------------------------------------------------------- */
 
+SPECIALIZED gmi_line line_between(const side_view *view, const gmi_flank *pinion,
+                                  const gmi_flank *wheel, double rho_origin, gmi_interval part) {
+    const gmi_side *prepared = view->prepared;
+    const gmi_line line = {
+        part.from,
+        part.to,
+        view->lines.delta + pinion->pitch + wheel->pitch,
+        0.0,
+        0.0,
+        pinion->values,
+        wheel->values,
+        (rho_origin - view->pair->pinion.start_roll_length) * prepared->pinion_grid.per_rho,
+        (view->wheel_reach - rho_origin) * prepared->wheel_grid.per_rho,
+        NULL,
+    };
+    return line;
+}
+
 SPECIALIZED void add_line(side_view *view, const gmi_flank *pinion, const gmi_flank *wheel, int k,
                           int wanted, int slides, gmi_side_sum *side) {
     const gmi_interval part = gmi_line_clip(&view->ends, k);
@@ -440,18 +458,7 @@ SPECIALIZED void add_line(side_view *view, const gmi_flank *pinion, const gmi_fl
     /* The line in the terms of the tables it runs through. */
     const gm_pair *pair = view->pair;
     const double rho_origin = view->lines.origin + (double)k * pair->transverse_base_pitch;
-    gmi_line line = {
-        part.from,
-        part.to,
-        view->lines.delta + pinion->pitch + wheel->pitch,
-        0.0,
-        0.0,
-        pinion->values,
-        wheel->values,
-        (rho_origin - pair->pinion.start_roll_length) * prepared->pinion_grid.per_rho,
-        (view->wheel_reach - rho_origin) * prepared->wheel_grid.per_rho,
-        NULL,
-    };
+    gmi_line line = line_between(view, pinion, wheel, rho_origin, part);
     if (is_tilted && !tilt_line(view, rho_origin, wanted, &line)) {
         return;
     }
@@ -557,6 +564,75 @@ static OWN_STACK void finish_friction(const side_view *view, int wanted,
     const gmi_varying all = gmi_varying_of(view->pair, view->side, force.force, force.by_origin,
                                            force.by_delta, force.by_speed);
     gmi_friction_finish(view->sliding, &all, view->friction);
+}
+
+/*
+ * Ends that the wheel sets move with the shift and take f there along. Which gear sets an end may change with delta: at
+ * delta = 0 limits often coincide.
+ */
+static void add_end_depths(const side_view *view, int k, gmi_interval part,
+                           const gmi_line_sum *line, gmi_depths *depths) {
+    gmi_lines lines = view->lines;
+    for (int n = 0; n < depths->count; ++n) {
+        const double shift = depths->from + (double)n * depths->step;
+        gmi_lines_limit(view->at, view->lines.delta + shift, &lines);
+        const gmi_line_ends ends = gmi_line_ends_find(view->pair, view->at, &lines);
+        const gmi_interval moved = gmi_line_clip(&ends, k);
+        const double f_from = fmax(line->at_from + shift, 0.0);
+        const double f_to = fmax(line->at_to + shift, 0.0);
+        gmi_depth_sum *at = &depths->part[n];
+        at->sum += f_from * (part.from - moved.from) + f_to * (moved.to - part.to);
+        if (moved.from > ends.face_from) {
+            at->by_origin += f_from * ends.per_advance;
+            at->by_delta -= f_from * ends.per_advance * ends.enter_by_delta;
+        }
+        if (moved.to < ends.face_to) {
+            at->by_origin -= f_to * ends.per_advance;
+            at->by_delta += f_to * ends.per_advance * ends.leave_by_delta;
+        }
+    }
+}
+
+void gmi_side_sum_depths(const gm_pair *pair, const gmi_engagement *at, const gmi_side *prepared,
+                         int side, const gm_position *position, gmi_depths *depths) {
+    side_view view;
+    view.pair = pair;
+    view.at = at;
+    view.prepared = prepared;
+    gmi_lines_find(pair, at, side, position, &view.lines);
+    view.ends = gmi_line_ends_find(pair, at, &view.lines);
+    view.wheel_reach = at->line_of_action + view.lines.delta - at->wheel_profile_start;
+    const gmi_line_ends *ends = &view.ends;
+
+    /* All lines: what does not touch at this depth may touch at another one. */
+    gmi_teeth teeth = gmi_lines_teeth(pair, side, position, &view.lines);
+    for (int k = view.lines.first; k <= view.lines.last; ++k) {
+        const gmi_flank pinion = gmi_flank_of(prepared->pinion, teeth.pinion);
+        const gmi_flank wheel = gmi_flank_of(prepared->wheel, teeth.wheel);
+        const gmi_interval part = gmi_line_clip(ends, k);
+        if (part.from < part.to) {
+            const double rho_origin = view.lines.origin + (double)k * pair->transverse_base_pitch;
+            const gmi_line line = line_between(&view, &pinion, &wheel, rho_origin, part);
+            gmi_line_sum sum;
+            gmi_line_integrate_depths(&line, &prepared->pinion_grid, &prepared->wheel_grid, depths,
+                                      &sum);
+            add_end_depths(&view, k, part, &sum, depths);
+        }
+        teeth.pinion = gmi_next_tooth(teeth.pinion, teeth.step, pair->pinion.teeth);
+        teeth.wheel = gmi_next_tooth(teeth.wheel, teeth.step, pair->wheel.teeth);
+    }
+
+    /* What touches all along does so at every larger depth. */
+    gmi_depth_sum whole = {0.0, 0.0, 0.0};
+    for (int n = 0; n < depths->count; ++n) {
+        const double shift = depths->from + (double)n * depths->step;
+        whole.sum += depths->whole[n].sum;
+        whole.by_delta += depths->whole[n].by_delta;
+        whole.by_origin += depths->whole[n].by_origin;
+        depths->part[n].sum += whole.sum + shift * whole.by_delta;
+        depths->part[n].by_delta += whole.by_delta;
+        depths->part[n].by_origin += whole.by_origin;
+    }
 }
 
 void gmi_side_sum_sliding(const gm_pair *pair, const gmi_engagement *at, const gmi_side *prepared,
