@@ -705,7 +705,7 @@ class Values(Case):
                                       ("flanks", "deviation_direction", "normal | transverse"),
                                       ("drive", "kind", "speed | torque"), ("analysis", "type", "dynamic | static"),
                                       ("analysis", "period", "mesh | pinion | hunting"),
-                                      ("solver", "method", "bdf | adams"), ("solver", "lookup", "off | on")]:
+                                      ("solver", "method", "bdf | adams"), ("solver", "lookup", "off | on | auto")]:
             for value in ["other", "3D"]:
                 with self.subTest(f"{key} = {value}"):
                     self.refused_value(section, key, value, f"must be {choices}")

@@ -26,7 +26,7 @@ enum static_period { PERIOD_MESH, PERIOD_PINION, PERIOD_HUNTING };
 enum solver_method { METHOD_BDF, METHOD_ADAMS, METHOD_ERK };
 enum table_interpolation { INTERPOLATION_LINEAR, INTERPOLATION_CUBIC };
 enum table_repeat { REPEAT_OFF, REPEAT_ON };
-enum lookup_use { LOOKUP_OFF, LOOKUP_ON };
+enum lookup_use { LOOKUP_OFF, LOOKUP_ON, LOOKUP_AUTO };
 enum wrench_use { WRENCH_OFF, WRENCH_ON };
 enum deviation_direction { DEVIATION_NORMAL, DEVIATION_TRANSVERSE };
 
@@ -139,7 +139,7 @@ typedef struct config {
     double absolute_tolerance; /* of x, m */
     double max_step;           /* s, 0 = none */
     enum lookup_use lookup;    /* in place of the 3D model */
-    double lookup_depth;       /* m */
+    double lookup_depth;       /* m; NaN: from the loads */
 
     char *output_file;  /* as it can be opened from the working folder */
     double output_rate; /* Hz */

@@ -3,29 +3,97 @@
 #include "mesh_cache.h"
 #include "time_table.h"
 
+#include <math.h>
 #include <stdlib.h>
+#include <string.h>
 
-/* Steps of 0.5 um with the default depth, as the library's defaults. */
-static gm_cache_params params_of(const config *conf) {
+/* A column of the tables takes as long as so many evaluations of the mesh, and a tooth pass of a run as so many. */
+static const double evaluations_per_column = 14.0, evaluations_per_pass = 15.0;
+
+/* The tables reach as deep as so many static deflections under the largest load, and what flanks deviate by. */
+static const double deepest_deflection = 4.0, deviation = 6e-6;
+
+static double largest_load(const config *conf) {
+    const double steady =
+        conf->load_table != NULL ? time_table_largest(conf->load_table) : fabs(conf->mean_load);
+
+    return steady + conf->noise_amplitude + ripple_largest(&conf->load_ripple, 0);
+}
+
+static double depth_of(const config *conf, const gear_mesh *gears) {
+    const double force = largest_load(conf) / gears->pair.wheel.base_radius;
+    const double deflection = force / gm_mesh_mean_stiffness(gears->prepared[0]);
+    const double deepest = 0.25 * gears->pair.transverse_base_pitch;
+
+    return isnan(conf->lookup_depth) ? fmin(deepest_deflection * deflection + deviation, deepest)
+                                     : conf->lookup_depth;
+}
+
+static gm_cache_params params_of(const config *conf, const gear_mesh *gears) {
     gm_cache_params params;
 
     gm_cache_params_default(&params);
     const double load =
         conf->load_table != NULL ? time_table_value(conf->load_table, 0.0) : conf->mean_load;
     params.side = load < 0.0 ? GM_COAST : GM_DRIVE;
-    params.depth = conf->lookup_depth;
+    params.depth = depth_of(conf, gears);
     return params;
 }
 
-static int is_wanted(const config *conf) {
-    return conf->lookup == LOOKUP_ON && conf->model == MODEL_3D &&
-           conf->analysis == ANALYSIS_DYNAMIC;
+/* Whether the flanks are tables alone, between parallel axes: others take longer to fill in. */
+static int has_plain_tables(const config *conf, const gear_mesh *gears) {
+    const gm_pose *pose = &conf->pose;
+    const modification_values *first = &conf->modifications[0][0][0];
+    const size_t count = sizeof conf->modifications / sizeof *first;
+
+    for (size_t i = 0; i < count; ++i) {
+        if (!isnan(first[i].value[MODIFICATION_AMOUNT])) {
+            return 0;
+        }
+    }
+    return (gears->flanks[0][GM_PINION].prepared != NULL ||
+            gears->flanks[0][GM_WHEEL].prepared != NULL) &&
+           pose->skew == 0.0 && pose->inclination == 0.0;
+}
+
+/* How often a run evaluates the mesh, as far as that is known beforehand. */
+static double evaluations(const config *conf, const gear_mesh *gears) {
+    static const double turn = 6.283185307179586;
+    const double speed = conf->drive == DRIVE_TORQUE
+                             ? fabs(conf->start_speed)
+                             : 0.5 * (fabs(conf->start_speed) + fabs(conf->end_speed));
+    const double passes =
+        conf->drive_file == NULL ? speed * conf->duration * gears->pair.pinion.teeth / turn : 0.0;
+    const int samples =
+        conf->columns == NULL || strcmp(conf->columns, "all") == 0 ? conf->oversampling : 0;
+
+    return evaluations_per_pass * passes + samples * conf->output_rate * conf->duration;
+}
+
+/* Whether the run is so long that filling the tables takes less than they save. */
+static int pays(const config *conf, const gear_mesh *gears) {
+    if (gears->pair.face_advance == 0.0 || gears->halves > 1 || config_has_friction(conf) ||
+        config_has_corners(conf) || conf->law == LAW_ELASTIC || !has_plain_tables(conf, gears)) {
+        return 0;
+    }
+
+    const gm_cache_params params = params_of(conf, gears);
+    const double column = (double)sizeof(double) + (params.depth_cells + 1) * 4.0 * sizeof(float);
+    const double columns = (double)gm_cache_size(&params, gears->prepared[0]) / column;
+    return columns > 0.0 && evaluations(conf, gears) > evaluations_per_column * columns;
+}
+
+static int is_wanted(const config *conf, const gear_mesh *gears) {
+    if (conf->model != MODEL_3D || conf->analysis != ANALYSIS_DYNAMIC) {
+        return 0;
+    }
+    return conf->lookup == LOOKUP_ON || (conf->lookup == LOOKUP_AUTO && pays(conf, gears));
 }
 
 int mesh_cache_check(const config *conf, const gear_mesh *gears) {
     const double deepest = 0.25 * gears->pair.transverse_base_pitch;
 
-    if (!is_wanted(conf)) {
+    if (conf->lookup != LOOKUP_ON || !is_wanted(conf, gears)) {
         return 0;
     }
     if (gears->pair.face_advance == 0.0) {
@@ -58,13 +126,12 @@ int mesh_cache_check(const config *conf, const gear_mesh *gears) {
 }
 
 int mesh_cache_create(gm_cache **cache, const config *conf, const gear_mesh *gears) {
-    const gm_cache_params params = params_of(conf);
-
     *cache = NULL;
-    if (!is_wanted(conf)) {
+    if (!is_wanted(conf, gears)) {
         return 0;
     }
 
+    const gm_cache_params params = params_of(conf, gears);
     const size_t size = gm_cache_size(&params, gears->prepared[0]);
     void *memory = size > 0 ? malloc(size) : NULL;
     if (memory == NULL) {

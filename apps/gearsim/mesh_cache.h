@@ -1,7 +1,7 @@
 /* SPDX-FileCopyrightText: The gearmesh authors */
 /* SPDX-License-Identifier: BSD-3-Clause */
 
-/* The cache that `[solver] lookup = on` asks for; it fills itself as the run goes on. */
+/* The cache that `[solver] lookup` asks for, or the length of the run; it fills itself as the run goes on. */
 #ifndef GEARSIM_MESH_CACHE_H
 #define GEARSIM_MESH_CACHE_H
 

@@ -1447,7 +1447,7 @@ GM_API int gm_cache_fill(gm_cache *cache, int first_pass, int count, gm_workspac
  * Accuracy for the reference pair and flanks of data/paper/ with the defaults, under 1 to 40 N m: sum
  * 2.5e-4 root mean square and 3e-3 at most of its mean under 20 N m (4.9 um); touching fraction (1.3 of
  * it on average) 0.01 and 0.15. libgearmesh/docs/cache.md has other resolutions, gm_cache_error()
- * measures any pair. Cost: about 780 instructions, and about 50 exact evaluations for a column (one
+ * measures any pair. Cost: about 780 instructions, and about 13 exact evaluations for a column (one
  * phase of one tooth pass) that is met for the first time.
  *
  * @return GM_OK, GM_ERR_NULL (no mesh), GM_ERR_PARAMETER (the cache is of another mesh)
