@@ -133,10 +133,11 @@ static int interpolate(integrator *solver, double time, double state[]) {
         return -1;
     }
     for (int i = 0; i < solver->model->states; ++i) {
-        state[i] = memory->polynomial[memory->order][i];
+        double value = memory->polynomial[memory->order][i];
         for (int k = memory->order - 1; k >= 0; --k) {
-            state[i] = memory->polynomial[k][i] + since * state[i];
+            value = memory->polynomial[k][i] + since * value;
         }
+        state[i] = value;
     }
     return 0;
 }
