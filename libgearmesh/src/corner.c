@@ -162,6 +162,19 @@ void gmi_corner_at(const gmi_corner *corner, double roll, gmi_corner_place *plac
         (base_sum * sine + corner->line_of_action * cosine) * turn_by_roll * per_base;
 }
 
+/* The gap is convex: from beyond, Newton's method comes closer from the same side. */
+double gmi_corner_touch(const gmi_corner *corner, double overlap) {
+    gmi_corner_place place;
+    gmi_corner_at(corner, 0.0, &place);
+    double roll =
+        overlap > 0.0 ? fmin(sqrt(2.0 * overlap / place.by_roll_twice), corner->reach) : 0.0;
+    for (int k = 0; k < 12 && roll > 0.0; ++k) {
+        gmi_corner_at(corner, roll, &place);
+        roll = fmin(roll - (place.gap - overlap) / place.by_roll, corner->reach);
+    }
+    return roll;
+}
+
 int gmi_corners_init(const gm_pair *pair, const gmi_engagement *at, gmi_corner corners[2]) {
     const int pinion = gmi_corner_init(pair, at, GM_PINION, &corners[GM_PINION]);
     const int wheel = gmi_corner_init(pair, at, GM_WHEEL, &corners[GM_WHEEL]);

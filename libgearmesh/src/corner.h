@@ -57,6 +57,9 @@ typedef struct gmi_tip_load {
 void gmi_side_sum_corners(const gm_mesh *mesh, int side, const gm_position *position, int wanted,
                           double approach_speed, gmi_side_sum *total, gmi_tip_load tips[2]);
 
+/* The roll at which the gap is as large as an overlap, or the corner is off the flank; 0 for an overlap <= 0 (m). */
+double gmi_corner_touch(const gmi_corner *corner, double overlap);
+
 /* wrench.c: what the tip of one gear changes. */
 void gmi_wrench_add_tip(const gm_pair *pair, const gmi_engagement *at, const gmi_tip_load *load,
                         int role, int side_of_teeth, gm_wrench *wrench);
