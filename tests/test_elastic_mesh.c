@@ -114,6 +114,7 @@ static void check_values_are_met(void) {
         gm_test_context("case %zu", k);
         gm_mesh_params law = elastic_law();
         law.stations = cases[k].stations;
+        law.corner_contact = GM_CORNER_OFF;
         elastic_mesh m;
         GM_ASSERT_INT(make(&m, &cases[k].gears, &law, NULL, NULL), GM_OK);
 
@@ -420,7 +421,8 @@ static void answer_does_not_depend_on_the_one_before(void) {
 /* The same material on all teeth is a turn of the gears. */
 static void even_material_is_approach(void) {
     const gm_pair_params gears = paper();
-    const gm_mesh_params law = elastic_law();
+    gm_mesh_params law = elastic_law();
+    law.corner_contact = GM_CORNER_OFF;
     elastic_mesh plain, thick;
     gm_pair pair;
     GM_ASSERT_INT(gm_pair_init(&pair, &gears), GM_OK);
@@ -455,6 +457,7 @@ static void even_material_is_approach(void) {
 static void bodies_wind_up_in_series(void) {
     const gm_pair_params gears = spur62();
     gm_mesh_params law = elastic_law();
+    law.corner_contact = GM_CORNER_OFF;
     elastic_mesh rigid, soft;
     GM_ASSERT_INT(make(&rigid, &gears, &law, NULL, NULL), GM_OK);
     law.pinion_bore_radius = 20e-3;
@@ -561,6 +564,7 @@ static void damping_follows_the_stiffness(void) {
 static void stiffness_is_that_at_the_reference_torque(void) {
     const gm_pair_params gears = spur62();
     gm_mesh_params law = elastic_law();
+    law.corner_contact = GM_CORNER_OFF;
     gm_mesh_stiffness s;
     law.reference_torque = 100.0;
     elastic_mesh m;
@@ -585,9 +589,84 @@ static void stiffness_is_that_at_the_reference_torque(void) {
     release(&m);
 }
 
+/* ---------------------------------------------------------------------------------------------
+ * Tip edges beyond the path
+ * ------------------------------------------------------------------------------------------- */
+
+/*
+ * Largest step of the force over a mesh cycle at a held x, less what its slopes at both ends say, over the force.
+ */
+static double largest_jump(elastic_mesh *m, int steps, double x) {
+    const double r_bp = m->pair.pinion.base_radius, r_bw = m->pair.wheel.base_radius;
+    double force = 0.0, slope = 0.0, largest = 0.0;
+    for (int n = 0; n <= steps; ++n) {
+        const double angle = m->pair.pinion.pitch_angle * n / steps;
+        const gm_state state = pressed_state(m, angle, x);
+        const gm_mesh_result r = evaluate(m, &state, GM_WANT_DERIVATIVES);
+        const double by_roll = r.force_by.pinion_angle / r_bp + r.force_by.wheel_angle / r_bw;
+        if (n > 0) {
+            const double step = m->pair.transverse_base_pitch / steps;
+            const double jump = r.force - force - 0.5 * step * (slope + by_roll);
+            largest = fmax(largest, fabs(jump) / r.force);
+        }
+        force = r.force;
+        slope = by_roll;
+    }
+    return largest;
+}
+
+/* Lines come and go without load, so neither the force jumps nor its slope: also where a spur pair enters as a whole. */
+static void force_of_spur_gears_is_smooth(void) {
+    const gm_pair_params gears = spur62();
+    gm_mesh_params law = elastic_law();
+    elastic_mesh smooth, cut;
+    GM_ASSERT_INT(make(&smooth, &gears, &law, NULL, NULL), GM_OK);
+    law.corner_contact = GM_CORNER_OFF;
+    GM_ASSERT_INT(make(&cut, &gears, &law, NULL, NULL), GM_OK);
+
+    /* A jump stays; what the slopes leave of a smooth curve falls with more than the step. */
+    const double coarse = largest_jump(&smooth, 500, 4e-6),
+                 fine = largest_jump(&smooth, 4000, 4e-6);
+    GM_ASSERT(largest_jump(&cut, 4000, 4e-6) > 0.3);
+    GM_ASSERT(coarse < 0.02);
+    GM_ASSERT(fine < 0.2 * coarse);
+    release(&smooth);
+    release(&cut);
+}
+
+/* What goes in comes out over a mesh cycle in equilibrium, through edges of both gears. */
+static void edges_keep_the_energy(void) {
+    const gm_pair_params kinds[3] = {spur62(), paper(), nrel3()};
+    for (int kind = 0; kind < 3; ++kind) {
+        gm_test_context("kind %d", kind);
+        const gm_mesh_params law = elastic_law();
+        elastic_mesh m;
+        GM_ASSERT_INT(make(&m, &kinds[kind], &law, NULL, NULL), GM_OK);
+        const double torque = 1e5 * m.pair.face_width * m.pair.wheel.base_radius;
+        const double pitch = m.pair.pinion.pitch_angle;
+        enum { STEPS = 1024 };
+        double offset = (double)NAN, first = 0.0, work = 0.0;
+        for (int n = 0; n <= STEPS; ++n) {
+            gm_mesh_result r;
+            GM_ASSERT_INT(gm_static_equilibrium(m.mesh, pitch * n / STEPS, torque, offset,
+                                                m.workspace, &offset, &r),
+                          GM_OK);
+            first = n == 0 ? offset : first;
+            work += (n == 0 || n == STEPS ? 0.5 : 1.0) * r.pinion_torque * pitch / STEPS;
+        }
+
+        /* The wheel comes one pitch further. Periodic: the sum over equal steps is next to the integral. */
+        const double turned = pitch * m.pair.pinion.base_radius / m.pair.wheel.base_radius;
+        GM_ASSERT_ABS(offset, first, 1e-12);
+        GM_ASSERT_REL(work, torque * turned, 2e-8);
+        release(&m);
+    }
+}
+
 static void cache_holds_elastic_teeth(void) {
     const gm_pair_params gears = paper();
-    const gm_mesh_params law = elastic_law();
+    gm_mesh_params law = elastic_law();
+    law.corner_contact = GM_CORNER_OFF;
     elastic_mesh m;
     GM_ASSERT_INT(make(&m, &gears, &law, NULL, NULL), GM_OK);
     gm_cache_params params;
@@ -880,6 +959,8 @@ int main(int argc, char **argv) {
         GM_TEST(soft_tooth_is_softer_in_mesh_alone),
         GM_TEST(damping_follows_the_stiffness),
         GM_TEST(stiffness_is_that_at_the_reference_torque),
+        GM_TEST(force_of_spur_gears_is_smooth),
+        GM_TEST(edges_keep_the_energy),
         GM_TEST(cache_holds_elastic_teeth),
         GM_TEST(wrench_acts_where_the_load_is),
         GM_TEST(line_loads_are_the_force),

@@ -747,7 +747,6 @@ class Values(Case):
     def test_corners_go_with_rigid_flanks_alone(self):
         corner = ["--set", "mesh.corner_contact=on"]
         for others, name in [(["mesh.friction_coefficient=0.1"], "friction"),
-                             (["mesh.stiffness_N_per_m=", "mesh.damping_Ns_per_m="], "mesh.law = elastic"),
                              (["analysis.type=static", "output.load_distribution=q.csv"], "output.load_distribution")]:
             self.refused("--set mesh.corner_contact: ", f"must be off with {name} (got on)",
                          arguments=corner + [word for text in others for word in ("--set", text)])

@@ -96,7 +96,8 @@ typedef struct config {
     double oil_viscosity;        /* Pa s */
     double roughness;            /* Ra, m */
     enum corner_contact corner_contact;
-    int stations; /* of elastic teeth along the face */
+    double tip_rounding; /* radius in modules */
+    int stations;        /* of elastic teeth along the face */
 
     gm_pose pose; /* of the wheel against the drawing */
 
@@ -166,9 +167,10 @@ static inline int config_has_friction(const config *conf) {
            (conf->friction_law != FRICTION_CONSTANT || conf->friction_coefficient > 0);
 }
 
-/* Whether lines of contact go on beyond the path. */
+/* Whether lines of contact of constant stiffness go on beyond the path; those of elastic teeth need no care. */
 static inline int config_has_corners(const config *conf) {
-    return conf->model == MODEL_3D && conf->corner_contact == CORNER_CONTACT_ON;
+    return conf->model == MODEL_3D && conf->law != LAW_ELASTIC &&
+           conf->corner_contact == CORNER_CONTACT_ON;
 }
 
 /* Room for config_note(). */

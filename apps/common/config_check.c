@@ -173,8 +173,7 @@ static int check_output_is_no_input(const config *conf) {
 
 /* What corners do not go with. */
 static int check_corners(const config *conf) {
-    const char *other = conf->law == LAW_ELASTIC    ? "mesh.law = elastic"
-                        : config_has_friction(conf) ? "friction"
+    const char *other = config_has_friction(conf) ? "friction"
                         : conf->analysis == ANALYSIS_STATIC && conf->load_distribution != NULL
                             ? "output.load_distribution"
                             : NULL;

@@ -121,6 +121,9 @@ static const char *effective_text(const config *conf, int index) {
     if (strcmp(key_at(index)->full_name, "mesh.law") == 0) {
         return conf->law == LAW_CONSTANT ? "constant" : "elastic";
     }
+    if (strcmp(key_at(index)->full_name, "mesh.corner_contact") == 0) {
+        return conf->corner_contact == CORNER_CONTACT_ON ? "on" : "off";
+    }
     return key_at(index)->standard;
 }
 
@@ -200,6 +203,9 @@ static int read_values(config *conf, const config_request *request) {
     /* Who gives a stiffness means it; from the gear data alone the teeth are elastic. */
     if (config_text(conf, "mesh.law") == NULL) {
         conf->law = isnan(conf->stiffness) ? LAW_ELASTIC : LAW_CONSTANT;
+    }
+    if (config_text(conf, "mesh.corner_contact") == NULL) {
+        conf->corner_contact = conf->law == LAW_ELASTIC ? CORNER_CONTACT_ON : CORNER_CONTACT_OFF;
     }
     if (conf->output_file == NULL) {
         conf->output_file = default_output_file(conf->path);

@@ -83,8 +83,6 @@ static gm_mesh_params params_of(const config *conf, const gear_mesh *mesh) {
     params.simple_stiffness = share * conf->simple_stiffness;
     params.pose = conf->pose;
 
-    params.corner_contact = config_has_corners(conf) ? GM_CORNER_ON : GM_CORNER_BY_LAW;
-
     /* What elastic teeth are made of, and the load that their stiffness is stated at. */
     params.pinion_youngs_modulus = conf->pinion_youngs_modulus;
     params.wheel_youngs_modulus = conf->wheel_youngs_modulus;
@@ -95,6 +93,10 @@ static gm_mesh_params params_of(const config *conf, const gear_mesh *mesh) {
     params.pinion_tooth_stiffness = mesh->tooth_stiffness[GM_PINION];
     params.wheel_tooth_stiffness = mesh->tooth_stiffness[GM_WHEEL];
     params.stations = conf->stations;
+    params.corner_contact = conf->model == MODEL_3D && conf->corner_contact == CORNER_CONTACT_ON
+                                ? GM_CORNER_ON
+                                : GM_CORNER_OFF;
+    params.tip_rounding = conf->tip_rounding;
     if (fabs(conf->mean_load) > 0) {
         params.reference_torque = share * fabs(conf->mean_load);
     }

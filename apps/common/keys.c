@@ -165,8 +165,10 @@ static const key_spec keys[] = {
      .standard = "0.3", .help = "nu of the wheel's material"},
     {NAME("mesh", "stations"), COUNT(2, 97), INTO(stations), .standard = "17", .used = FOR_ELASTIC,
      .help = "along the face, at which the teeth deflect; 17: 0.3 % in the force"},
-    {NAME("mesh", "corner_contact"), CHOICE("off on"), INTO(corner_contact), .standard = "off", .used = FOR_3D,
-     .help = "on: tip edges touch before and after the path of contact, so that the force does not jump; not with elastic teeth"},
+    {NAME("mesh", "corner_contact"), CHOICE("off on"), INTO(corner_contact), .derived = "on for elastic teeth, else off",
+     .used = FOR_3D, .help = "on: tip edges touch before and after the path of contact, so that the force does not jump"},
+    {NAME("mesh", "tip_rounding"), NUMBER(UNIT_SI, BETWEEN(0.001, 1)), INTO(tip_rounding), .standard = "0.05",
+     .used = FOR_ELASTIC, .help = "radius of the tip edges, in modules"},
 
     {NAME("pose", "center_distance_change_um"), NUMBER(UNIT_UM, UP_TO(1e9)), INTO(pose.center_distance_change),
      .standard = "0", .help = "the wheel's axis has moved away from the pinion's"},

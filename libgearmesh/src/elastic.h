@@ -160,6 +160,16 @@ typedef struct gmi_elastic_lines_at {
     double origin, pitch, climb;
     double lower, upper;
     double line_of_action;
+
+    /*
+     * Lines that go on beyond the path, over whole elements of the face, until they are so far below `lower` or above `upper`.
+     * Teeth change on from its end for half the lengths `fading` (below, above), ever less, and stay what they are then. What
+     * the corners do is the caller's, see gmi_elastic_work.beyond.
+     */
+    int goes_on;
+    double below, above;
+    double fading[2];
+
     int first, last; /* lines that can touch; others in between are left out by themselves */
     int slopes;      /* derivatives wanted: 0 none, 1 all but by the line of action, 2 all */
 
@@ -172,6 +182,21 @@ typedef struct gmi_elastic_lines_at {
     /* Softness of each line's teeth, [last - first + 1], 1 = whole, 2 = twice the compliance; NULL = all whole. */
     const double *pinion_softness, *wheel_softness;
 } gmi_elastic_lines_at;
+
+/* How far beyond the end of the path teeth and flanks are read, and by how much that grows with rho_p. */
+typedef struct gmi_elastic_hold {
+    double moved; /* from the end (m) */
+    double by_roll;
+} gmi_elastic_hold;
+
+static inline gmi_elastic_hold gmi_elastic_hold_at(const gmi_elastic_lines_at *at, double beyond) {
+    const double length = at->fading[beyond > 0.0];
+    const double part = (beyond < 0.0 ? -beyond : beyond) / length;
+    const double t = part < 1.0 ? part : 1.0;
+    const double moved = length * t * (1.0 - 0.5 * t);
+    const gmi_elastic_hold hold = {beyond < 0.0 ? -moved : moved, 1.0 - t};
+    return hold;
+}
 
 /* Parts of the matrix of an element: tooth with tooth, tooth with rim, rim with rim; station left with left, ... */
 enum {
@@ -226,7 +251,8 @@ typedef struct gmi_elastic_work {
 
     /* Over points, [2][slots]. What the caller reads and writes: */
     double *z;         /* (m) */
-    double *roll;      /* rho_p (m) */
+    double *roll;      /* rho_p, kept within the path (m) */
+    double *beyond;    /* where lines go on: by how much it is below (< 0) or above the path (m) */
     double *weight;    /* W, integral over z (m) */
     double *deviation; /* w, of both flanks: the caller's (m) */
 
@@ -240,12 +266,17 @@ typedef struct gmi_elastic_work {
     double *stiffness;      /* W dq/d gamma (N/m) */
     double *by_deviation;   /* derivative of the force by the deviation of each point (N/m) */
 
+    /* Of a gap that the wheel's tip edge leaves, by its roll: 1 - entry_slope is what the approach grows with x. */
+    int is_entering;         /* whether such an edge bears load; the arrays are not set if not */
+    double *entry_slope;     /* (1) */
+    double *entry_curvature; /* (1/m) */
+
     /* Own: */
     double *place;           /* t, between the two stations of the element, 0 .. 1 */
     double *tooth;           /* s */
     double *tooth_by_roll;   /* its slope along rho_p (1/m), */
     double *tooth_by_action; /* and by the line of action at fixed rho_p */
-    double *rate;            /* 1 / (B e^L) (1/m) */
+    double *rate;            /* 1 / (B e^L), the caller's to change beyond the path (1/m) */
     double *rate_by_roll;    /* d ln(rate) likewise (1/m) */
     double *rate_by_action;
     double *deflection; /* of the tooth layer, before s */
@@ -319,10 +350,11 @@ int gmi_elastic_solve(const gmi_elastic *law, gmi_elastic_work *work, double app
 
 /*
  * Line load at any z of a placed line, after gmi_elastic_solve(): from the deflections of the stations beside it.
- * deviation: of both flanks there (m). *gamma: approach of the surfaces, <= 0 where they do not touch (m).
+ * deviation: of both flanks there (m); rate_factor: of the contact law's rate, 1 within the path. *gamma: approach of the
+ * surfaces, <= 0 where they do not touch (m).
  */
 double gmi_elastic_load_at(const gmi_elastic *law, const gmi_elastic_work *work, int row, double z,
-                           double deviation, double *gamma);
+                           double deviation, double rate_factor, double *gamma);
 
 /* ---------------------------------------------------------------------------------------------
  * Derivatives

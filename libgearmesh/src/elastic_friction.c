@@ -55,7 +55,8 @@ static gmi_elastic_gradient differentiate(const gm_mesh *mesh, const gmi_sliding
         const gmi_point_friction at = friction_at(mesh, sliding, work, p);
         const double arm = is_moment ? work->roll[p] : 1.0;
         factor[p] = arm * (at.share + at.by_load);
-        by_roll[p] = arm * at.by_roll + (is_moment ? at.share : 0.0);
+        const int is_kept = work->at.goes_on && work->beyond[p] != 0.0; /* at the end of the path */
+        by_roll[p] = is_kept ? 0.0 : arm * at.by_roll + (is_moment ? at.share : 0.0);
         by_z[p] = arm * at.by_t1 / mesh->pair->face_width;
         by_load[p] = arm * at.by_load;
     }
@@ -85,12 +86,20 @@ static gmi_varying per_force(const gm_mesh *mesh, int side, const gmi_sliding *s
     const double body = mesh->elastic->body_compliance;
     const double by_teeth = gmi_elastic_sum(2 * work->slots, work->by_deviation);
     const double gain = at->is_tilted ? gmi_tilt_gain(mesh->pair, at, side) : 1.0;
-    const double moved = gain / (1.0 + body * by_teeth);
+    double held = 0.0, held_teeth = 0.0;
     const double force_by_origin = mesh->law.stiffness * total->by_origin;
     const double force_by_delta = mesh->law.stiffness * total->by_delta;
     const gmi_elastic_gradient by = differentiate(mesh, sliding, is_moment, work);
     const double by_origin = by.by_roll - body * by.by_approach * force_by_origin;
-    const double by_delta = moved * by.by_approach;
+
+    /* The gap of the wheel's edge follows x by itself. */
+    const double *by_deviation = work->table[0] + 2 * work->slots;
+    for (int p = 0; p < 2 * work->slots && work->is_entering; ++p) {
+        held += by_deviation[p] * work->entry_slope[p];
+        held_teeth += work->by_deviation[p] * work->entry_slope[p];
+    }
+    const double moved = (gain + body * held_teeth) / (1.0 + body * by_teeth);
+    const double by_delta = moved * by.by_approach - held;
     result = gmi_varying_of(mesh->pair, side, mean, (by_origin - mean * force_by_origin) / force,
                             (by_delta - mean * force_by_delta) / force, 0.0);
     result.by[GMI_PINION_SPEED] = by_speed[0] / force;

@@ -58,6 +58,8 @@ const char *gmi_elastic_field_at_fault(const gm_mesh_params *params, const char 
          isnan(params->reference_torque) ||
              (params->reference_torque > 0.0 && gmi_is_finite(params->reference_torque)),
          "a torque above 0 N m"},
+        {"tip_rounding", params->tip_rounding >= 0.001 && params->tip_rounding <= 1.0,
+         "a radius from 0.001 to 1 modules"},
         {"stations", params->stations >= 2 && params->stations <= GMI_ELASTIC_STATIONS_MAX,
          "a whole number from 2 to 97"},
     };
@@ -83,12 +85,17 @@ void gmi_workspace_init(gm_workspace *workspace, const gmi_elastic *law) {
     }
 }
 
-static int lines_of(const gm_pair *pair) {
-    return gmi_elastic_lines(pair->total_contact_ratio);
+static int is_with_corners(const gm_mesh_params *params) {
+    return params->law == GM_LAW_ELASTIC && params->corner_contact != GM_CORNER_OFF;
+}
+
+/* Lines that go on beyond the path at both ends are one more at most. */
+static int lines_of(const gm_mesh_params *params, const gm_pair *pair) {
+    return gmi_elastic_lines(pair->total_contact_ratio) + is_with_corners(params);
 }
 
 size_t gmi_elastic_mesh_size(const gm_mesh_params *params, const gm_pair *pair) {
-    const size_t work = gmi_elastic_work_size(params->stations, lines_of(pair));
+    const size_t work = gmi_elastic_work_size(params->stations, lines_of(params, pair));
     return work == 0 ? 0 : sizeof(gmi_elastic_mesh) + sizeof(gmi_elastic_work) + work;
 }
 
@@ -199,7 +206,7 @@ int gmi_elastic_mesh_init(gmi_elastic_mesh *made, const gm_mesh_params *params, 
         .face_width = face,
         .line_of_action = at->line_of_action,
         .stations = params->stations,
-        .lines = lines_of(pair),
+        .lines = lines_of(params, pair),
         .gear = {gear_params(&pair->pinion, at, GM_PINION, params->pinion_youngs_modulus,
                              params->pinion_poisson_ratio),
                  gear_params(&pair->wheel, at, GM_WHEEL, params->wheel_youngs_modulus,
@@ -230,6 +237,11 @@ int gmi_elastic_mesh_init(gmi_elastic_mesh *made, const gm_mesh_params *params, 
                                     params->pinion_youngs_modulus, params->pinion_poisson_ratio) +
                             wind_up(&pair->wheel, params->wheel_bore_radius,
                                     params->wheel_youngs_modulus, params->wheel_poisson_ratio);
+
+    /* A tip that reaches too deep has no flank to touch beyond the path. */
+    made->tip_rounding = params->tip_rounding;
+    made->has_corners = is_with_corners(params) &&
+                        gmi_elastic_tips_init(pair, at, params->tip_rounding, &made->tips);
 
     /* The scale of forces: stiffness at the torque that is to be carried, or at 100 N/mm. */
     const double force = isnan(params->reference_torque)
@@ -341,10 +353,12 @@ typedef struct side_view {
     const gm_mesh *mesh;
     const gmi_elastic_mesh *elastic;
     int side;
-    double approach;                             /* x of the rigid flanks (m) */
-    gmi_lines lines;                             /* between flanks that just touch */
-    gmi_teeth teeth;                             /* of line lines.first */
-    double gain;                                 /* of x between tilted axes (1) */
+    double approach;       /* x of the rigid flanks (m) */
+    gmi_lines lines;       /* between flanks that just touch */
+    gmi_teeth teeth;       /* of line lines.first */
+    double gain;           /* of x between tilted axes (1) */
+    gmi_elastic_tips tips; /* of lines that go on beyond the path */
+    int has_tips;
     double (*softness)[GMI_ELASTIC_NUMBERS_MAX]; /* [enum gm_role] of the workspace */
 } side_view;
 
@@ -361,6 +375,19 @@ static void set_softness(side_view *view, int count) {
     }
 }
 
+int gmi_elastic_tips_of(const gm_mesh *mesh, gmi_elastic_tips *tips) {
+    const gmi_elastic_mesh *elastic = mesh->elastic;
+    const gmi_engagement *at = &mesh->engagement;
+    *tips = elastic->tips;
+    const gmi_corner *pinion = &elastic->tips.tip[GM_PINION].corner;
+    const gmi_corner *wheel = &elastic->tips.tip[GM_WHEEL].corner;
+    const int is_prepared = pinion->line_of_action == at->line_of_action &&
+                            pinion->tip_roll == at->tip_roll_length[GM_PINION] &&
+                            wheel->tip_roll == at->tip_roll_length[GM_WHEEL];
+    return elastic->has_corners &&
+           (is_prepared || gmi_elastic_tips_init(mesh->pair, at, elastic->tip_rounding, tips));
+}
+
 /* Where the lines are; GM_STATE_OUT_OF_RANGE for more of them than there is room for. */
 static int place(side_view *view, const gm_position *position, int wanted, gmi_elastic_work *work) {
     const gm_mesh *mesh = view->mesh;
@@ -370,9 +397,20 @@ static int place(side_view *view, const gm_position *position, int wanted, gmi_e
     gm_position touching = *position;
     touching.offset = gmi_side_sign(view->side) * 0.5 * at->backlash;
     gmi_lines_find(pair, at, view->side, &touching, &view->lines);
-    view->teeth = gmi_lines_teeth(pair, view->side, &touching, &view->lines);
     view->approach = gmi_ideal_penetration(at, view->side, position->offset);
     view->gain = at->is_tilted ? gmi_tilt_gain(pair, at, view->side) : 1.0;
+    double below = 0.0, above = 0.0;
+    double lower = view->lines.lower, upper = view->lines.upper;
+    view->has_tips = gmi_elastic_tips_of(mesh, &view->tips);
+    if (view->has_tips) {
+        const double peak = mesh->side[view->side].peak;
+        below = gmi_elastic_tips_below(&view->tips, view->approach, peak);
+        above = gmi_elastic_tips_above(&view->tips, view->approach, peak);
+        lower = at->line_of_action - at->tip_roll_length[GM_WHEEL];
+        upper = at->tip_roll_length[GM_PINION];
+        gmi_lines_widen(pair, lower - below, upper + above, &view->lines);
+    }
+    view->teeth = gmi_lines_teeth(pair, view->side, &touching, &view->lines);
 
     const int count = view->lines.last - view->lines.first + 1;
     if (count > GMI_ELASTIC_NUMBERS_MAX) {
@@ -387,9 +425,13 @@ static int place(side_view *view, const gm_position *position, int wanted, gmi_e
         .origin = view->lines.origin + view->lines.advance * at->face_from,
         .pitch = pair->transverse_base_pitch,
         .climb = view->lines.advance * (at->face_to - at->face_from) / law->face_width,
-        .lower = view->lines.lower,
-        .upper = view->lines.upper,
+        .lower = lower,
+        .upper = upper,
         .line_of_action = at->line_of_action,
+        .goes_on = view->has_tips,
+        .below = below,
+        .above = above,
+        .fading = {view->tips.tip[GM_WHEEL].fading, view->tips.tip[GM_PINION].fading},
         .first = view->lines.first,
         .last = view->lines.last,
         .slopes = wanted & (GMI_DERIVATIVES | GMI_ROLL) ? 1 : 0,
@@ -420,6 +462,17 @@ static gmi_surface_cells cells_in(const gmi_elastic_work *work, int role) {
                                      role == GM_PINION ? work->load : work->slope,
                                      role == GM_PINION ? work->approach_at : work->deflection};
     return cells;
+}
+
+/* Beyond the path the flanks end: on from there as the slope says, for a while. */
+static void hold_flanks(gmi_elastic_work *work) {
+    for (int p = 0; p < 2 * work->slots; ++p) {
+        if (work->beyond[p] != 0.0) {
+            const gmi_elastic_hold hold = gmi_elastic_hold_at(&work->at, work->beyond[p]);
+            work->deviation[p] += hold.moved * work->deviation_by_roll[p];
+            work->deviation_by_roll[p] *= hold.by_roll;
+        }
+    }
 }
 
 /* Deviations of both flanks at all points of a side, with their slopes. */
@@ -473,9 +526,6 @@ static void set_material(const side_view *view, gmi_elastic_work *work) {
                 gmi_surface_gather(&cells[GM_WHEEL], &gear[GM_WHEEL], flanks.wheel.values, from,
                                    to);
             }
-            if (at->is_tilted) {
-                gmi_surface_add_tilt(&points, &flanks, from, to);
-            }
         }
     }
 
@@ -484,6 +534,20 @@ static void set_material(const side_view *view, gmi_elastic_work *work) {
         if (gear[role].tables != NULL) {
             gmi_surface_add_cells(&points, &gear[role], &cells[role]);
             gmi_surface_add_ramps(&points, &gear[role]);
+        }
+    }
+    if (view->has_tips) {
+        hold_flanks(work);
+    }
+
+    /* And what the tilt of the axes makes of it, which goes on with the lines. */
+    for (int row = 0; row < work->count && at->is_tilted; ++row) {
+        const gmi_elastic_line *line = &work->line[row];
+        const gmi_line_flanks flanks =
+            gmi_line_flanks_of(mesh, view->side, &view->lines, &view->teeth, line->index);
+        for (int half = 0; half < 2; ++half) {
+            const int from = line->slot + half * work->slots;
+            gmi_surface_add_tilt(&points, &flanks, from, from + line->elements);
         }
     }
 }
@@ -548,13 +612,62 @@ static void add_moments(const side_view *view, const gmi_elastic_work *work, dou
     const gm_pair *pair = view->mesh->pair;
     for (int p = 0; p < 2 * work->slots; ++p) {
         const double t1 = view->mesh->engagement.face_from + work->z[p] / pair->face_width;
-        const double sum = work->force[p] * per_stiffness;
-        const double contact = work->by_deviation[p] * per_stiffness;
+        const double grows = work->is_entering ? 1.0 - work->entry_slope[p] : 1.0;
+        const double sum = work->force[p] * grows * per_stiffness;
+        const double contact = work->by_deviation[p] * grows * per_stiffness;
         total->sum_t1 += sum * t1;
         total->sum_rho += sum * work->roll[p];
         total->contact_t1 += contact * t1;
         total->contact_rho += contact * work->roll[p];
     }
+}
+
+/* Force of a side, and its derivatives by x of the rigid flanks and by the origin of the lines. */
+typedef struct side_force {
+    double value, by_approach, by_origin;
+} side_force;
+
+/* Whether a wheel's edge that its gap makes slower bears load. */
+static int is_entry_loaded(const gmi_elastic_work *work) {
+    for (int p = 0; p < 2 * work->slots; ++p) {
+        if (work->entry_slope[p] != 0.0 && work->load[p] > 0.0) {
+            return 1;
+        }
+    }
+    return 0;
+}
+
+/*
+ * Bodies in series, of compliance c: x of the teeth is x_t with c F_t = x - x_t, F_t = sum W q. Where the gap of an edge
+ * depends on x itself, F = sum W q (1 - g) is another functional, with an adjoint of its own: F changes by x_t and, at
+ * fixed x_t, by x, as the deviations there do by -g and 1 - g by -gap''. rolled: derivatives of F_t.
+ */
+static side_force enter(const side_view *view, gmi_elastic_work *work,
+                        const gmi_elastic_result *result, const gmi_elastic_gradient *rolled) {
+    const int count = 2 * work->slots;
+    double *grows = work->table[0], *grows_by_roll = work->table[1];
+    double *by_deviation = work->table[2];
+    double held = 0.0, held_teeth = 0.0, sharper = 0.0;
+    for (int p = 0; p < count; ++p) {
+        grows[p] = 1.0 - work->entry_slope[p];
+        grows_by_roll[p] = work->entry_curvature[p];
+        held_teeth += work->by_deviation[p] * work->entry_slope[p];
+        sharper += work->force[p] * work->entry_curvature[p];
+    }
+    const gmi_elastic_functional functional = {grows, grows_by_roll, NULL, NULL};
+    gmi_elastic_gradient force;
+    gmi_elastic_differentiate_functional(&view->elastic->law, work, &functional, by_deviation,
+                                         &force);
+    for (int p = 0; p < count; ++p) {
+        held += by_deviation[p] * work->entry_slope[p];
+    }
+    const double compliance = view->elastic->body_compliance;
+    const double share = 1.0 / (1.0 + compliance * result->by_approach);
+    const double teeth_by_approach = share * (view->gain + compliance * held_teeth);
+    const side_force entering = {
+        force.value, force.by_approach * teeth_by_approach - held - sharper,
+        force.by_roll - force.by_approach * share * compliance * rolled->by_roll};
+    return entering;
 }
 
 static int elastic_sum(const gm_mesh *mesh, int side, const gm_position *position, int wanted,
@@ -568,6 +681,8 @@ static int elastic_sum(const gm_mesh *mesh, int side, const gm_position *positio
     int status = place(&view, position, wanted, work);
     if (status == GM_OK) {
         set_material(&view, work);
+        work->is_entering = view.has_tips && gmi_elastic_edges_add(&view.tips, view.approach,
+                                                                   mesh->side[side].peak, work);
         status = solve(view.elastic, work, view.gain * view.approach, &result);
     }
     if (status == GM_NO_CONVERGENCE) {
@@ -579,20 +694,27 @@ static int elastic_sum(const gm_mesh *mesh, int side, const gm_position *positio
         return status;
     }
 
-    /* In the measure of the law's stiffness; bodies in series make a change of x smaller. */
-    const double per_stiffness = 1.0 / mesh->law.stiffness;
+    /* Force and energy by the roll; bodies in series make a change of x smaller. */
     const double share = 1.0 / (1.0 + view.elastic->body_compliance * result.by_approach);
-    const double by_delta = view.gain * share * result.by_approach * per_stiffness;
-    total->sum = result.force * per_stiffness;
-    total->contact = total->by_delta = by_delta;
+    side_force force = {result.force, view.gain * share * result.by_approach, 0.0};
+    work->is_entering = work->is_entering && is_entry_loaded(work);
+    gmi_elastic_gradient rolled = {.by_roll = 0.0}, energy = {.by_roll = 0.0};
+    if (wanted & (GMI_DERIVATIVES | GMI_ROLL)) {
+        gmi_elastic_differentiate(&view.elastic->law, work, &rolled, &energy);
+        force.by_origin = share * rolled.by_roll;
+    }
+    if (work->is_entering) {
+        force = enter(&view, work, &result, &rolled);
+    }
+
+    /* In the measure of the law's stiffness. */
+    const double per_stiffness = 1.0 / mesh->law.stiffness;
+    total->sum = force.value * per_stiffness;
+    total->contact = total->by_delta = force.by_approach * per_stiffness;
+    total->by_origin = force.by_origin * per_stiffness;
+    total->roll = energy.by_roll * per_stiffness;
     for (int row = 0; row < work->count; ++row) {
         total->pairs += is_loaded(work, &work->line[row]);
-    }
-    if (wanted & (GMI_DERIVATIVES | GMI_ROLL)) {
-        gmi_elastic_gradient force, energy;
-        gmi_elastic_differentiate(&view.elastic->law, work, &force, &energy);
-        total->by_origin = share * force.by_roll * per_stiffness;
-        total->roll = energy.by_roll * per_stiffness;
     }
     if (wanted & GMI_CONTACT_DERIVATIVES) {
         total->contact_by_delta = view.gain * view.gain * share * share * share *

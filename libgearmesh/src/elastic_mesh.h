@@ -8,14 +8,71 @@
 #ifndef GEARMESH_ELASTIC_MESH_H
 #define GEARMESH_ELASTIC_MESH_H
 
+#include "corner.h"
 #include "elastic.h"
 #include "internal.h"
+
+/* ---------------------------------------------------------------------------------------------
+ * Corner contact: elastic_corner.c
+ * ------------------------------------------------------------------------------------------- */
+
+/* The tip edge of one gear. */
+typedef struct gmi_elastic_tip {
+    gmi_corner corner;
+    double curvature; /* gap'' at the end of the path (1/m) */
+    double farthest;  /* roll up to which it is followed (m) */
+    double fading;    /* roll on which the flank goes over into the edge (m) */
+    double logarithm; /* of the curvature of edge and flank over that of both flanks */
+} gmi_elastic_tip;
+
+/* Those of both gears at one engagement, [enum gm_role]. */
+typedef struct gmi_elastic_tips {
+    gmi_elastic_tip tip[2];
+} gmi_elastic_tips;
+
+/* tip_rounding: radius of the edges in modules. 0 where a tip has no flank to touch. */
+int gmi_elastic_tips_init(const gm_pair *pair, const gmi_engagement *at, double tip_rounding,
+                          gmi_elastic_tips *tips);
+
+/* How far lines have to go on below and above the path; peak: most material of both flanks (m). */
+double gmi_elastic_tips_below(const gmi_elastic_tips *tips, double approach, double peak);
+double gmi_elastic_tips_above(const gmi_elastic_tips *tips, double approach, double peak);
+
+typedef struct gmi_elastic_gap {
+    double value, by_roll, by_roll_twice; /* (m, 1, 1/m) */
+} gmi_elastic_gap;
+
+/* What an edge does at a point. */
+typedef struct gmi_elastic_edge {
+    gmi_elastic_gap gap;
+    int enters;          /* the wheel's, whose roll grows with x */
+    double rate_factor;  /* of the contact law's rate */
+    double rate_by_roll; /* ln of it, along rho_p (1/m) */
+} gmi_elastic_edge;
+
+/* begin, end: of the path; roll, beyond: as gmi_elastic_work; approach: x of the rigid flanks (m). */
+gmi_elastic_edge gmi_elastic_edge_at(const gmi_elastic_tips *tips, double approach, double begin,
+                                     double end, double roll, double beyond);
+
+/*
+ * Adds the edges to deviations and rates of all points, and fills work->entry_slope and work->entry_curvature. Returns
+ * whether there are wheel's edges among them. peak: as above.
+ */
+int gmi_elastic_edges_add(const gmi_elastic_tips *tips, double approach, double peak,
+                          gmi_elastic_work *work);
+
+/* ---------------------------------------------------------------------------------------------
+ * The law of a mesh
+ * ------------------------------------------------------------------------------------------- */
 
 /* The law of one mesh; both sides share it, as the coast side is the drive side in a mirror. */
 typedef struct gmi_elastic_mesh {
     gmi_elastic law;
     const double *tooth_stiffness[2]; /* [enum gm_role][teeth] factors, NULL = 1 */
     double body_compliance;      /* wind-up of both bodies between bore and root, in series (m/N) */
+    int has_corners;             /* whether lines go on beyond the path */
+    double tip_rounding;         /* in modules */
+    gmi_elastic_tips tips;       /* as prepared */
     gm_mesh_stiffness stiffness; /* at the reference torque, between ideal flanks */
 } gmi_elastic_mesh;
 
@@ -44,6 +101,9 @@ size_t gmi_elastic_mesh_size(const gm_mesh_params *params, const gm_pair *pair);
  */
 int gmi_elastic_mesh_init(gmi_elastic_mesh *made, const gm_mesh_params *params, const gm_pair *pair,
                           const gmi_engagement *at, const char **field, const char **requirement);
+
+/* The tips of the gears as they stand: as prepared, or found anew in a pose of this call. 0: lines end with the path. */
+int gmi_elastic_tips_of(const gm_mesh *mesh, gmi_elastic_tips *tips);
 
 /* Whether the teeth of a gear are not all as stiff. */
 static inline int gmi_elastic_is_uneven(const gm_mesh *mesh, int role) {

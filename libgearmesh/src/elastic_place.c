@@ -16,6 +16,7 @@
 #include <string.h>
 
 #define LEAST_FACTOR 1e-300
+#define JUST_WITHIN  1e-10 /* part of the path: the tables begin there */
 
 /* Gauss points of a part, as shares of it: (1 -+ 1/sqrt(3)) / 2. */
 static const double gauss[2] = {0.21132486540518711775, 0.78867513459481288225};
@@ -37,7 +38,7 @@ static work_sizes find_sizes(int stations, int lines) {
     return sizes;
 }
 
-enum { POINT_ARRAYS = 25, TABLE_ARRAYS = 4, PART_ARRAYS = 4, NODE_ARRAYS = 7, INDEX_ARRAYS = 4 };
+enum { POINT_ARRAYS = 28, TABLE_ARRAYS = 4, PART_ARRAYS = 4, NODE_ARRAYS = 7, INDEX_ARRAYS = 4 };
 
 static int sizes_fit(int stations, int lines) {
     return stations >= 2 && stations <= GMI_ELASTIC_STATIONS_MAX && lines >= 1 &&
@@ -72,6 +73,7 @@ void gmi_elastic_work_init(gmi_elastic_work *work, int stations, int lines, void
 
     double **const points[POINT_ARRAYS] = {&work->z,
                                            &work->roll,
+                                           &work->beyond,
                                            &work->weight,
                                            &work->deviation,
                                            &work->deviation_by_roll,
@@ -81,6 +83,8 @@ void gmi_elastic_work_init(gmi_elastic_work *work, int stations, int lines, void
                                            &work->force,
                                            &work->stiffness,
                                            &work->by_deviation,
+                                           &work->entry_slope,
+                                           &work->entry_curvature,
                                            &work->place,
                                            &work->tooth,
                                            &work->tooth_by_roll,
@@ -145,24 +149,24 @@ typedef struct span {
 static span find_span(const gmi_elastic *law, const gmi_elastic_lines_at *at, double roll) {
     span part = {0.0, law->face_width, {0, 0}};
     if (at->climb == 0.0) {
-        if (!(roll >= at->lower && roll <= at->upper)) {
+        if (!(roll >= at->lower - at->below && roll <= at->upper + at->above)) {
             part.to = 0.0;
         }
         return part;
     }
     const double per_climb = 1.0 / at->climb;
-    const double lower = (at->lower - roll) * per_climb;
-    const double upper = (at->upper - roll) * per_climb;
+    const double lower = (at->lower - at->below - roll) * per_climb;
+    const double upper = (at->upper + at->above - roll) * per_climb;
     const int climbs = at->climb > 0.0;
     const double from = climbs ? lower : upper;
     const double to = climbs ? upper : lower;
     if (from > part.from) {
         part.from = from;
-        part.limited[0] = climbs ? -1 : 1;
+        part.limited[0] = at->goes_on ? 0 : climbs ? -1 : 1;
     }
     if (to < part.to) {
         part.to = to;
-        part.limited[1] = climbs ? 1 : -1;
+        part.limited[1] = at->goes_on ? 0 : climbs ? 1 : -1;
     }
     return part;
 }
@@ -204,7 +208,7 @@ static void place_slots(const gmi_elastic *law, gmi_elastic_work *work, const sp
             place[s] = gauss[half];
         }
     }
-    for (int row = 0; row < work->count; ++row) {
+    for (int row = 0; row < work->count && !work->at.goes_on; ++row) {
         const gmi_elastic_line *line = &work->line[row];
         const int last = line->elements - 1;
         cut_slot(law, work, line->slot, line->element, &parts[row]);
@@ -306,6 +310,33 @@ APART void place_points(int count, double first, double spacing, double origin, 
     }
 }
 
+/* Points beyond the path are read at its end, just within. */
+APART void keep_within(int count, double lower, double upper, double action, double *restrict roll,
+                       double *restrict wheel_roll, double *restrict beyond) {
+    for (int p = 0; p < count; ++p) {
+        const double rho = roll[p];
+        const double above = rho > lower ? rho : lower;
+        const double within = above < upper ? above : upper;
+        roll[p] = within;
+        wheel_roll[p] = action - within;
+        beyond[p] = rho - within;
+    }
+}
+
+/* Their teeth: on from the end as the slope there says, for a while. */
+static void hold_teeth(gmi_elastic_work *work) {
+    for (int p = 0; p < 2 * work->slots; ++p) {
+        if (work->beyond[p] != 0.0) {
+            const gmi_elastic_hold hold = gmi_elastic_hold_at(&work->at, work->beyond[p]);
+            const double growth = 1.0 + hold.moved * work->rate_by_roll[p];
+            work->tooth[p] += hold.moved * work->tooth_by_roll[p];
+            work->tooth_by_roll[p] *= hold.by_roll;
+            work->rate[p] *= growth;
+            work->rate_by_roll[p] *= hold.by_roll / growth;
+        }
+    }
+}
+
 /* What teeth are made of. */
 typedef struct tooth_pair {
     double softness[2]; /* of pinion and wheel */
@@ -367,6 +398,11 @@ static int place_teeth(const gmi_elastic *law, gmi_elastic_work *work) {
                          wheel_roll + p);
         }
     }
+    if (at->goes_on) {
+        const double inside = JUST_WITHIN * (at->upper - at->lower);
+        keep_within(count, at->lower + inside, at->upper - inside, at->line_of_action, work->roll,
+                    wheel_roll, work->beyond);
+    }
     if (at->pinion_softness == NULL && at->wheel_softness == NULL && at->slopes < 2 &&
         at->line_of_action == law->line_of_action) {
         read_table(&law->pair, count, work->roll, cell, place, work->table[0], work->table[2]);
@@ -399,7 +435,7 @@ static int place_teeth(const gmi_elastic *law, gmi_elastic_work *work) {
         }
         join_teeth(n, &teeth, work->table[0] + 2 * p, work->table[1] + 2 * p, work->tooth + p,
                    work->rate + p);
-        if (at->slopes) {
+        if (at->slopes || at->goes_on) {
             join_slopes(n, &teeth, work->table[0] + 2 * p, work->table[1] + 2 * p,
                         work->table[2] + 2 * p, work->table[3] + 2 * p, work->tooth + p,
                         work->tooth_by_roll + p, work->tooth_by_action + p, work->rate_by_roll + p,
@@ -496,6 +532,9 @@ int gmi_elastic_place(const gmi_elastic *law, const gmi_elastic_lines_at *at,
     }
     place_slots(law, work, parts);
     const int good = place_teeth(law, work);
+    if (at->goes_on) {
+        hold_teeth(work);
+    }
     count_lines(work);
     gmi_elastic_find_runs(work);
     follow_teeth(work);
@@ -507,24 +546,34 @@ int gmi_elastic_place(const gmi_elastic *law, const gmi_elastic_lines_at *at,
  * ------------------------------------------------------------------------------------------- */
 
 double gmi_elastic_load_at(const gmi_elastic *law, const gmi_elastic_work *work, int row, double z,
-                           double deviation, double *gamma) {
+                           double deviation, double rate_factor, double *gamma) {
     const gmi_elastic_lines_at *at = &work->at;
     const gmi_elastic_line *line = &work->line[row];
 
-    /* Both teeth there. */
-    const double roll = at->origin + (double)line->index * at->pitch + at->climb * z;
+    /* Both teeth there; beyond the path as far as they are read. */
+    const double on_line = at->origin + (double)line->index * at->pitch + at->climb * z;
+    const double inside = JUST_WITHIN * (at->upper - at->lower);
+    const double kept = fmin(fmax(on_line, at->lower + inside), at->upper - inside);
+    const double roll = at->goes_on ? kept : on_line;
     const double wheel_roll = at->line_of_action - roll;
     const int number = line->index - at->first;
     const tooth_pair teeth = {{at->pinion_softness != NULL ? at->pinion_softness[number] : 1.0,
                                at->wheel_softness != NULL ? at->wheel_softness[number] : 1.0},
                               law->rim_compliance,
                               at->line_of_action,
-                              {0.0, 0.0}};
-    double pinion[2], wheel[2], tooth, rate;
-    double cell, within, slopes[2];
-    read_table(&law->gear[0], 1, &roll, &cell, &within, pinion, slopes);
-    read_table(&law->gear[1], 1, &wheel_roll, &cell, &within, wheel, slopes);
+                              {law->gear[0].per_cell, law->gear[1].per_cell}};
+    double pinion[2], wheel[2], pinion_slope[2], wheel_slope[2], tooth, rate;
+    double cell, within, tooth_by_roll, rate_by_roll, by_action[2];
+    read_table(&law->gear[0], 1, &roll, &cell, &within, pinion, pinion_slope);
+    read_table(&law->gear[1], 1, &wheel_roll, &cell, &within, wheel, wheel_slope);
     join_teeth(1, &teeth, pinion, wheel, &tooth, &rate);
+    if (roll != on_line) {
+        const double moved = gmi_elastic_hold_at(at, on_line - roll).moved;
+        join_slopes(1, &teeth, pinion, wheel, pinion_slope, wheel_slope, &tooth, &tooth_by_roll,
+                    &by_action[0], &rate_by_roll, &by_action[1]);
+        tooth += moved * tooth_by_roll;
+        rate *= 1.0 + moved * rate_by_roll;
+    }
 
     /* Deflections of the element that holds z. */
     const int last = line->element + line->elements - 1;
@@ -536,6 +585,6 @@ double gmi_elastic_load_at(const gmi_elastic *law, const gmi_elastic_work *work,
     *gamma = work->approach + deviation - tooth * (phi[0] + place * (phi[1] - phi[0])) -
              (psi[0] + place * (psi[1] - psi[0]));
     gmi_hertz_state contact;
-    gmi_hertz_evaluate(law->hertz_compliance, rate, *gamma, &contact);
+    gmi_hertz_evaluate(law->hertz_compliance, rate * rate_factor, *gamma, &contact);
     return contact.load;
 }

@@ -22,7 +22,8 @@ int gm_mesh_line_load_points(const gm_mesh *mesh) {
     if (mesh == NULL) {
         return 0;
     }
-    return 2 * stations_of(mesh) * gmi_elastic_lines(mesh->pair->total_contact_ratio);
+    const int lines = gmi_elastic_lines(mesh->pair->total_contact_ratio);
+    return 2 * stations_of(mesh) * (mesh->elastic != NULL ? mesh->elastic->law.lines_max : lines);
 }
 
 /* All that is found, and where it goes. */
@@ -43,15 +44,18 @@ typedef struct side_lines {
     double delta;           /* ideal penetration (m) */
     double reach;           /* rho_p + rho_w (m) */
     gmi_elastic_work *work; /* solved; NULL with constant stiffness */
+    gmi_elastic_tips tips;  /* of lines that go on beyond the path */
+    int has_tips;
 } side_lines;
 
 /*
  * Line contact [Johnson]: half width a = sqrt(4 q rho_red / (pi E*)), p_0 = 2 q / (pi a), with the curvature of the normal
  * section, rho_red = rho_p rho_w / (T cos(beta_b)).
  */
-static double pressure_of(const gm_mesh *mesh, double line_load, double roll, double wheel_roll) {
+static double pressure_of(const gm_mesh *mesh, double line_load, double roll, double wheel_roll,
+                          double sharpness) {
     const double cosine = cos(mesh->pair->base_helix_angle);
-    const double radius = roll * wheel_roll / ((roll + wheel_roll) * cosine);
+    const double radius = sharpness * roll * wheel_roll / ((roll + wheel_roll) * cosine);
     const double half_width = sqrt(4.0 * line_load * radius * mesh->contact_compliance / GMI_PI);
     return line_load > 0.0 ? 2.0 * line_load / (GMI_PI * half_width) : 0.0;
 }
@@ -62,9 +66,12 @@ static gm_line_load_point point_at(const gm_mesh *mesh, const side_lines *found,
     const gm_pair *pair = mesh->pair;
 
     /* Where it is, and how much material both flanks have there. */
-    const double roll = found->lines.origin + (double)index * pair->transverse_base_pitch +
-                        found->lines.advance * t1;
-    const double material = gmi_line_flanks_at(flanks, found->side, t1, roll, found->reach);
+    const double on_line = found->lines.origin + (double)index * pair->transverse_base_pitch +
+                           found->lines.advance * t1;
+    const gmi_elastic_lines_at *lines = found->has_tips ? &found->work->at : NULL;
+    const double roll = lines != NULL ? fmin(fmax(on_line, lines->lower), lines->upper) : on_line;
+    double by_roll;
+    double material = gmi_line_flanks_at(flanks, found->side, t1, roll, found->reach, &by_roll);
     gm_line_load_point point = {
         .side = found->side,
         .pinion_tooth = flanks->pinion_tooth,
@@ -74,12 +81,22 @@ static gm_line_load_point point_at(const gm_mesh *mesh, const side_lines *found,
         .wheel_roll_length = fabs(found->reach - roll),
     };
 
+    /* Beyond the path a tip edge touches, where the flanks end. */
+    double sharpness = 1.0;
+    if (lines != NULL) {
+        const double beyond = on_line - roll;
+        const gmi_elastic_edge edge = gmi_elastic_edge_at(&found->tips, found->delta, lines->lower,
+                                                          lines->upper, roll, beyond);
+        material += gmi_elastic_hold_at(lines, beyond).moved * by_roll - edge.gap.value;
+        sharpness = edge.rate_factor;
+    }
+
     /* What presses there: from the deflections of elastic teeth, or the overlap itself. */
     double approach;
     if (found->work != NULL) {
         const double z = (t1 - mesh->engagement.face_from) * pair->face_width;
-        point.line_load =
-            gmi_elastic_load_at(&mesh->elastic->law, found->work, row, z, material, &approach);
+        point.line_load = gmi_elastic_load_at(&mesh->elastic->law, found->work, row, z, material,
+                                              sharpness, &approach);
     } else {
         const double gain =
             mesh->engagement.is_tilted ? gmi_tilt_gain(pair, &mesh->engagement, found->side) : 1.0;
@@ -87,13 +104,38 @@ static gm_line_load_point point_at(const gm_mesh *mesh, const side_lines *found,
         point.line_load = fmax(0.0, approach) * mesh->law.stiffness / pair->face_width;
     }
     point.gap = -approach;
-    point.pressure = pressure_of(mesh, point.line_load, roll, found->reach - roll);
+    point.pressure = pressure_of(mesh, point.line_load, roll, found->reach - roll, sharpness);
     return point;
 }
 
 static void count_point(walk *w, const gm_line_load_point *point) {
     w->load->largest_line_load = fmax(w->load->largest_line_load, point->line_load);
     w->load->largest_pressure = fmax(w->load->largest_pressure, point->pressure);
+}
+
+/* What of a line is to bear load: all of it within the path, and beyond it where it does. */
+static double bearing_length(const gm_mesh *mesh, const side_lines *found, int index, int row,
+                             gmi_interval part) {
+    const double width = mesh->pair->face_width;
+    const double advance = found->lines.advance;
+    if (!found->has_tips || advance == 0.0) {
+        return (part.to - part.from) * width;
+    }
+    const gmi_elastic_work *work = found->work;
+    const double origin = found->lines.origin + (double)index * mesh->pair->transverse_base_pitch;
+    const double lower =
+        fmax(work->at.lower, origin + fmin(advance * part.from, advance * part.to));
+    const double upper =
+        fmin(work->at.upper, origin + fmax(advance * part.from, advance * part.to));
+    double length = fmax(upper - lower, 0.0) * width / fabs(advance);
+    const gmi_elastic_line *line = &work->line[row];
+    for (int half = 0; half < 2; ++half) {
+        const int from = line->slot + half * work->slots;
+        for (int p = from; p < from + line->elements; ++p) {
+            length += work->beyond[p] != 0.0 && work->load[p] > 0.0 ? work->weight[p] : 0.0;
+        }
+    }
+    return length;
 }
 
 /* Stations of one line within its ends, and the ends themselves. Returns GM_OK or GM_ERR_MEMORY. */
@@ -133,7 +175,7 @@ static int walk_line(walk *w, const side_lines *found, int index, int row, gmi_i
     }
 
     /* All of a line that touches anywhere bears the mean line load. */
-    w->length += touches ? (part.to - part.from) * mesh->pair->face_width : 0.0;
+    w->length += touches ? bearing_length(mesh, found, index, row, part) : 0.0;
     return GM_OK;
 }
 
@@ -178,6 +220,12 @@ static int walk_side(walk *w, int side, const gm_position *position, gm_workspac
         lines_at.offset = gmi_side_sign(side) * 0.5 * at->backlash;
     }
     gmi_lines_find(pair, at, side, &lines_at, &found.lines);
+    found.has_tips = found.work != NULL && gmi_elastic_tips_of(mesh, &found.tips);
+    if (found.has_tips) {
+        const gmi_elastic_lines_at *lines = &found.work->at;
+        gmi_lines_widen(pair, lines->lower - lines->below, lines->upper + lines->above,
+                        &found.lines);
+    }
     found.teeth = gmi_lines_teeth(pair, side, &lines_at, &found.lines);
     const gmi_line_ends ends = gmi_line_ends_find(pair, at, &found.lines);
     for (int k = found.lines.first; k <= found.lines.last && status == GM_OK; ++k) {

@@ -43,6 +43,7 @@ void gm_mesh_params_default(gm_mesh_params *params) {
         .reference_torque = gmi_nan(),
         .stations = 17,
         .corner_contact = GM_CORNER_BY_LAW,
+        .tip_rounding = 0.05,
         .friction_law = GM_FRICTION_CONSTANT,
         .friction_coefficient = 0.0,
         .friction_speed = 0.01,
@@ -70,11 +71,12 @@ static const char *corner_at_fault(const gm_mesh_params *params, const char **wa
     if (corner != GM_CORNER_ON) {
         return NULL;
     }
-    if (params->model == GM_MODEL_SIMPLE || params->law == GM_LAW_ELASTIC) {
-        *wanted = "GM_CORNER_OFF with GM_MODEL_SIMPLE and with GM_LAW_ELASTIC";
+    if (params->model == GM_MODEL_SIMPLE) {
+        *wanted = "GM_CORNER_OFF with GM_MODEL_SIMPLE";
         return "corner_contact";
     }
-    if (params->friction_law != GM_FRICTION_CONSTANT || params->friction_coefficient > 0.0) {
+    if (params->law != GM_LAW_ELASTIC &&
+        (params->friction_law != GM_FRICTION_CONSTANT || params->friction_coefficient > 0.0)) {
         *wanted = "GM_CORNER_OFF with friction";
         return "corner_contact";
     }
@@ -231,7 +233,8 @@ int gm_mesh_init(gm_mesh **mesh, const gm_mesh_params *params, const gm_pair *pa
     }
     gmi_engagement engagement;
     gmi_corner corners[2];
-    const int has_corners = status == GM_OK && params->corner_contact == GM_CORNER_ON;
+    const int has_corners = status == GM_OK && params->corner_contact == GM_CORNER_ON &&
+                            params->law != GM_LAW_ELASTIC; /* which has its own */
     if (status == GM_OK) {
         status = gmi_engagement_find(pair, &params->pose, &engagement);
     }

@@ -102,8 +102,11 @@ void gmi_surface_add_ramps(const gmi_surface_points *at, const gmi_surface_gear 
 void gmi_surface_add_tilt(const gmi_surface_points *at, const gmi_line_flanks *line, int from,
                           int to);
 
-/* Material of both flanks, pitch included, at one point: t1 of the common face, rho_p, and reach = rho_p + rho_w (m). */
+/*
+ * Material of both flanks, pitch included, at one point: t1 of the common face, rho_p, and reach = rho_p + rho_w (m); and
+ * its slope along rho_p, without what tilted axes add.
+ */
 double gmi_line_flanks_at(const gmi_line_flanks *line, int side, double t1, double roll,
-                          double reach);
+                          double reach, double *by_roll);
 
 #endif

@@ -713,7 +713,7 @@ enum gm_law {
  * action. With it no line of contact ends but at the faces: the force has no jumps, and of helical gears no kinks.
  */
 enum gm_corner_contact {
-    GM_CORNER_BY_LAW = 0, /**< as the law has it: off with all laws */
+    GM_CORNER_BY_LAW = 0, /**< as the law has it: on for GM_LAW_ELASTIC, else off */
     GM_CORNER_OFF = 1,    /**< a line of contact ends where the path does */
     GM_CORNER_ON = 2      /**< it goes on, its overlap less by the gap of the corner */
 };
@@ -822,9 +822,12 @@ typedef struct gm_mesh_params {
 
     int stations; /**< along the face, 2 .. 97; docs/elastic.md has the error of each number [17] */
 
-    /** enum gm_corner_contact [GM_CORNER_BY_LAW]. GM_CORNER_ON: 3D model, constant stiffness or that of ISO 6336-1, no
-     *  friction, no tip that reaches to the mate's base circle. Start radii then end no line. */
+    /** enum gm_corner_contact [GM_CORNER_BY_LAW]. GM_CORNER_ON: 3D model, no tip that reaches to the mate's base circle; no
+     *  friction with constant stiffness or that of ISO 6336-1. Start radii then end no line. */
     int corner_contact;
+
+    /** radius of the tip edges of elastic teeth in modules, 0.001 .. 1 [0.05] */
+    double tip_rounding;
 
     /* Friction, of the 3D model. At a sliding speed v its coefficient is mu v / sqrt(v^2 + v0^2). */
     int friction_law;            /**< enum gm_friction_law [GM_FRICTION_CONSTANT] */
