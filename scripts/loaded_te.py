@@ -3,6 +3,7 @@
 """Loaded transmission error from gearsim: one parameter file, many torques, many values of its keys."""
 import bisect
 import concurrent.futures
+import contextlib
 import math
 import os
 import re
@@ -197,6 +198,7 @@ class Runs:
         while not (end := self.END.search(answer, max(0, len(answer) - 32))):
             piece = self.process.stdout.read1(1 << 20)
             if not piece:  # the process is gone, as after Ctrl-C
+                self._end_input()  # a script around it may wait for more
                 said = self.process.stderr.read().decode(errors="replace")
                 status = self.process.wait()
                 self.close()
@@ -204,7 +206,19 @@ class Runs:
             answer += piece
         return bytes(answer), int(end[1])
 
+    def stop(self):
+        """Ends the process while another thread waits for its answer."""
+        process = self.process
+        if process is not None:
+            process.kill()
+            self._end_input()
+
+    def _end_input(self):
+        with contextlib.suppress(AttributeError, OSError):  # it may have ended meanwhile
+            self.process.stdin.close()
+
     def close(self):
+        self._end_input()
         if self.process is not None:
             with self.process as process:
                 process.kill()
@@ -306,6 +320,11 @@ class Gears:
             self.all_runs.append(self.own.runs)
         return self.own.runs
 
+    def restart(self):
+        """Ends all processes of gearsim: an interruption of a terminal has reached them, and what follows gets others."""
+        for runs in self.all_runs:
+            runs.close()
+
     def load_distribution(self):
         """The CSV with the loads along the lines of contact at mean_Nm; it goes with close()."""
         path = os.path.join(self.folder.name, "load.csv")
@@ -332,10 +351,10 @@ class Gears:
             for of_design in futures:
                 yield np.vstack([future.result() for future in of_design])
         except KeyboardInterrupt:
-            # Of a terminal it goes to all processes: they end, and whoever goes on gets others.
-            self._give_up(futures)
             for runs in self.all_runs:
-                runs.close()
+                runs.stop()
+            self._give_up(futures)
+            self.restart()
             raise
         finally:
             self._give_up(futures)
