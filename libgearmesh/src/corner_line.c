@@ -105,10 +105,22 @@ static OWN_STACK void find_parabola(const gmi_corner *corner, double roll, parab
     const double width = 2.0 * width_at(corner, roll);
     const double from = floor(roll / width) * width;
     if (from != found->pair_from) {
+        /* Lines go from joint to joint: one of both is known from the last. */
+        const double to = fmin(from + width, corner->reach);
+        const joint begins = found->begins, ends = found->ends;
+        const int is_known = found->pair_from >= 0.0;
+        if (is_known && from == found->pair_to) {
+            found->begins = ends;
+        } else {
+            find_joint(corner, from, &found->begins);
+        }
+        if (is_known && to == found->pair_from) {
+            found->ends = begins;
+        } else {
+            find_joint(corner, to, &found->ends);
+        }
         found->pair_from = from;
-        found->pair_to = fmin(from + width, corner->reach);
-        find_joint(corner, from, &found->begins);
-        find_joint(corner, found->pair_to, &found->ends);
+        found->pair_to = to;
     }
     const joint *begins = &found->begins, *ends = &found->ends;
     const double half = 0.5 * (found->pair_to - from);

@@ -711,6 +711,7 @@ enum gm_law {
 /**
  * Whether the tip edges of loaded teeth touch the mate's flank before and after the ideal path of contact, off the line of
  * action. With it no line of contact ends but at the faces: the force has no jumps, and of helical gears no kinks.
+ * An evaluation then takes some 3000 instructions of spur gears and 30 000 of helical ones, tables apart.
  */
 enum gm_corner_contact {
     GM_CORNER_BY_LAW = 0, /**< as the law has it: on for GM_LAW_ELASTIC, else off */
