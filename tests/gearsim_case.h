@@ -26,6 +26,7 @@ static inline config case_config(enum mesh_model model, enum drive_kind drive) {
         .wheel_youngs_modulus = 206e9,
         .pinion_poisson_ratio = 0.3,
         .wheel_poisson_ratio = 0.3,
+        .tip_rounding = 0.05,
         .stations = 17,
         .iso_blank_factor = 1.0,
         .damping = REFERENCE_DAMPING,
