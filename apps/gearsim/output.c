@@ -2,11 +2,14 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 
 #include "output_format.h"
+#include "paths.h"
 #include "progress.h"
 
 #include <dlfcn.h>
 #include <errno.h>
 #include <fcntl.h>
+#include <limits.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <unistd.h>
@@ -31,7 +34,19 @@ static int ends_with(const char *text, const char *suffix) {
 /* The module, which stays loaded. It lies at one place beside the program, and no other one is searched.
  * NULL: not there, with the reason. */
 static const output_format *load_hdf5(const char **why) {
-    void *module = dlopen(GEARSIM_HDF5_MODULE, RTLD_NOW | RTLD_LOCAL);
+    char *program = path_behind_links("/proc/self/exe");
+    char *folder = program != NULL ? path_folder(program) : NULL;
+    char path[PATH_MAX];
+    const int length =
+        folder != NULL ? snprintf(path, sizeof path, "%s/" GEARSIM_HDF5_MODULE, folder) : -1;
+    free(program);
+    free(folder);
+    if (length < 0 || length >= PATH_MAX) {
+        *why = "the folder of gearsim cannot be told";
+        return NULL;
+    }
+
+    void *module = dlopen(path, RTLD_NOW | RTLD_LOCAL);
     const output_format *format = module != NULL ? dlsym(module, "gearsim_hdf5_format") : NULL;
     if (format == NULL) {
         *why = dlerror();

@@ -50,11 +50,14 @@ size_t gmi_elastic_work_size(int stations, int lines) {
         return 0;
     }
     const work_sizes sizes = find_sizes(stations, lines);
-    return sizeof(double) *
-               ((POINT_ARRAYS + 2 * TABLE_ARRAYS) * sizes.points +
-                (GMI_ELASTIC_MATRICES + PART_ARRAYS) * sizes.slots + NODE_ARRAYS * sizes.nodes +
-                sizes.front + sizes.factor + sizes.ends + sizes.carry) +
-           (sizeof(int) * INDEX_ARRAYS + sizeof(gmi_elastic_run)) * (size_t)stations;
+    const size_t doubles = (POINT_ARRAYS + 2 * TABLE_ARRAYS) * sizes.points +
+                           (GMI_ELASTIC_MATRICES + PART_ARRAYS) * sizes.slots +
+                           NODE_ARRAYS * sizes.nodes + sizes.front + sizes.factor + sizes.ends +
+                           sizes.carry;
+
+    /* Whole doubles, so that what comes behind is aligned as well. */
+    const size_t bytes = (sizeof(int) * INDEX_ARRAYS + sizeof(gmi_elastic_run)) * (size_t)stations;
+    return sizeof(double) * (doubles + (bytes + sizeof(double) - 1) / sizeof(double));
 }
 
 static double *take(double **memory, size_t count) {
