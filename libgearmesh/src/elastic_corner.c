@@ -25,6 +25,10 @@
 /* Lines go on for this part of the base pitch at most, and corners are followed so far. */
 #define FARTHEST 0.5
 
+/* Nor further than where this part of the roll goes into the gap, so that an edge always presses its own gear back. Usual
+ * gears stay below 0.2. */
+#define LARGEST_SLOPE 0.5
+
 /* So much more gap than needed, as flanks may have a little more material where they fade. */
 #define MARGIN 1.1
 
@@ -61,6 +65,11 @@ int gmi_elastic_tips_init(const gm_pair *pair, const gmi_engagement *at, double 
         gmi_corner_at(&tip->corner, 0.0, &place);
         tip->curvature = place.by_roll_twice;
         tip->farthest = fmin(FARTHEST * pair->transverse_base_pitch, tip->corner.reach);
+        gmi_corner_at(&tip->corner, tip->farthest, &place);
+        for (int k = 0; k < 30 && !(place.by_roll <= LARGEST_SLOPE); ++k) {
+            tip->farthest *= 0.5;
+            gmi_corner_at(&tip->corner, tip->farthest, &place);
+        }
         good = good && tip->logarithm > 0.0 && tip->curvature > 0.0;
     }
     return good;
