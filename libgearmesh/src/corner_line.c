@@ -306,18 +306,24 @@ static void add_tip_load(const view *v, const gmi_beyond *beyond, const parabola
     if (load.whole == 0.0) {
         return;
     }
+
+    /* Where the middle of the load is: slope of the gap, and the share of the way between both joints of the parabola. */
     const double roll = roll_at(beyond, load.by_t1 / load.whole);
     const double slope = gap->slope + gap->curvature * (roll - gap->from);
     const double length = gap->pair_to - gap->pair_from;
     const double q = length > 0.0 ? (roll - gap->pair_from) / length : 0.0;
     const joint *a = &gap->begins, *b = &gap->ends;
     const double versine = a->versine + q * (b->versine - a->versine);
+
+    /* How much shorter the arm is, and how the normal has turned, times the force. */
     tip->arm += slope * load.whole;
     tip->arm_t1 += slope * load.by_t1;
     tip->versine += versine * load.whole;
     tip->versine_t1 += versine * load.by_t1;
     tip->across += (a->across + q * (b->across - a->across)) * load.whole;
     tip->along += (a->along + q * (b->along - a->along)) * load.whole;
+
+    /* The slope is linear in t1 on a parabola, slope_0 + slope_1 t1, so the derivatives of two sums are enough. */
     if (v->wanted & GMI_DERIVATIVES) {
         const double slope_0 = gap->slope + gap->curvature * (beyond->at_zero - gap->from);
         const double slope_1 = gap->curvature * beyond->per_t1;

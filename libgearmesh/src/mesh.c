@@ -652,8 +652,12 @@ static void add_tip(const gm_mesh *mesh, const gmi_tip_load *force, int role, in
     const double sign = gmi_side_sign(side);
     const double r_bp = pair->pinion.base_radius, r_bw = pair->wheel.base_radius;
     const double arm = role == GM_PINION ? r_bp : r_bw;
+
+    /* The torque is less by this than force times base radius. */
     *(role == GM_PINION ? &result->pinion_torque : &result->wheel_torque) -=
         sign * arm * force->arm;
+
+    /* Its derivatives by the chain rule: the origin of the lines follows phi_p, delta both angles. */
     if (wanted & GM_WANT_DERIVATIVES) {
         gm_gradient *by = role == GM_PINION ? &result->pinion_torque_by : &result->wheel_torque_by;
         by->pinion_angle -= arm * r_bp * (force->arm_by_delta + force->arm_by_origin);
@@ -661,6 +665,8 @@ static void add_tip(const gm_mesh *mesh, const gmi_tip_load *force, int role, in
         by->pinion_speed -= arm * r_bp * force->arm_by_speed;
         by->wheel_speed += arm * r_bw * force->arm_by_speed;
     }
+
+    /* The force along the normal of the flank that the corner touches, in the frame of the drawing. */
     if (wanted & GM_WANT_WRENCH) {
         gm_wrench of_tip;
         gmi_wrench_set(&of_tip, 0.0);
@@ -843,6 +849,8 @@ static int move_mesh(const gm_mesh *mesh, const gm_pose *pose, gm_mesh *moved) {
     *moved = *mesh;
     moved->cache = NULL;
     moved->is_special = mesh->friction.is_on || mesh->elastic != NULL || mesh->has_corners;
+
+    /* The gears in the pose, and their corners. */
     const int status = gmi_engagement_find(mesh->pair, &both, &moved->engagement);
     if (status != GM_OK) {
         return status;
@@ -850,6 +858,8 @@ static int move_mesh(const gm_mesh *mesh, const gm_pose *pose, gm_mesh *moved) {
     if (mesh->has_corners && !gmi_corners_init(mesh->pair, &moved->engagement, moved->corners)) {
         return GM_POSE_OUT_OF_MESH;
     }
+
+    /* Tables end where they did; pitch point and sides follow. */
     if (mesh->side[GM_DRIVE].pinion != NULL) {
         gmi_engagement_keep_tables(mesh->pair, GM_PINION, &moved->engagement);
     }
@@ -981,6 +991,8 @@ static OWN_STACK int evaluate_posed(const gm_mesh *mesh, const gm_motion *motion
     gm_mesh moved;
     gm_position position;
     gmi_rates rates[2];
+
+    /* The mesh where the motion has it, and whether all that is asked for can be had there. */
     int status = gmi_mesh_follow(mesh, motion, &moved, &position, rates);
     if (status == GM_OK) {
         status = check_evaluation(&moved, &position, wanted, workspace);
@@ -991,9 +1003,13 @@ static OWN_STACK int evaluate_posed(const gm_mesh *mesh, const gm_motion *motion
     if (status != GM_OK) {
         return status;
     }
+
+    /* Axes at rest: as any mesh that was prepared there. */
     if (gmi_is_at_rest(&motion->pose_rate)) {
         return gmi_mesh_evaluate_exact(&moved, &position, wanted, workspace, result);
     }
+
+    /* Moving axes change the speed of approach: each way to add up a side takes it in its own way. */
     if (mesh->has_corners) {
         evaluate_corners(&moved, &position, rates, wanted, result);
         return GM_OK;
@@ -1004,6 +1020,8 @@ static OWN_STACK int evaluate_posed(const gm_mesh *mesh, const gm_motion *motion
         evaluate_sliding(&moved, &position, approach, rates, wanted, result);
         return status;
     }
+
+    /* While the tilt changes, each point of a side has a speed of its own; else the whole side has one. */
     const int is_tilting = rates[GM_DRIVE].along != 0.0 || rates[GM_DRIVE].across != 0.0;
     if (is_tilting && !is_elastic(mesh)) {
         evaluate_tilting(&moved, &position, rates, wanted, result);
