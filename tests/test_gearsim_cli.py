@@ -1297,6 +1297,16 @@ class Output(Case):
         self.refused("--output: output.file: must not overwrite an input", "pitch.csv.part", params=None,
                      arguments=["--output", "pitch.csv"])
 
+    def test_load_distribution_that_is_also_an_input(self):
+        params = with_key(with_key(PARAMS, "analysis", "type", "static"), "flanks", "pinion", "flanks.csv")
+        self.write("run.ini", params)
+        self.write("flanks.csv", DEVIATIONS)
+        for output, got in [("run.ini", "run.ini, which is the INI file"), ("flanks.csv", "flanks.csv, which is flanks.pinion")]:
+            self.refused("--set output.load_distribution: must not overwrite an input", f"(got {got})", params=None,
+                         arguments=["--set", f"output.load_distribution={output}"])
+        self.assertEqual(self.read("run.ini"), params)
+        self.assertEqual(self.read("flanks.csv"), DEVIATIONS)
+
     def test_ini_file_named_as_the_default_result(self):
         self.write("params.csv", PARAMS)
         result = self.run_gearsim("params.csv")

@@ -795,6 +795,22 @@ class Solver(Case):
         # The default of 1e-4: 1 % of a vibration of 0.5 um.
         self.assertLess(largest_difference(self.run_columns(self.NOISY)["dte_um"], exact), 0.02)
 
+    def test_one_tolerance_does_for_both(self):
+        """An error that stays when `relative_tolerance` alone is tightened would be that of the absolute one."""
+        exact = self.tolerance(1e-10)
+        alone = self.run_columns([*self.NOISY, "solver.relative_tolerance=1e-7"])["dte_um"]
+        self.assertLess(largest_difference(alone, exact), 2 * largest_difference(self.tolerance(1e-7), exact))
+
+    def test_no_tolerance_is_too_small(self):
+        """Below what the digits of a double hold it is that; an arc of a long run has fewer digits behind the point."""
+        tight = ["solver.relative_tolerance=1e-14", "solver.absolute_tolerance_um=1e-12", *PLAIN]
+        spur = ["gears.helix_angle_deg=0", "gears.center_distance_mm=71.4", "gears.pinion_tip_diameter_mm=",
+                "gears.wheel_tip_diameter_mm=", "gears.backlash_um=400"]
+        torque = ["drive.kind=torque", "drive.torque_Nm=21", f"bodies.pinion_inertia_kg_m2={I_P}", "drive.start_rpm=20000"]
+        for others in (spur, torque):
+            with self.subTest(others):
+                self.run_columns([*others, "analysis.duration_s=0.004", *tight])
+
     def test_methods_agree(self):
         adams = self.tolerance(1e-8, "solver.method=adams")
         for method in ("bdf", "erk"):

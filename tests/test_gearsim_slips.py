@@ -49,6 +49,17 @@ SLIPS = [
     ("mesh.stiffness_N_per_m=14", "in N/(mm um)", "2.45e+08"),
     ("mesh.stiffness_N_per_m=3e5", "in N/mm", "3e+08"),
     ("mesh.stiffness_N_per_m=0.3", "in GN/m", "3e+08"),
+    ("mesh.law=elastic mesh.stiffness_N_per_m= mesh.pinion_youngs_modulus_GPa=206000", "in MPa", "206"),
+    ("mesh.law=elastic mesh.stiffness_N_per_m= mesh.wheel_youngs_modulus_GPa=3200", "in MPa", "3.2"),
+    ("mesh.law=elastic mesh.stiffness_N_per_m= gears.pinion_bore_diameter_mm=0.035", "in metres", "35"),
+    ("gears.axial_offset_mm=-0.002", "in metres", "-2"),
+    ("mesh.friction_law=iso14179 mesh.roughness_Ra_um=0.4 mesh.oil_viscosity_mPas=0.08", "in Pa s", "80"),
+    ("mesh.friction_law=iso14179 mesh.oil_viscosity_mPas=80 mesh.roughness_Ra_um=400", "in nm", "0.4"),
+    ("pose.center_distance_change_um=0.04", "in mm", "40"),
+    ("pose.offset_um=-3e-5", "in metres", "-30"),
+    ("pose.axial_shift_um=0.05", "in mm", "50"),
+    ("pose.skew_mrad=-0.0005", "in radians", "-0.5"),
+    ("pose.inclination_mrad=1e-4", "in radians", "0.1"),
     ("mesh.damping_Ns_per_m=0.844", "in N s/mm", "844"),
     ("bodies.wheel_inertia_kg_m2=21", "in kg cm2", "0.0021"),
     ("bodies.wheel_inertia_kg_m2=2100", "in kg mm2", "0.0021"),
@@ -75,6 +86,9 @@ SLIPS = [
 REFUSED = [
     ("gears.face_width_mm=0.0005", "; was it meant in metres? write 0.5"),
     ("gears.pinion_start_diameter_mm=0.0015", "; was it meant in metres? write 1.5"),
+    ("mesh.pinion_youngs_modulus_GPa=2.06e11", "; was it meant in Pa? write 206"),
+    ("mesh.roughness_Ra_um=4e-4", "; was it meant in mm? write 0.4"),
+    ("pose.skew_mrad=-400", "; was it meant in microradians? write -0.4"),
     ("flanks.profile_from=20", "; was it meant in percent? write 0.2"),
 ]
 

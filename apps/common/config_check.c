@@ -135,40 +135,49 @@ static int check_dynamic(const config *conf) {
     return faults;
 }
 
-static int check_not_input(const config *conf, const char *input, const char *name) {
-    if (input == NULL || !result_file_would_replace(conf->output_file, input)) {
+/* A file that is read, NULL = none, and what is told of it. */
+typedef struct input_file {
+    const char *path;
+    const char *name;
+} input_file;
+
+/* Neither a file that is written nor the one that it grows in may be one that is read. A stream is no file. */
+static int check_not_input(const config *conf, const char *output, const char *key,
+                           const input_file *input) {
+    if (output == NULL || input->path == NULL || strcmp(output, "-") == 0 ||
+        !result_file_would_replace(output, input->path)) {
         return 0;
     }
-    config_complain(conf, "output.file",
+    config_complain(conf, key,
                     "must not overwrite an input (got %s%s, which is %s): give another name",
-                    conf->output_file, is_same_place(conf->output_file, input) ? "" : ".part",
-                    name);
+                    output, is_same_place(output, input->path) ? "" : ".part", input->name);
     return 1;
 }
 
-/* A stream is no file. Neither the result nor the file that it grows in may be one that is read. */
-static int check_output_is_no_input(const config *conf) {
-    if (strcmp(conf->output_file, "-") == 0) {
-        return 0;
+static int check_outputs_are_no_inputs(const config *conf) {
+    const input_file inputs[] = {
+        {conf->path, "the INI file"},
+        {conf->pinion_flanks.deviations, "flanks.pinion"},
+        {conf->wheel_flanks.deviations, "flanks.wheel"},
+        {conf->pinion_flanks.pitch, "flanks.pinion_pitch"},
+        {conf->wheel_flanks.pitch, "flanks.wheel_pitch"},
+        {conf->pinion_second_flanks.deviations, "flanks.pinion_second_half"},
+        {conf->wheel_second_flanks.deviations, "flanks.wheel_second_half"},
+        {conf->pinion_second_flanks.pitch, "flanks.pinion_second_half_pitch"},
+        {conf->wheel_second_flanks.pitch, "flanks.wheel_second_half_pitch"},
+        {conf->pinion_flanks.tooth_stiffness, "flanks.pinion_tooth_stiffness"},
+        {conf->wheel_flanks.tooth_stiffness, "flanks.wheel_tooth_stiffness"},
+        {conf->drive_file, "drive.file"},
+        {conf->load_file, "load.file"},
+    };
+    int faults = 0;
+
+    for (size_t i = 0; i < sizeof inputs / sizeof inputs[0]; ++i) {
+        faults += check_not_input(conf, conf->output_file, "output.file", &inputs[i]);
+        faults +=
+            check_not_input(conf, conf->load_distribution, "output.load_distribution", &inputs[i]);
     }
-    return check_not_input(conf, conf->path, "the INI file") +
-           check_not_input(conf, conf->pinion_flanks.deviations, "flanks.pinion") +
-           check_not_input(conf, conf->wheel_flanks.deviations, "flanks.wheel") +
-           check_not_input(conf, conf->pinion_flanks.pitch, "flanks.pinion_pitch") +
-           check_not_input(conf, conf->wheel_flanks.pitch, "flanks.wheel_pitch") +
-           check_not_input(conf, conf->pinion_second_flanks.deviations,
-                           "flanks.pinion_second_half") +
-           check_not_input(conf, conf->wheel_second_flanks.deviations, "flanks.wheel_second_half") +
-           check_not_input(conf, conf->pinion_second_flanks.pitch,
-                           "flanks.pinion_second_half_pitch") +
-           check_not_input(conf, conf->wheel_second_flanks.pitch,
-                           "flanks.wheel_second_half_pitch") +
-           check_not_input(conf, conf->pinion_flanks.tooth_stiffness,
-                           "flanks.pinion_tooth_stiffness") +
-           check_not_input(conf, conf->wheel_flanks.tooth_stiffness,
-                           "flanks.wheel_tooth_stiffness") +
-           check_not_input(conf, conf->drive_file, "drive.file") +
-           check_not_input(conf, conf->load_file, "load.file");
+    return faults;
 }
 
 /* What corners do not go with. */
@@ -195,7 +204,7 @@ int config_check_together(const config *conf) {
     }
     faults += check_corners(conf);
     faults += conf->analysis == ANALYSIS_STATIC ? check_static(conf) : check_dynamic(conf);
-    return faults + check_output_is_no_input(conf);
+    return faults + check_outputs_are_no_inputs(conf);
 }
 
 /* A key about a table that is not there. */

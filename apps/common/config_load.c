@@ -183,6 +183,14 @@ static int start(config *conf, const config_request *request) {
     return key_assign_defaults(&gearsim_keys, conf) == KEY_TAKEN ? 0 : EXIT_RUN_FAILED;
 }
 
+/* One tolerance does for both, so that who tightens one is not left with the error of the other (m). */
+static double absolute_tolerance_of(double relative_tolerance) {
+    static const double usual = 1e-4, micrometre = 1e-6;
+    const int is_tighter = relative_tolerance > 0 && relative_tolerance < usual;
+
+    return micrometre * (is_tighter ? relative_tolerance : usual);
+}
+
 /* Each value by itself, from the file and then from the command line. */
 static int read_values(config *conf, const config_request *request) {
     key_reader reader = {.table = &gearsim_keys,
@@ -206,6 +214,9 @@ static int read_values(config *conf, const config_request *request) {
     }
     if (config_text(conf, "mesh.corner_contact") == NULL) {
         conf->corner_contact = conf->law == LAW_ELASTIC ? CORNER_CONTACT_ON : CORNER_CONTACT_OFF;
+    }
+    if (isnan(conf->absolute_tolerance)) {
+        conf->absolute_tolerance = absolute_tolerance_of(conf->relative_tolerance);
     }
     if (conf->output_file == NULL) {
         conf->output_file = default_output_file(conf->path);

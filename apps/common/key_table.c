@@ -178,22 +178,49 @@ static void describe_range(const key_range *range, char *text, size_t size) {
     }
 }
 
-/* What a number beyond its range was perhaps meant to be, as the end of a message. */
-static void describe_slip(const key_spec *key, double value, char *text, size_t size) {
+static int is_below(const key_range *range, double size) {
+    return range->open_low ? size <= range->low : size < range->low;
+}
+
+static int is_above(const key_range *range, double size) {
+    return range->open_high ? size >= range->high : size > range->high;
+}
+
+/* A unit that people mix up with that of a key, and its size in the unit of the key. */
+typedef struct mixed_up_unit {
+    enum key_unit unit;
+    const char *meant;
+    double size;
+} mixed_up_unit;
+
+/* What a number beyond its range was perhaps meant to be, as the end of a message: the first that would be in range. */
+static void describe_slip(const key_spec *key, double value, char *text, size_t size_of_text) {
+    static const mixed_up_unit others[] = {
+        {UNIT_MM, "metres", 1e3}, {UNIT_MM_DIAMETER, "metres", 1e3}, {UNIT_UM, "mm", 1e3},
+        {UNIT_UM, "metres", 1e6}, {UNIT_SHARE, "percent", 1e-2},     {UNIT_GPA, "MPa", 1e-3},
+        {UNIT_GPA, "Pa", 1e-9},   {UNIT_MRAD, "microradians", 1e-3},
+    };
+
     *text = '\0';
-    if ((key->unit == UNIT_MM || key->unit == UNIT_MM_DIAMETER) && value > 0 &&
-        value < key->range.low && 1e3 * value >= key->range.low) {
-        snprintf(text, size, "; was it meant in metres? write %.6g", 1e3 * value);
-    } else if (key->unit == UNIT_SHARE && value > 1 && value <= 100) {
-        snprintf(text, size, "; was it meant in percent? write %.6g", value / 100);
+    for (size_t i = 0; i < sizeof others / sizeof others[0]; ++i) {
+        const double meant = value * others[i].size;
+        const double size = fabs(meant);
+        const int is_toward_range = others[i].size < 1 ? is_above(&key->range, fabs(value))
+                                                       : is_below(&key->range, fabs(value));
+        if (key->unit == others[i].unit && is_toward_range && !is_below(&key->range, size) &&
+            !is_above(&key->range, size)) {
+            snprintf(text, size_of_text, "; was it meant in %s? write %.6g", others[i].meant,
+                     meant);
+            return;
+        }
     }
 }
 
 static int check_range(const key_spec *key, double value, const char *text, char *fault) {
     const key_range *range = &key->range;
     const double size = range->either_sign ? fabs(value) : value;
-    const int low = range->open_low ? size <= range->low : size < range->low;
-    const int high = range->open_high ? size >= range->high : size > range->high;
+    const int low = is_below(range, size);
+    const int high = is_above(range, size);
     const int broken = key->kind == KEY_COUNT && value != floor(value);
     char requirement[120];
     char slip[80];

@@ -278,6 +278,24 @@ static double judge_face_widths(const config *conf, double module) {
     return fmin(common, fmin(pinion, wheel));
 }
 
+/* Lengths that may be 0, below 0 or missing, in terms of another one. */
+static void judge_share(const config *conf, const char *key, double length, double scale) {
+    static const double possible[] = {2e-3, HUGE_VAL}, usual[] = {0.01, 3};
+
+    if (length != 0) {
+        (void)judge(conf, key, 1e3 * length, " mm", length < 0 ? -scale : scale, possible, usual,
+                    lengths, "next to nothing of the face width");
+    }
+}
+
+/* In terms of the reference diameter. */
+static void judge_bore(const config *conf, const char *key, double radius, double reference) {
+    static const double possible[] = {0.01, 2}, usual[] = {0.05, 1.5};
+
+    (void)judge(conf, key, 2e3 * radius, " mm", reference, possible, usual, lengths,
+                "out of proportion to the reference diameter");
+}
+
 /* In terms of the module. Narrower backlash presses, wider is none. */
 static void judge_backlash(const config *conf, double module) {
     static const double possible[] = {0.003, HUGE_VAL}, usual[] = {0.003, 0.3};
@@ -352,6 +370,11 @@ static usual_gear judge_drawing(const config *conf) {
     judge_shift(conf, "gears.wheel_profile_shift", gears->wheel_profile_shift, usual.module);
     judge_racks(conf, usual.module);
     judge_backlash(conf, usual.module);
+
+    judge_share(conf, "gears.axial_offset_mm", gears->axial_offset, usual.face_width);
+    judge_share(conf, "gears.double_helical_gap_mm", conf->double_helical_gap, usual.face_width);
+    judge_bore(conf, "gears.pinion_bore_diameter_mm", conf->pinion_bore_radius, usual.diameter[0]);
+    judge_bore(conf, "gears.wheel_bore_diameter_mm", conf->wheel_bore_radius, usual.diameter[1]);
     return usual;
 }
 
@@ -382,6 +405,61 @@ static void judge_stiffness(const config *conf, const char *key, double stiffnes
                  stiffness * unit->size);
         }
     }
+}
+
+/* From plastics to hard metal; a number in psi is too close to one in GPa to be told. */
+static void judge_modulus(const config *conf, const char *key, double modulus) {
+    static const double possible[] = {0.05, 1300}, usual[] = {1, 700};
+    static const other_unit units[] = {{"in MPa", 1e-3}, {NULL, 0}};
+
+    (void)judge(conf, key, 1e-9 * modulus, " GPa", 1, possible, usual, units,
+                "which no gear is made of");
+}
+
+static void judge_oil(const config *conf) {
+    static const double possible[] = {0.5, HUGE_VAL}, usual[] = {2, 5000};
+    static const other_unit units[] = {{"in Pa s", 1e3}, {NULL, 0}};
+
+    (void)judge(conf, "mesh.oil_viscosity_mPas", 1e3 * conf->oil_viscosity, " mPa s", 1, possible,
+                usual, units, "thinner than any oil");
+}
+
+static void judge_roughness(const config *conf) {
+    static const double possible[] = {5e-3, 50}, usual[] = {0.05, 20};
+    static const other_unit units[] = {{"in mm", 1e3}, {"in nm", 1e-3}, {NULL, 0}};
+
+    (void)judge(conf, "mesh.roughness_Ra_um", 1e6 * conf->roughness, " um", 1, possible, usual,
+                units, "far from that of flanks");
+}
+
+/* Moved axes: less than a tenth of a um changes nothing. */
+static void judge_shift_of_axis(const config *conf, const char *key, double shift) {
+    static const double possible[] = {0.1, HUGE_VAL}, usual[] = {1, 5000};
+    static const other_unit units[] = {{"in mm", 1e3}, {"in metres", 1e6}, {NULL, 0}};
+
+    if (shift != 0) {
+        (void)judge(conf, key, 1e6 * shift, " um", shift < 0 ? -1 : 1, possible, usual, units,
+                    "which moves no axis");
+    }
+}
+
+/* Tilted axes, in mrad. */
+static void judge_tilt(const config *conf, const char *key, double tilt) {
+    static const double possible[] = {1e-3, HUGE_VAL}, usual[] = {5e-3, 20};
+    static const other_unit units[] = {{"in radians", 1e3}, {NULL, 0}};
+
+    if (tilt != 0) {
+        (void)judge(conf, key, 1e3 * tilt, " mrad", tilt < 0 ? -1 : 1, possible, usual, units,
+                    "which tilts no axis");
+    }
+}
+
+static void judge_pose(const config *conf) {
+    judge_shift_of_axis(conf, "pose.center_distance_change_um", conf->pose.center_distance_change);
+    judge_shift_of_axis(conf, "pose.offset_um", conf->pose.offset);
+    judge_shift_of_axis(conf, "pose.axial_shift_um", conf->pose.axial_shift);
+    judge_tilt(conf, "pose.skew_mrad", conf->pose.skew);
+    judge_tilt(conf, "pose.inclination_mrad", conf->pose.inclination);
 }
 
 /* In terms of a steel disc with the reference diameter and the face width; shafts and machines have more. */
@@ -528,6 +606,12 @@ static void judge_modifications(const config *conf, const usual_gear *usual) {
 static void judge_run(const config *conf, const usual_gear *usual) {
     judge_stiffness(conf, "mesh.stiffness_N_per_m", conf->stiffness, usual);
     judge_stiffness(conf, "mesh.simple_stiffness_N_per_m", conf->simple_stiffness, usual);
+    judge_modulus(conf, "mesh.pinion_youngs_modulus_GPa", conf->pinion_youngs_modulus);
+    judge_modulus(conf, "mesh.wheel_youngs_modulus_GPa", conf->wheel_youngs_modulus);
+    judge_oil(conf);
+    judge_roughness(conf);
+    judge_pose(conf);
+
     const double pinion =
         judge_inertia(conf, "bodies.pinion_inertia_kg_m2", conf->pinion_inertia, usual, 0);
     const double wheel =

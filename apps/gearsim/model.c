@@ -3,6 +3,7 @@
 #include "model.h"
 #include "gear_contact.h"
 
+#include <float.h>
 #include <math.h>
 #include <string.h>
 
@@ -665,6 +666,11 @@ static double jump_share(const gear_model *model) {
     return model->jumps ? share_of_jumps : 1.0;
 }
 
+/* A tolerance below what the digits of the value hold would stop the solver. */
+static double weight_of(double tolerance, double value) {
+    return 1.0 / fmax(tolerance, 4.0 * DBL_EPSILON * fabs(value));
+}
+
 void model_error_weights(const gear_model *model, double relative_tolerance,
                          double absolute_tolerance, const double state[], double weights[]) {
     const double share = jump_share(model);
@@ -675,13 +681,17 @@ void model_error_weights(const gear_model *model, double relative_tolerance,
     /* Relative to the penetration: half the backlash is a choice of where zero is. */
     const double depth = fmax(fabs(state[STATE_OFFSET]) - clearance, 0.0);
 
-    weights[STATE_OFFSET] = 1.0 / (share * relative_tolerance * depth + offset_tolerance);
+    weights[STATE_OFFSET] =
+        weight_of(share * relative_tolerance * depth + offset_tolerance, state[STATE_OFFSET]);
     weights[STATE_OFFSET_RATE] =
-        1.0 / (share * relative_tolerance * fabs(state[STATE_OFFSET_RATE]) + speed_tolerance);
+        weight_of(share * relative_tolerance * fabs(state[STATE_OFFSET_RATE]) + speed_tolerance,
+                  state[STATE_OFFSET_RATE]);
 
     /* The angle grows without end; a tolerance relative to it would soon be wider than a tooth. */
     if (model->states == STATES_MAX) {
-        weights[STATE_PINION_ARC] = 1.0 / (arc_tolerance_factor * offset_tolerance);
-        weights[STATE_PINION_SPEED] = 1.0 / (arc_tolerance_factor * speed_tolerance);
+        weights[STATE_PINION_ARC] =
+            weight_of(arc_tolerance_factor * offset_tolerance, state[STATE_PINION_ARC]);
+        weights[STATE_PINION_SPEED] =
+            weight_of(arc_tolerance_factor * speed_tolerance, state[STATE_PINION_SPEED]);
     }
 }
