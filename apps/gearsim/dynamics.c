@@ -26,8 +26,10 @@ typedef struct dynamic_run {
     decimator *filter;
     output_file *output;
     progress progress;
-    int factor; /* samples per row */
-    int is_wanted[COLUMNS_MAX];
+    int factor;              /* samples per row */
+    int column_count;        /* that are asked for, */
+    int column[COLUMNS_MAX]; /* which of dynamic_columns they are, */
+    double (*show[COLUMNS_MAX])(const dynamic_sample *sample); /* and what is taken of a sample */
     enum sample_kind mean_kind; /* of the columns that show means, SAMPLE_PLAIN: none does */
     int is_started;             /* there is a sample before */
     double edge_time;           /* where the mean of the sample before has its end or its middle, */
@@ -45,7 +47,7 @@ typedef struct dynamic_run {
     double rows;                  /* number of rows, a whole number */
     double past_stop; /* +1 or -1: the stop speed is reached from below, from above; 0 = none */
     dynamic_sample sample;
-    double values[COLUMNS_MAX]; /* of the sample */
+    double values[COLUMNS_MAX]; /* of the sample, of the columns asked for */
     char why[640];              /* the run ended early */
 } dynamic_run;
 
@@ -347,10 +349,9 @@ static int take_sample(dynamic_run *run, double row, int i) {
     }
     run->is_started = 1;
 
-    for (int k = 0; k < dynamic_column_count; ++k) {
-        const dynamic_column *column = &dynamic_columns[k];
-        if (run->is_wanted[k] && (of_row || column->is_filtered)) {
-            run->values[k] = (takes_mean(run, column) ? column->mean : column->value)(&run->sample);
+    for (int k = 0; k < run->column_count; ++k) {
+        if (of_row || dynamic_columns[run->column[k]].is_filtered) {
+            run->values[k] = run->show[k](&run->sample);
         }
     }
     return 0;
@@ -399,8 +400,11 @@ static int take_row_period(dynamic_run *run, double row) {
         /* The rows that lag behind by the filter's delay are complete with their period's first sample. */
         const double complete = row - (double)(decimator_delay(run->filter) / run->factor);
         if (i == 0 && complete >= 0.0) {
-            double values[COLUMNS_MAX];
-            decimator_values(run->filter, values);
+            double shown[COLUMNS_MAX], values[COLUMNS_MAX];
+            decimator_values(run->filter, shown);
+            for (int k = 0; k < run->column_count; ++k) {
+                values[run->column[k]] = shown[k];
+            }
             if (output_row(run->output, values) != 0) {
                 snprintf(run->why, sizeof run->why, "the disk took no more at t = %.9g s",
                          run->sample.time);
@@ -476,21 +480,24 @@ static int start_filter(dynamic_run *run) {
     int any = 0;
 
     for (int i = 0; i < dynamic_column_count; ++i) {
-        run->is_wanted[i] = output_wants(run->output, i);
-        any |= run->is_wanted[i] && dynamic_columns[i].is_filtered;
+        if (output_wants(run->output, i)) {
+            run->column[run->column_count++] = i;
+            any |= dynamic_columns[i].is_filtered;
+        }
     }
     run->factor = any ? run->conf->oversampling : 1;
 
-    for (int i = 0; i < dynamic_column_count; ++i) {
-        const dynamic_column *column = &dynamic_columns[i];
+    for (int k = 0; k < run->column_count; ++k) {
+        const dynamic_column *column = &dynamic_columns[run->column[k]];
 
-        kinds[i] = run->is_wanted[i] ? kind_of(run, column) : SAMPLE_PLAIN;
-        if (kinds[i] == SAMPLE_BOX || kinds[i] == SAMPLE_HAT) {
-            run->mean_kind = kinds[i];
-        } else if (run->is_wanted[i]) {
+        kinds[k] = kind_of(run, column);
+        run->show[k] = takes_mean(run, column) ? column->mean : column->value;
+        if (kinds[k] == SAMPLE_BOX || kinds[k] == SAMPLE_HAT) {
+            run->mean_kind = kinds[k];
+        } else {
             run->row_need = larger(run->row_need, column->need);
         }
-        if (kinds[i] == SAMPLE_VALUES) {
+        if (kinds[k] == SAMPLE_VALUES) {
             run->sample_need = larger(run->sample_need, column->need);
         }
     }
@@ -500,7 +507,7 @@ static int start_filter(dynamic_run *run) {
         run->row_need = larger(run->row_need, NEEDS_MOTION);
         run->past_stop = run->conf->stop_speed >= run->conf->start_speed ? 1.0 : -1.0;
     }
-    run->filter = decimator_create(run->factor, dynamic_column_count, kinds);
+    run->filter = decimator_create(run->factor, run->column_count, kinds);
     return run->filter != NULL ? 0 : message_no_memory(run->conf->messages);
 }
 

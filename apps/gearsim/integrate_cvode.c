@@ -22,9 +22,10 @@ typedef struct cvode_memory {
     void *cvode;
     SUNNonlinearSolver corrector;
     N_Vector scratch;
-    int order; /* of the polynomial below, -1: that of the last step has not been read */
-    double polynomial[ORDERS + 1]
-                     [STATES_MAX]; /* over the time from the end of the step (1, 1/s, ...) */
+    N_Vector reader; /* takes CVODE's polynomial down, see read_polynomial() */
+    int order;       /* of the polynomial below, -1: that of the last step has not been read */
+    double length;   /* of the step (s) */
+    double polynomial[ORDERS + 1][STATES_MAX]; /* over the share of the step from its end on */
 } cvode_memory;
 
 static int derivative(sunrealtype time, N_Vector state, N_Vector result, void *data) {
@@ -35,6 +36,19 @@ static int derivative(sunrealtype time, N_Vector state, N_Vector result, void *d
                                   model_derivative_and_tangent(solver->model, seen,
                                                                NV_DATA_S(state), NV_DATA_S(result),
                                                                &solver->tangent, &solver->contact));
+}
+
+/* Operation of the reader: the coefficients come from the highest down. NOLINTNEXTLINE(readability-non-const-parameter) */
+static int take_down(int count, sunrealtype *factors, N_Vector *coefficients, N_Vector reader) {
+    cvode_memory *memory = reader->content;
+    (void)factors;
+
+    for (int k = 0; k < count; ++k) {
+        memcpy(memory->polynomial[count - 1 - k], NV_DATA_S(coefficients[k]),
+               (size_t)NV_LENGTH_S(coefficients[k]) * sizeof memory->polynomial[0][0]);
+    }
+    memory->order = count - 1;
+    return 0;
 }
 
 static int set_up(integrator *solver, cvode_memory *memory) {
@@ -66,9 +80,12 @@ static int create(integrator *solver) {
     }
     memory->order = -1;
     memory->scratch = N_VClone(solver->state);
-    if (memory->scratch == NULL) {
+    memory->reader = N_VNewEmpty(solver->context);
+    if (memory->scratch == NULL || memory->reader == NULL) {
         return -1;
     }
+    memory->reader->content = memory;
+    memory->reader->ops->nvlinearcombination = take_down;
     memory->corrector = corrector_create(solver, memory->scratch);
     return memory->corrector != NULL ? set_up(solver, memory) : -1;
 }
@@ -86,6 +103,7 @@ static void destroy(integrator *solver) {
     if (memory->scratch != NULL) {
         N_VDestroy(memory->scratch);
     }
+    N_VFreeEmpty(memory->reader);
     free(memory);
 }
 
@@ -105,39 +123,31 @@ static int restart(integrator *solver) {
     return CVodeReInit(memory->cvode, solver->time, solver->state);
 }
 
-/* Its derivatives at the end of the step, over the factorials. */
+/*
+ * CVODE's polynomial, read in one call: the value at the end of the step is a sum over its coefficients, which our vector
+ * gets to see (take_down()). By derivatives it would take a call for each of them.
+ */
 static int read_polynomial(const integrator *solver, cvode_memory *memory) {
-    const int states = solver->model->states;
-    double factorial = 1.0;
-    int order = 0;
-
-    CVodeGetLastOrder(memory->cvode, &order);
-    for (int k = 0; k <= order; ++k) {
-        if (CVodeGetDky(memory->cvode, solver->time, k, memory->scratch) != CV_SUCCESS) {
-            return -1;
-        }
-        for (int i = 0; i < states; ++i) {
-            memory->polynomial[k][i] = NV_Ith_S(memory->scratch, i) / factorial;
-        }
-        factorial *= k + 1;
-    }
-    memory->order = order;
-    return 0;
+    return CVodeGetLastStep(memory->cvode, &memory->length) != CV_SUCCESS ||
+           CVodeGetDky(memory->cvode, solver->time, 0, memory->reader) != CV_SUCCESS ||
+           memory->order < 0;
 }
 
 static int interpolate(integrator *solver, double time, double state[]) {
     cvode_memory *memory = solver->memory;
-    const double since = time - solver->time;
 
     if (memory->order < 0 && read_polynomial(solver, memory) != 0) {
         return -1;
     }
-    for (int i = 0; i < solver->model->states; ++i) {
-        double value = memory->polynomial[memory->order][i];
-        for (int k = memory->order - 1; k >= 0; --k) {
-            value = memory->polynomial[k][i] + since * value;
+    const double share = (time - solver->time) / memory->length;
+    for (int i = 0; i < solver->model->states; i += 2) {
+        double first = 0.0, second = 0.0;
+        for (int k = memory->order; k >= 0; --k) {
+            first = memory->polynomial[k][i] + share * first;
+            second = memory->polynomial[k][i + 1] + share * second;
         }
-        state[i] = value;
+        state[i] = first;
+        state[i + 1] = second;
     }
     return 0;
 }

@@ -87,16 +87,14 @@ double load_by_speed(const load_signal *load, double wheel_speed) {
 
 /* Integral of weight times cubic over the part [from, to] of a piece, in its own s; the weight is w[0] + w[1] s. */
 static double piece_integral(const double c[4], const double w[2], double from, double to) {
-    double from_power = 1.0, to_power = 1.0, sum = 0.0;
+    const double d[5] = {w[0] * c[0], (w[0] * c[1] + w[1] * c[0]) * (1.0 / 2.0),
+                         (w[0] * c[2] + w[1] * c[1]) * (1.0 / 3.0),
+                         (w[0] * c[3] + w[1] * c[2]) * (1.0 / 4.0), w[1] * c[3] * (1.0 / 5.0)};
+    const double first =
+        from * (d[0] + from * (d[1] + from * (d[2] + from * (d[3] + from * d[4]))));
+    const double last = to * (d[0] + to * (d[1] + to * (d[2] + to * (d[3] + to * d[4]))));
 
-    for (int i = 0; i < 5; ++i) {
-        const double coefficient = (i < 4 ? w[0] * c[i] : 0.0) + (i > 0 ? w[1] * c[i - 1] : 0.0);
-
-        from_power *= from;
-        to_power *= to;
-        sum += coefficient * (to_power - from_power) / (i + 1);
-    }
-    return sum;
+    return last - first;
 }
 
 double load_noise_integral(const load_signal *load, double from, double to, double first_weight,

@@ -305,15 +305,26 @@ model_torques model_by_speeds(const gear_model *model, double pinion_speed, doub
 }
 
 /* What ripples over the pinion's own angle: a torque; a prescribed speed does not (N m). */
-static double drive_ripple(const gear_model *model, const gear_motion *motion) {
-    return model->states == STATES_MAX ? ripple_value(&model->drive.ripple, motion->pinion_angle)
-                                       : 0.0;
+static double drive_ripple(const gear_model *model, double angle) {
+    return model->states == STATES_MAX ? ripple_value(&model->drive.ripple, angle) : 0.0;
+}
+
+/* x'' that drive and pinion's drag cause at an angle and speed of the pinion (m/s2). */
+static double driven(const gear_model *model, double time, double angle, double speed) {
+    const double r_bp = model->gears->pair.pinion.base_radius;
+
+    return model->states == STATES_MAX
+               ? r_bp *
+                     (drive_torque(&model->drive, time) + drive_ripple(model, angle) -
+                      model->pinion_drag * speed) /
+                     model->pinion_inertia
+               : r_bp * drive_acceleration(&model->drive, time);
 }
 
 model_torques model_by_motion(const gear_model *model, const gear_motion *motion) {
     const double wheel_speed = model_wheel_speed(model, motion);
     const model_torques torques = {
-        .drive = model->torque_to_pinion * drive_ripple(model, motion),
+        .drive = model->torque_to_pinion * drive_ripple(model, motion->pinion_angle),
         .load = load_at_speed(&model->load, wheel_speed) - model->load.per_speed * wheel_speed +
                 ripple_value(&model->load.ripple, motion->pinion_angle),
     };
@@ -340,14 +351,8 @@ double model_smooth_time(const gear_model *model, const gear_motion *motion) {
 
 model_torques model_applied(const gear_model *model, double time, const gear_motion *motion) {
     const double wheel_speed = model_wheel_speed(model, motion);
-    const double r_bp = model->gears->pair.pinion.base_radius;
     const model_torques torques = {
-        .drive = model->states == STATES_MAX
-                     ? r_bp *
-                           (drive_torque(&model->drive, time) + drive_ripple(model, motion) -
-                            model->pinion_drag * motion->pinion_speed) /
-                           model->pinion_inertia
-                     : r_bp * drive_acceleration(&model->drive, time),
+        .drive = driven(model, time, motion->pinion_angle, motion->pinion_speed),
         .load = load_steady(&model->load, time) +
                 ripple_value(&model->load.ripple, motion->pinion_angle) +
                 load_at_speed(&model->load, wheel_speed),
@@ -606,10 +611,10 @@ static double turning_step(const gear_model *model, double time, const double st
         return 0.0;
     }
 
-    const gear_motion motion = model_motion(model, time, state);
-    const model_torques torques = model_applied(model, time, &motion);
-    const double speed = fabs(motion.pinion_speed);
-    const double acceleration = fabs(torques.drive) / pinion->base_radius;
+    const drive_motion motion = pinion_motion(model, time, state);
+    const double speed = fabs(motion.speed);
+    const double acceleration =
+        fabs(driven(model, time, motion.angle, motion.speed)) / pinion->base_radius;
     const double reach = speed + sqrt(speed * speed + 2.0 * acceleration * angle);
 
     return reach > 0.0 ? 2.0 * angle / reach : 0.0;

@@ -19,7 +19,7 @@
  * would swallow the whole penetration.
  *
  * With a noisy load the state is not x but u = x - p, where p(t) is what the noise does to a linear mesh,
- * known in closed form (response.h). As p'' = noise - 2 zeta w0 p' - w0^2 p,
+ * known as a series (response.h). As p'' = noise - 2 zeta w0 p' - w0^2 p,
  *
  *     u'' = a(t) without the noise + 2 zeta w0 p' + w0^2 p - mobility F(u + p, u' + p').
  */

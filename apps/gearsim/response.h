@@ -2,13 +2,13 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 
 /*
- * Response p(t) of the linear mesh to the noise of the load, exact:
+ * Response p(t) of the linear mesh to the noise of the load, to rounding:
  *
  *     p'' + 2 zeta w0 p' + w0^2 p = gain * noise(t),    p(0) = p'(0) = 0.
  *
  * The noise changes much faster than anything else in a run; a solver that has to follow it takes several
- * steps from each noise value to the next. It is a cubic between its values, though, so that p is known
- * there in closed form. The model takes it off x and leaves the solver the rest, x - p, which moves at
+ * steps from each noise value to the next. It is a cubic between its values, though, so that p is a quick
+ * power series there. The model takes it off x and leaves the solver the rest, x - p, which moves at
  * the pace of the teeth. Nothing is neglected: what p assumes of the mesh is put back into the equation
  * of motion, so that w0 and zeta decide on the effort alone.
  */
@@ -29,8 +29,7 @@ response *response_create(const load_signal *load, double gain, double frequency
                           double damping_ratio);
 void response_free(response *linear);
 
-/* Whether the closed form is worth it and good to double precision: there is noise, and its values are
- * not so dense that the terms of the closed form cancel. */
+/* Whether it is worth it: there is noise, and its values are not denser than the steps of a solver that follows it. */
 int response_is_useful(const load_signal *load, double frequency);
 
 /* Cheap forward in time, and some hundred noise values back from the latest time asked for; farther back
