@@ -14,7 +14,7 @@
 #include "hertz.h"
 #include "internal.h"
 
-/** A pair as the reference cases give it, [0] the pinion; teeth may be a real number. */
+/** A pair as the reference cases give it, [0] the pinion; teeth may be a real number, and all of a ring counts below 0. */
 typedef struct elastic_gear {
     double normal_module, pressure_angle, helix_angle, center_distance, face_width;
     double teeth[2], shift[2], tip_radius[2];
@@ -36,12 +36,15 @@ GM_TEST_UNUSED static void elastic_gear_derive(elastic_gear *g) {
     double tip[2];
     for (int k = 0; k < 2; ++k) {
         g->base_radius[k] = 0.5 * g->teeth[k] * module * cos(transverse);
-        tip[k] = sqrt(g->tip_radius[k] * g->tip_radius[k] - g->base_radius[k] * g->base_radius[k]);
+        tip[k] = copysign(
+            sqrt(g->tip_radius[k] * g->tip_radius[k] - g->base_radius[k] * g->base_radius[k]),
+            g->teeth[k]);
     }
     const double sum = g->base_radius[0] + g->base_radius[1];
-    g->line_of_action = sqrt(g->center_distance * g->center_distance - sum * sum);
+    g->line_of_action =
+        copysign(sqrt(g->center_distance * g->center_distance - sum * sum), g->teeth[1]);
     g->path_start = fmax(0.0, g->line_of_action - tip[1]);
-    g->path_end = fmin(g->line_of_action, tip[0]);
+    g->path_end = g->teeth[1] > 0.0 ? fmin(g->line_of_action, tip[0]) : tip[0];
 }
 
 /** Deviations w(line, rho_p, z): smooth, and one kink of a tip relief. */

@@ -94,6 +94,23 @@ static gm_pair_params nrel3(void) {
     return p;
 }
 
+/* Planet and ring of stage 2 of the NREL 5 MW gearbox, with a helix. */
+static gm_pair_params ring(void) {
+    gm_pair_params p;
+    gm_pair_params_default(&p);
+    p.pinion_teeth = 36;
+    p.wheel_teeth = -93;
+    p.normal_module = 21e-3;
+    p.normal_pressure_angle = 20.0 * DEGREE;
+    p.helix_angle = 8.0 * DEGREE;
+    p.face_width = 400e-3;
+    p.center_distance = 589.74e-3;
+    p.pinion_profile_shift = 0.5039;
+    p.wheel_profile_shift = 0.1171;
+    p.pinion_tip_alteration = -0.08338;
+    return p;
+}
+
 /* x less half the backlash, force, dF/dx and dU/do of the specification's table. */
 static void check_values_are_met(void) {
     const struct {
@@ -160,7 +177,7 @@ static gm_mesh_result evaluate(elastic_mesh *m, const gm_state *state, int wante
 }
 
 /* Some pairs, posed and not, with and without flanks; k counts them. */
-enum { VARIANTS = 12 };
+enum { VARIANTS = 16 };
 typedef struct variant {
     elastic_mesh mesh;
     random_flanks flanks[2];
@@ -169,8 +186,8 @@ typedef struct variant {
 
 static void variant_make(variant *v, int k) {
     uint64_t seed = 7u + (uint64_t)k;
-    const gm_pair_params gears[3] = {spur62(), paper(), nrel3()};
-    gm_pair_params params = gears[k % 3];
+    const gm_pair_params gears[4] = {spur62(), paper(), nrel3(), ring()};
+    gm_pair_params params = gears[k % 4];
     gm_mesh_params law = elastic_law();
     gm_pair pair;
     memset(v, 0, sizeof *v);
@@ -178,19 +195,19 @@ static void variant_make(variant *v, int k) {
     params.backlash = 20e-6;
     GM_ASSERT_INT(gm_pair_init(&pair, &params), GM_OK);
 
-    v->has_flanks = k >= 3;
+    v->has_flanks = k >= 4;
     for (int gear = 0; v->has_flanks && gear < 2; ++gear) {
         random_flanks_make(&v->flanks[gear], &seed, &pair, gear, 1e-3 * params.normal_module);
     }
-    if (k >= 6) {
+    if (k >= 8) {
         law.pose.center_distance_change = 5e-3 * params.normal_module;
         law.pose.offset = -3e-3 * params.normal_module;
-        law.pose.axial_shift = k >= 9 ? 0.05 * params.face_width : 0.0;
+        law.pose.axial_shift = k >= 12 ? 0.05 * params.face_width : 0.0;
     }
-    if (k >= 9) {
+    if (k >= 12) {
         law.pose.skew = 1e-4;
         law.pose.inclination = -7e-5;
-        law.wheel_bore_radius = 0.5 * pair.wheel.root_radius;
+        law.pinion_bore_radius = 0.5 * pair.pinion.root_radius;
     }
     GM_ASSERT_INT(make(&v->mesh, &params, &law, v->has_flanks ? v->flanks[0].flanks : NULL,
                        v->has_flanks ? v->flanks[1].flanks : NULL),
@@ -302,7 +319,7 @@ static void roll_at_held_approach_is_differentiated_exactly(void) {
             /* Not where a grid line or the end of a line is passed within the step. */
             const double left = (force[1] - force[0]) / step;
             const double right = (force[2] - force[1]) / step;
-            if (fabs(right - left) < 4e-3 * fabs(slope)) {
+            if (fabs(right - left) < 6e-4 * fabs(slope)) {
                 GM_ASSERT_ABS(slope, 0.5 * (left + right), 3e-4 * fabs(slope));
                 ++compared;
             }
@@ -913,24 +930,20 @@ static void bad_input_is_refused(void) {
 
     /* Teeth that have no fillet, a bore in the rim, and few teeth that are undercut. */
     gm_pair_params deep = spur62();
-    gm_pair_params few = spur62(), ring = spur62();
+    gm_pair_params few = spur62(), short_ring = ring();
     deep.wheel_rack_dedendum = 1.75;
     few.pinion_teeth = 12;
     few.center_distance = 74e-3;
-    ring.pinion_teeth = 36;
-    ring.wheel_teeth = -93;
-    ring.normal_module = 21e-3;
-    ring.center_distance = 584e-3;
-    ring.pinion_profile_shift = 0.5039;
-    ring.wheel_profile_shift = 0.1171;
-    ring.pinion_tip_alteration = -0.08338;
-    const gm_pair_params cases[4] = {deep, gears, few, ring};
-    const char *const fields[4] = {"wheel_rack_fillet_radius", "pinion_bore_radius",
-                                   "pinion_profile_shift", "wheel_teeth"};
-    for (int k = 0; k < 4; ++k) {
+    short_ring.wheel_rack_dedendum = 0.6;
+    const gm_pair_params cases[] = {deep, gears, few, ring(), short_ring};
+    const char *const fields[] = {"wheel_rack_fillet_radius", "pinion_bore_radius",
+                                  "pinion_profile_shift", "wheel_bore_radius",
+                                  "wheel_start_radius"};
+    for (int k = 0; k < 5; ++k) {
         const char *requirement;
         law = elastic_law();
         law.pinion_bore_radius = k == 1 ? 61e-3 : (double)NAN;
+        law.wheel_bore_radius = k == 3 ? 61e-3 : (double)NAN;
         GM_ASSERT_INT(gm_pair_init(&pair, &cases[k]), GM_OK);
         const size_t room_of_case = gm_mesh_size(&law, &pair);
         void *const memory_of_case = malloc(room_of_case);

@@ -194,7 +194,10 @@ class Elastic(unittest.TestCase):
         ring = {"gears": SPUR62["gears"] | {"pinion_teeth": 36, "wheel_teeth": -93, "normal_module_mm": 21,
                                             "center_distance_mm": 584, "pinion_profile_shift": 0.5039,
                                             "wheel_profile_shift": 0.1171, "pinion_tip_alteration": -0.08338}}
-        self.refused(SPUR62 | ring, "gears.wheel_teeth: must be external teeth")
+        for gear, key, value, text in (("wheel", "bore_diameter_mm", 1500, "must be none: a ring has no bore below its teeth"),
+                                       ("wheel", "rack_fillet_radius", 0.7, "must be a rounding that fits into the spaces")):
+            gears = ring["gears"] | {f"{gear}_{key}": value}
+            self.refused(SPUR62 | {"gears": gears}, f"run.ini:", f"gears.{gear}_{key}: {text}", f"(got {value})")
         for key, value in (("pinion_youngs_modulus_GPa", 0), ("wheel_youngs_modulus_GPa", "1e7"),
                            ("pinion_poisson_ratio", 0.5), ("stations", 1), ("stations", 98)):
             self.refused(SPUR62 | {"mesh": {key: value}}, f"run.ini:", f"mesh.{key}: must be")
@@ -202,6 +205,21 @@ class Elastic(unittest.TestCase):
         # A listing of the drawing goes without.
         self.write(deep)
         self.assertEqual(self.gearsim("--geometry").returncode, 0)
+
+    def test_ring_is_computed_with_a_warning(self):
+        """A ring of very many teeth is the rack of the same pinion, as a wheel is, but for the foot under 60 degrees."""
+        error = {}
+        for teeth in (-4000, 4000):
+            ring = {"pinion_teeth": 36, "wheel_teeth": teeth, "normal_module_mm": 4, "pinion_profile_shift": 0.3,
+                    "wheel_profile_shift": -0.3, "wheel_tip_alteration": -0.3, "center_distance_mm": 2 * abs(36 + teeth), "face_width_mm": 40}
+            gears = SPUR62 | {"gears": SPUR62["gears"] | ring, "load": {"mean_Nm": 300 * 40 * 8 * math.cos(math.radians(20))}}
+            self.write(gears)
+            result = subprocess.run([GEARSIM, "run.ini"], cwd=self.folder, capture_output=True, text=True, check=False)
+            self.assertEqual(result.returncode, 0, result.stderr)
+            self.assertEqual("run.ini:3: gears.wheel_teeth: warning: the elastic law of a ring is unmeasured" in result.stderr,
+                             teeth < 0, result.stderr)
+            error[teeth] = [-float(row["te_um"]) for row in self.table("run.csv")]
+        self.assertTrue(all(1 < a / b < 1.04 for a, b in zip(error[-4000], error[4000])))
 
     def test_corner_contact_is_of_elastic_teeth(self):
         self.rows(SPUR62 | {"mesh": {"corner_contact": "on"}})

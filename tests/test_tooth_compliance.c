@@ -77,14 +77,49 @@ static void check_values_of_helical_gears(void) {
     check_tooth(&params, cosine, 15.58798808, 166.0667977, pinion, 1);
 }
 
+/* The circle that touches the root circle of a ring from within, and its flank: moved along until no point is closer. */
+typedef struct ring_circle {
+    double x, y;
+} ring_circle;
+
+static ring_circle circle_in_ring(const gmi_tooth *tooth, const gmi_tooth_params *params) {
+    const double round = params->rack_fillet_radius * params->normal_module;
+    const double depth = params->normal_module * (params->rack_dedendum - params->profile_shift);
+    const double radius = 0.5 * params->normal_module * fabs(params->virtual_teeth) + depth - round;
+    const double base = fabs(tooth->base_radius);
+    ring_circle circle = {0.0, 0.0};
+    double low = 0.0, high = fabs(tooth->half_pitch_angle);
+    for (int step = 0; step < 50; ++step) {
+        const double angle = 0.5 * (low + high);
+        circle.x = radius * sin(angle);
+        circle.y = -radius * cos(angle);
+        double nearest = 1.0;
+        for (int k = 0; k <= 2000; ++k) {
+            const double r = base * (0.3 + 0.4 * k / 2000.0), half = 0.5 * params->normal_thickness;
+            const double at_base =
+                half / (radius + round - depth) - tan(20.0 * degree) + 20.0 * degree;
+            const double polar = at_base + r / base - atan(r / base), away = hypot(base, r);
+            nearest =
+                fmin(nearest, hypot(away * sin(polar) - circle.x, -away * cos(polar) - circle.y));
+        }
+        if (nearest < round) {
+            low = angle;
+        } else {
+            high = angle;
+        }
+    }
+    return circle;
+}
+
 /* Against a sum of thin slices of the profile, found by another way: the rack's rounding as an envelope of circles. */
-static double slice_half_thickness(const gmi_tooth *tooth, double y) {
+static double slice_half_thickness(const gmi_tooth *tooth, const ring_circle *circle, double y) {
     /* Involute: radius and half angle of the point at height y, by bisection over the roll length. */
-    double low = tooth->fillet_roll_length, high = 3.0 * tooth->reference_radius;
+    const int is_ring = tooth->base_radius < 0.0;
+    double low = tooth->fillet_roll_length, high = is_ring ? 0.0 : 3.0 * tooth->reference_radius;
     double x = 0.0, at = 0.0;
     for (int k = 0; k < 100; ++k) {
         const double r = 0.5 * (low + high), tangent = r / tooth->base_radius;
-        const double radius = hypot(r, tooth->base_radius);
+        const double radius = copysign(hypot(r, tooth->base_radius), tooth->base_radius);
         const double angle = tooth->base_half_thickness - tangent + atan(tangent);
         x = radius * sin(angle);
         at = radius * cos(angle);
@@ -94,8 +129,13 @@ static double slice_half_thickness(const gmi_tooth *tooth, double y) {
             high = r;
         }
     }
-    if (fabs(at - y) < 1e-9 * y) {
+    if (fabs(at - y) < 1e-9 * fabs(y)) {
         return x;
+    }
+
+    if (is_ring) {
+        const double height = y - circle->y;
+        return circle->x - sqrt(tooth->rounding_radius * tooth->rounding_radius - height * height);
     }
 
     /* Fillet: the largest space that any position of the rounding's centre leaves, seen across the tooth. */
@@ -117,21 +157,23 @@ static double slice_half_thickness(const gmi_tooth *tooth, double y) {
 }
 
 static void bending_is_that_of_thin_slices(void) {
-    const double teeth[] = {20.0, 33.7, 62.0};
-    const double shifts[] = {0.1, 0.3, 0.0};
-    for (int g = 0; g < 3; ++g) {
+    const double teeth[] = {20.0, 33.7, 62.0, -93.3, -61.0};
+    const double shifts[] = {0.1, 0.3, 0.0, 0.1, -0.2};
+    for (int g = 0; g < 5; ++g) {
         enum { SLICES = 400 };
         const gmi_tooth_params params = params_of(teeth[g], 3.0, 20.0, shifts[g]);
         gmi_tooth tooth;
         gmi_tooth_load load;
         GM_ASSERT_INT(gmi_tooth_init(&tooth, &params), GMI_TOOTH_FINE);
-        const double roll = tooth.base_radius * (tan(20.0 * degree) + 0.06);
+        const ring_circle circle = circle_in_ring(&tooth, &params);
+        const double toward_tip = teeth[g] > 0.0 ? 0.06 : -0.03;
+        const double roll = tooth.base_radius * (tan(20.0 * degree) + toward_tip);
         GM_ASSERT_INT(gmi_tooth_load_at(&tooth, roll, &load), GMI_TOOTH_FINE);
         const double slice = (load.y - tooth.foot_y) / SLICES;
         double bending = 0.0, shear = 0.0;
         for (int k = 0; k < SLICES; ++k) {
             const double y = tooth.foot_y + slice * (k + 0.5);
-            const double chord = 2.0 * slice_half_thickness(&tooth, y), arm = load.y - y;
+            const double chord = 2.0 * slice_half_thickness(&tooth, &circle, y), arm = load.y - y;
             bending += slice * arm * arm / (chord * chord * chord);
             shear += slice / chord;
         }
@@ -146,13 +188,14 @@ static void bending_is_that_of_thin_slices(void) {
 
 /* The slope against differences, along the whole flank: also where y_p passes from the fillet to the involute and the foot. */
 static void slope_is_that_of_differences(void) {
-    const double teeth[] = {20.0, 62.0, 99.1, 400.0};
-    for (int g = 0; g < 4; ++g) {
-        const gmi_tooth_params params = params_of(teeth[g], 3.0, 20.0, 0.2);
+    const double teeth[] = {20.0, 62.0, 99.1, 400.0, -400.0, -93.3, -41.0};
+    for (int g = 0; g < 7; ++g) {
+        const gmi_tooth_params params = params_of(teeth[g], 3.0, 20.0, teeth[g] > 0.0 ? 0.2 : -0.1);
         gmi_tooth tooth;
         GM_ASSERT_INT(gmi_tooth_init(&tooth, &params), GMI_TOOTH_FINE);
         const double tip = tooth.reference_radius + 1.2 * params.normal_module;
-        const double end = sqrt(tip * tip - tooth.base_radius * tooth.base_radius);
+        const double squared = tip * tip - tooth.base_radius * tooth.base_radius;
+        const double end = copysign(sqrt(fmax(squared, 0.0)), teeth[g]);
         for (int k = 0; k <= 50; ++k) {
             const double roll =
                 tooth.fillet_roll_length + (end - tooth.fillet_roll_length) * k / 50.0;
@@ -167,6 +210,61 @@ static void slope_is_that_of_differences(void) {
                 (2.0 * step);
             GM_ASSERT_NEAR(at.slope, difference, 1e-6, 1e-4 * (at.bending + at.foundation));
             GM_ASSERT(at.bending + at.foundation > 0.0 && at.depth > 0.0);
+        }
+    }
+}
+
+/*
+ * Teeth of very large gears and rings are those of their rack: straight flanks, a circle as fillet, the foot under 30 and 60
+ * degrees. The frame: height over the reference line, half thickness.
+ */
+static double rack_half_thickness(double m_n, double alpha, double height) {
+    const double round = 0.38 * m_n, center = -(1.25 - 0.38) * m_n;
+    const double joint = center - round * sin(alpha);
+    const double at_joint = 0.25 * 3.14159265358979 * m_n - joint * tan(alpha);
+    const double below = height - center;
+    return height > joint ? 0.25 * 3.14159265358979 * m_n - height * tan(alpha)
+                          : at_joint + round * cos(alpha) - sqrt(round * round - below * below);
+}
+
+static void rack_is_the_limit_of_gears_and_rings(void) {
+    enum { SLICES = 4000 };
+    const double m_n = 3e-3, alpha = 20.0 * degree, nu = 0.3;
+    for (int g = 0; g < 2; ++g) {
+        const double teeth = g == 0 ? 1e6 : -1e6;
+        const gmi_tooth_params params = params_of(teeth, 3.0, 20.0, 0.0);
+        gmi_tooth tooth;
+        gmi_tooth_load load;
+        gm_test_context("%g teeth", teeth);
+        GM_ASSERT_INT(gmi_tooth_init(&tooth, &params), GMI_TOOTH_FINE);
+        const double foot_angle = (g == 0 ? 30.0 : 60.0) * degree;
+        const double foot = -(1.25 - 0.38) * m_n - 0.38 * m_n * sin(foot_angle);
+        const double chord = 2.0 * rack_half_thickness(m_n, alpha, foot);
+        GM_ASSERT_REL(tooth.foot_chord, chord, 1e-5);
+        for (int place = -2; place <= 4; ++place) {
+            /* The normal of the flank at this height meets the centre line. */
+            const double height = 0.2 * place * m_n;
+            const double top = height - rack_half_thickness(m_n, alpha, height) * tan(alpha);
+            const double slice = (top - foot) / SLICES;
+            double bending = 0.0, shear = 0.0;
+            for (int k = 0; k < SLICES; ++k) {
+                const double y = foot + slice * (k + 0.5);
+                const double whole = 2.0 * rack_half_thickness(m_n, alpha, y);
+                bending += slice * (top - y) * (top - y) / (whole * whole * whole);
+                shear += slice / whole;
+            }
+            const double square = tan(alpha) * tan(alpha), arm = (top - foot) / chord;
+            const double pi = 3.14159265358979;
+            const double k = (1.0 - nu * nu) / 206e9 / (1.0 + square);
+            const double in_tooth = 12.0 * bending + (2.4 / (1.0 - nu) + square) * shear;
+            const double in_foundation = 18.0 / pi * arm * arm +
+                                         2.0 * (1.0 - 2.0 * nu) / (1.0 - nu) * arm +
+                                         4.8 / pi * (1.0 + (1.0 - nu) / 2.4 * square);
+
+            const double roll = tooth.reference_radius * sin(alpha) + height / sin(alpha);
+            GM_ASSERT_INT(gmi_tooth_load_at(&tooth, roll, &load), GMI_TOOTH_FINE);
+            GM_ASSERT_REL(load.bending + load.foundation, k * (in_tooth + in_foundation), 2e-5);
+            GM_ASSERT_REL(load.depth, rack_half_thickness(m_n, alpha, height) / cos(alpha), 1e-5);
         }
     }
 }
@@ -215,6 +313,15 @@ static void teeth_without_compliance_are_refused(void) {
     params.rack_fillet_radius = 0.1;
     params.rack_dedendum = 1.0;
     GM_ASSERT_INT(gmi_tooth_init(&tooth, &params), GMI_TOOTH_FOOT);
+    params = params_of(
+        -80.0, 2.0, 20.0,
+        -0.2); /* no room for the rounding in a space, or it has no end below 60 degrees */
+    params.rack_fillet_radius = 0.6;
+    GM_ASSERT_INT(gmi_tooth_init(&tooth, &params), GMI_TOOTH_SPACE);
+    params = params_of(-10.0, 2.0, 44.0, 0.0);
+    params.rack_fillet_radius = 0.01;
+    params.normal_thickness = 0.5e-3;
+    GM_ASSERT_INT(gmi_tooth_init(&tooth, &params), GMI_TOOTH_FOOT);
     params = params_of(30.0, 2.0, 20.0, 0.0);
     GM_ASSERT_INT(gmi_tooth_init(&tooth, &params), GMI_TOOTH_FINE);
     GM_ASSERT_INT(gmi_tooth_load_at(&tooth, 40e-3, &load), GMI_TOOTH_POINTED);
@@ -225,6 +332,7 @@ int main(int argc, char **argv) {
                                     GM_TEST(check_values_of_helical_gears),
                                     GM_TEST(bending_is_that_of_thin_slices),
                                     GM_TEST(slope_is_that_of_differences),
+                                    GM_TEST(rack_is_the_limit_of_gears_and_rings),
                                     GM_TEST(compliance_has_no_scale),
                                     GM_TEST(backlash_makes_a_tooth_softer),
                                     GM_TEST(teeth_without_compliance_are_refused)};

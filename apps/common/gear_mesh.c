@@ -156,6 +156,19 @@ static void warn_of_light_load(const config *conf, const gear_mesh *mesh) {
     }
 }
 
+static int is_listing_without_law(const config *conf) {
+    return conf->purpose == CONFIG_FOR_GEOMETRY && config_text(conf, "mesh.law") == NULL;
+}
+
+/* Teeth of a ring are computed, but nothing has been held against them. */
+static void warn_of_ring(const config *conf, const gm_pair *pair) {
+    if (pair->wheel.sign < 0 && !is_listing_without_law(conf)) {
+        config_warn(conf, "gears.wheel_teeth",
+                    "the elastic law of a ring is unmeasured: its teeth are those of gears with a "
+                    "foot under 60 degrees, held against no finite elements; its rim is rigid");
+    }
+}
+
 /* Radius in modules at which the rounding of the rack's tip fills the space between its flanks. */
 static double largest_fillet_radius(const gm_pair *pair, const char *field) {
     const gm_gear *gear = strncmp(field, "pinion", 6) == 0 ? &pair->pinion : &pair->wheel;
@@ -163,10 +176,6 @@ static double largest_fillet_radius(const gm_pair *pair, const char *field) {
 
     return (0.25 * 3.14159265358979323846 - gear->rack_dedendum * tan(alpha)) * cos(alpha) /
            (1 - sin(alpha));
-}
-
-static int is_listing_without_law(const config *conf) {
-    return conf->purpose == CONFIG_FOR_GEOMETRY && config_text(conf, "mesh.law") == NULL;
 }
 
 /* Gears whose teeth have no elastic law; without a law asked for, a listing of the drawing goes without. */
@@ -188,7 +197,7 @@ static int refuse_elastic(const config *conf, const gm_pair *pair, const gm_mesh
                                                                 : config_key_of_field(field);
     const char *text = config_text(conf, key);
     char most[48] = "";
-    if (strstr(field, "fillet_radius") != NULL) {
+    if (strstr(field, "fillet_radius") != NULL && strstr(requirement, "rack's flanks") != NULL) {
         snprintf(most, sizeof most, ", here %.6g", largest_fillet_radius(pair, field));
     }
     config_complain(conf, key,
@@ -335,6 +344,9 @@ int gear_mesh_open(gear_mesh *mesh, const config *conf) {
     }
     if (conf->purpose != CONFIG_FOR_FLANKS) {
         drawing_warn(conf, &mesh->pair);
+        if (conf->law == LAW_ELASTIC) {
+            warn_of_ring(conf, &mesh->pair);
+        }
         if (conf->law == LAW_ISO6336) {
             warn_of_iso6336(conf, &mesh->pair);
             warn_of_light_load(conf, mesh);

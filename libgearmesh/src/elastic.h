@@ -2,8 +2,8 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 
 /*
- * Elastic teeth: force, stiffness, energy and load distribution of one flank side of an external pair. The model, its
- * sources and its validation: libgearmesh/docs/elastic.md.
+ * Elastic teeth: force, stiffness, energy and load distribution of one flank side. The model, its sources and its
+ * validation: libgearmesh/docs/elastic.md. A wheel that is a ring has teeth, roll lengths and line of action below 0.
  *
  * One evaluation has three steps, all in the workspace of the caller:
  *
@@ -63,8 +63,9 @@ enum {
  * ------------------------------------------------------------------------------------------- */
 
 typedef struct gmi_elastic_gear_params {
-    double teeth;         /* z, a real number: virtual gears of a normal section have fractions */
-    double profile_shift; /* x (1) */
+    double
+        teeth; /* z, a real number: virtual gears of a normal section have fractions; < 0: a ring */
+    double profile_shift;      /* x (1) */
     double normal_thickness;   /* s_n at the reference circle (m) */
     double rack_dedendum;      /* h_fP in modules */
     double rack_fillet_radius; /* rho_fP in modules */
@@ -80,7 +81,7 @@ typedef struct gmi_elastic_params {
     double helix_angle;           /* (rad), either sign */
     double base_helix_angle;      /* (rad) */
     double face_width;            /* on which the teeth stand together (m) */
-    double line_of_action;        /* T (m) */
+    double line_of_action;        /* T; < 0 in a ring (m) */
     int stations;                 /* 2 .. GMI_ELASTIC_STATIONS_MAX */
     int lines; /* lines at once, 1 .. GMI_ELASTIC_LINES_MAX, see gmi_elastic_lines() */
     gmi_elastic_gear_params gear[2]; /* pinion, wheel */

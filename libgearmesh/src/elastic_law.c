@@ -18,16 +18,18 @@ int gmi_elastic_lines(double total_contact_ratio) {
 }
 
 static int check(const gmi_elastic_params *params) {
-    int good = params->line_of_action > 0.0 && params->stations >= 2 &&
+    int good = params->line_of_action * params->gear[1].teeth > 0.0 && params->stations >= 2 &&
                params->stations <= GMI_ELASTIC_STATIONS_MAX && params->lines >= 1 &&
                params->lines <= GMI_ELASTIC_LINES_MAX;
     for (int g = 0; g < 2; ++g) {
         const gmi_elastic_gear_params *gear = &params->gear[g];
-        good = good && gear->youngs_modulus >= GMI_ELASTIC_LEAST_MODULUS &&
-               gear->youngs_modulus <= GMI_ELASTIC_LARGEST_MODULUS && gear->poisson_ratio >= 0.0 &&
-               gear->poisson_ratio <= GMI_ELASTIC_LARGEST_RATIO && gear->rack_dedendum > 0.0 &&
-               gear->rack_fillet_radius >= 0.0 && gear->rack_fillet_radius < gear->rack_dedendum &&
-               gear->start_roll_length >= 0.0 && gear->tip_roll_length > gear->start_roll_length;
+        good =
+            good && gear->youngs_modulus >= GMI_ELASTIC_LEAST_MODULUS &&
+            gear->youngs_modulus <= GMI_ELASTIC_LARGEST_MODULUS && gear->poisson_ratio >= 0.0 &&
+            gear->poisson_ratio <= GMI_ELASTIC_LARGEST_RATIO && gear->rack_dedendum > 0.0 &&
+            gear->rack_fillet_radius >= 0.0 && gear->rack_fillet_radius < gear->rack_dedendum &&
+            (gear->teeth < 0.0 ? gear->tip_roll_length <= 0.0 : gear->start_roll_length >= 0.0) &&
+            gear->tip_roll_length > gear->start_roll_length;
     }
     return good;
 }
@@ -245,8 +247,8 @@ int gmi_elastic_init(gmi_elastic *law, const gmi_elastic_params *params,
         const gmi_tooth_params data = tooth_params(params, gear);
         *wheel = g;
         *fault = gmi_tooth_init(&pair.tooth[g], &data);
-        if (*fault == GMI_TOOTH_FINE &&
-            contact_start[g] < cosine * pair.tooth[g].fillet_roll_length * (1.0 - 1e-9)) {
+        const double fillet_end = cosine * pair.tooth[g].fillet_roll_length;
+        if (*fault == GMI_TOOTH_FINE && contact_start[g] < fillet_end - 1e-9 * fabs(fillet_end)) {
             *fault = GMI_TOOTH_CONTACT;
         }
         if (*fault == GMI_TOOTH_FINE) {

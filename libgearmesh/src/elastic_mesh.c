@@ -102,7 +102,7 @@ size_t gmi_elastic_mesh_size(const gm_mesh_params *params, const gm_pair *pair) 
 static gmi_elastic_gear_params gear_params(const gm_gear *gear, const gmi_engagement *at, int role,
                                            double youngs_modulus, double poisson_ratio) {
     const gmi_elastic_gear_params params = {
-        .teeth = (double)gear->teeth,
+        .teeth = gear->sign * (double)gear->teeth,
         .profile_shift = gear->profile_shift,
         .normal_thickness = gear->normal_thickness,
         .rack_dedendum = gear->rack_dedendum,
@@ -110,7 +110,7 @@ static gmi_elastic_gear_params gear_params(const gm_gear *gear, const gmi_engage
         .youngs_modulus = youngs_modulus,
         .poisson_ratio = poisson_ratio,
         .start_roll_length = at->start_roll_length[role],
-        .tip_roll_length = gear->tip_roll_length,
+        .tip_roll_length = gear->sign * gear->tip_roll_length,
     };
     return params;
 }
@@ -135,16 +135,18 @@ static void explain(int fault, int role, const char **field, const char **requir
         [GMI_TOOTH_FOOT] = {"pinion_rack_fillet_radius", "wheel_rack_fillet_radius"},
         [GMI_TOOTH_CONTACT] = {"pinion_start_radius", "wheel_start_radius"},
         [GMI_TOOTH_POINTED] = {"pinion_tip_radius", "wheel_tip_radius"},
+        [GMI_TOOTH_SPACE] = {"pinion_rack_fillet_radius", "wheel_rack_fillet_radius"},
     };
     static const char *const requirements[] = {
         [GMI_TOOTH_FINE] = "teeth that give way by more than the rim under them",
         [GMI_TOOTH_FILLET] = "a rounding that fits between the rack's flanks: up to "
                              "(pi/4 - h_fP tan(alpha_n)) cos(alpha_n) / (1 - sin(alpha_n))",
         [GMI_TOOTH_UNDERCUT] = "a shift that leaves the teeth without undercut",
-        [GMI_TOOTH_FOOT] = "a rounding with a tangent of 30 degrees at the foot",
+        [GMI_TOOTH_FOOT] = "a rounding with a tangent of 30 degrees (ring: 60) at the foot",
         [GMI_TOOTH_CONTACT] = "contact above the end of the root fillet: a deeper rack, or less "
                               "addendum of the mate",
         [GMI_TOOTH_POINTED] = "a tip below the point where the flanks meet",
+        [GMI_TOOTH_SPACE] = "a rounding that fits into the spaces of the ring",
     };
     (void)refuse(fields[fault][role], requirements[fault], field, requirement);
 }
@@ -178,6 +180,10 @@ static int is_given_well(const gm_mesh_params *params, const gm_pair *pair, cons
                   {"wheel_bore_radius", "wheel_tooth_stiffness", &pair->wheel,
                    params->wheel_bore_radius, params->wheel_tooth_stiffness}};
     for (int role = GM_PINION; role <= GM_WHEEL; ++role) {
+        if (given[role].gear->sign < 0.0 && !isnan(given[role].bore)) {
+            return refuse(given[role].bore_field, "none: a ring has no bore below its teeth", field,
+                          requirement);
+        }
         if (given[role].bore >= given[role].gear->root_radius) {
             return refuse(given[role].bore_field, "a bore below the root circle", field,
                           requirement);
@@ -215,11 +221,6 @@ int gmi_elastic_mesh_init(gmi_elastic_mesh *made, const gm_mesh_params *params, 
     const double contact_start[2] = {
         fmax(at->start_roll_length[GM_PINION], at->line_of_action - at->tip_roll_length[GM_WHEEL]),
         fmax(at->start_roll_length[GM_WHEEL], at->line_of_action - at->tip_roll_length[GM_PINION])};
-    if (pair->wheel.sign < 0.0) {
-        (void)refuse("wheel_teeth", "external teeth: those of a ring have no elastic law", field,
-                     requirement);
-        return GM_ERR_GEOMETRY;
-    }
     if (!is_given_well(params, pair, field, requirement)) {
         return GM_ERR_GEOMETRY;
     }

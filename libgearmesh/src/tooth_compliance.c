@@ -16,6 +16,11 @@
  * Where y_p lies below the foot the integrals go on down the fillet with their sign, and u is negative: the compliance
  * stays smooth. Below the root circle, which only gears of hundreds of teeth reach, the half thickness is that of the
  * end of the fillet.
+ *
+ * ISO 21771 counts the teeth of a ring below 0, and with them its radii and roll lengths. So Y = -|Y| still grows towards
+ * the tip, and all of this holds as it is. Only the fillet is another one, as no rack cuts a ring: a circle with the radius
+ * of the rack's rounding that touches flank and root circle, as that of the rack itself does, 1/z = 0. The foot of a
+ * ring has the tangent of 60 degrees [ISO6336, part 3].
  */
 #include "tooth_compliance.h"
 
@@ -23,7 +28,9 @@
 
 #include <math.h>
 
-#define FOOT_TANGENT (30.0 * GMI_PI / 180.0)
+/* Between fillet and centre line at the foot. */
+#define FOOT_TANGENT      (30.0 * GMI_PI / 180.0)
+#define RING_FOOT_TANGENT (60.0 * GMI_PI / 180.0)
 
 enum { GAUSS_HALF = 8, PANELS = 2, BISECTIONS = 100 };
 
@@ -43,7 +50,7 @@ typedef struct profile_point {
 /* Involute, parameter: the roll length r. R = hypot(r_bn, r), half angle H = psi_n - (r / r_bn - atan(r / r_bn)). */
 static profile_point involute_point(const gmi_tooth *tooth, double r) {
     const double tangent = r / tooth->base_radius;
-    const double radius = hypot(tooth->base_radius, r);
+    const double radius = copysign(hypot(tooth->base_radius, r), tooth->base_radius);
     const double half_angle = tooth->base_half_thickness - (tangent - atan(tangent));
     const double x = radius * sin(half_angle);
     const double y = radius * cos(half_angle);
@@ -61,10 +68,15 @@ static double rolled_angle(const gmi_tooth *tooth, double theta) {
     return (along - tooth->rounding_offset) / tooth->reference_radius;
 }
 
-/* Fillet, parameter: theta, from alpha_n at the involute to pi/2 on the root circle. */
+/* Fillet, parameter: theta, from fillet_begin at the involute to pi/2 at the root: of the rack, of a ring's circle. */
 static profile_point fillet_point(const gmi_tooth *tooth, double theta) {
     const double sine = sin(theta), cosine = cos(theta);
     const double round = tooth->rounding_radius;
+    if (tooth->base_radius < 0.0) {
+        const profile_point point = {tooth->circle_x - round * cosine,
+                                     tooth->circle_y - round * sine, -round * cosine};
+        return point;
+    }
 
     /* The rack's point that cuts there, X_c from the pitch point, and its change with theta. */
     const double along = -tooth->rounding_center * cosine / sine;
@@ -93,7 +105,7 @@ static profile_point fillet_point(const gmi_tooth *tooth, double theta) {
     return point;
 }
 
-/* Angle between the fillet's tangent and the centre line: grows with theta. */
+/* Angle between a gear's fillet and the centre line: grows with theta. */
 static double fillet_tangent(const gmi_tooth *tooth, double theta) {
     return theta - rolled_angle(tooth, theta) - tooth->half_pitch_angle;
 }
@@ -112,6 +124,54 @@ static double find_foot(const gmi_tooth *tooth) {
     return 0.5 * (below + above);
 }
 
+/* The fillet that a rack's rounded tip cuts: where it begins, and the foot on it. */
+static int set_rack_fillet(gmi_tooth *tooth, const gmi_tooth_params *params) {
+    const double m_n = params->normal_module;
+    const double alpha_n = params->normal_pressure_angle;
+    const double round = params->rack_fillet_radius;
+    const double straight = params->rack_dedendum - round;
+
+    /* A thinner tooth is one between farther racks. */
+    const double nominal = m_n * (0.5 * GMI_PI + 2.0 * params->profile_shift * tan(alpha_n));
+    tooth->rounding_offset =
+        m_n * (0.25 * GMI_PI - straight * tan(alpha_n) - round / cos(alpha_n)) +
+        0.5 * (nominal - params->normal_thickness);
+    if (!(tooth->rounding_offset >= 0.0)) {
+        return GMI_TOOTH_FILLET;
+    }
+
+    /* Where the rack's straight flank ends, the fillet begins; a rounding above the pitch line cuts no fillet. */
+    const double reach = straight + round * sin(alpha_n) - params->profile_shift;
+    tooth->fillet_begin = alpha_n;
+    tooth->fillet_roll_length = tooth->reference_radius * sin(alpha_n) - m_n * reach / sin(alpha_n);
+    if (!(tooth->fillet_roll_length >= 0.0)) {
+        return GMI_TOOTH_UNDERCUT;
+    }
+    if (!(tooth->rounding_center < 0.0) || !(fillet_tangent(tooth, alpha_n) <= FOOT_TANGENT) ||
+        !(fillet_tangent(tooth, 0.5 * GMI_PI) > FOOT_TANGENT)) {
+        return GMI_TOOTH_FOOT;
+    }
+    tooth->foot_angle = find_foot(tooth);
+    return GMI_TOOTH_FINE;
+}
+
+/* The circle in a ring: its centre lies on the normal of the flank where both touch, and within the space. */
+static int set_ring_fillet(gmi_tooth *tooth) {
+    const double radius = tooth->reference_radius + tooth->rounding_center;
+    const double along = -sqrt(radius * radius - tooth->base_radius * tooth->base_radius);
+    tooth->fillet_roll_length = along - tooth->rounding_radius;
+    tooth->fillet_begin =
+        tooth->fillet_roll_length / tooth->base_radius - tooth->base_half_thickness;
+    const double from_tooth = tooth->fillet_begin - atan(along / tooth->base_radius);
+    if (!(from_tooth <= -tooth->half_pitch_angle)) {
+        return GMI_TOOTH_SPACE;
+    }
+    tooth->circle_x = -radius * sin(from_tooth);
+    tooth->circle_y = radius * cos(from_tooth);
+    tooth->foot_angle = RING_FOOT_TANGENT;
+    return tooth->fillet_begin <= RING_FOOT_TANGENT ? GMI_TOOTH_FINE : GMI_TOOTH_FOOT;
+}
+
 int gmi_tooth_init(gmi_tooth *tooth, const gmi_tooth_params *params) {
     const double m_n = params->normal_module;
     const double alpha_n = params->normal_pressure_angle;
@@ -126,31 +186,16 @@ int gmi_tooth_init(gmi_tooth *tooth, const gmi_tooth_params *params) {
         0.5 * params->normal_thickness / tooth->reference_radius + gmi_involute(alpha_n);
     tooth->half_pitch_angle = GMI_PI / params->virtual_teeth;
 
-    /* The rounding at the rack's tip. A thinner tooth is one between farther racks. */
-    const double round = params->rack_fillet_radius;
-    const double straight = params->rack_dedendum - round;
-    const double nominal = m_n * (0.5 * GMI_PI + 2.0 * params->profile_shift * tan(alpha_n));
-    tooth->rounding_radius = round * m_n;
+    /* The rounding at the rack's tip, or in a ring. */
+    const double straight = params->rack_dedendum - params->rack_fillet_radius;
+    tooth->rounding_radius = params->rack_fillet_radius * m_n;
     tooth->rounding_center = -(straight - params->profile_shift) * m_n;
-    tooth->rounding_offset =
-        m_n * (0.25 * GMI_PI - straight * tan(alpha_n) - round / cos(alpha_n)) +
-        0.5 * (nominal - params->normal_thickness);
-    if (!(tooth->rounding_offset >= 0.0)) {
-        return GMI_TOOTH_FILLET;
+    const int fault =
+        tooth->base_radius < 0.0 ? set_ring_fillet(tooth) : set_rack_fillet(tooth, params);
+    if (fault != GMI_TOOTH_FINE) {
+        return fault;
     }
 
-    /* Where the rack's straight flank ends, the fillet begins; a rounding above the pitch line cuts no fillet. */
-    const double reach = straight + round * sin(alpha_n) - params->profile_shift;
-    tooth->fillet_roll_length = tooth->reference_radius * sin(alpha_n) - m_n * reach / sin(alpha_n);
-    if (!(tooth->fillet_roll_length >= 0.0)) {
-        return GMI_TOOTH_UNDERCUT;
-    }
-    if (!(tooth->rounding_center < 0.0) || !(fillet_tangent(tooth, alpha_n) <= FOOT_TANGENT) ||
-        !(fillet_tangent(tooth, 0.5 * GMI_PI) > FOOT_TANGENT)) {
-        return GMI_TOOTH_FOOT;
-    }
-
-    tooth->foot_angle = find_foot(tooth);
     const profile_point foot = fillet_point(tooth, tooth->foot_angle);
     const profile_point root = fillet_point(tooth, 0.5 * GMI_PI);
     tooth->foot_y = foot.y;
@@ -223,18 +268,18 @@ static double parameter_at(const gmi_tooth *tooth, enum part part, double y, dou
 }
 
 static void integrate_beam(const gmi_tooth *tooth, double roll_length, beam *sums) {
-    const double alpha_n = tooth->pressure_angle;
+    const double begin = tooth->fillet_begin;
     const double end_of_involute = tooth->fillet_roll_length;
     const double joint_y = involute_point(tooth, end_of_involute).y;
     if (sums->y_p >= joint_y) {
         /* The line of action comes from above y_p, so the point at y_p has a smaller roll length. */
         const double top = parameter_at(tooth, INVOLUTE, sums->y_p, end_of_involute,
                                         fmax(roll_length, end_of_involute));
-        integrate(tooth, FILLET, tooth->foot_angle, alpha_n, sums);
+        integrate(tooth, FILLET, tooth->foot_angle, begin, sums);
         integrate(tooth, INVOLUTE, end_of_involute, top, sums);
         sums->top = involute_point(tooth, top).x;
     } else if (sums->y_p >= tooth->root_y) {
-        const double top = parameter_at(tooth, FILLET, sums->y_p, 0.5 * GMI_PI, alpha_n);
+        const double top = parameter_at(tooth, FILLET, sums->y_p, 0.5 * GMI_PI, begin);
         integrate(tooth, FILLET, tooth->foot_angle, top, sums);
         sums->top = fillet_point(tooth, top).x;
     } else {

@@ -12,14 +12,17 @@ enum gmi_tooth_fault {
     GMI_TOOTH_FINE = 0,
     GMI_TOOTH_FILLET = 1,   /* the rounding of the rack's tip does not fit between its flanks */
     GMI_TOOTH_UNDERCUT = 2, /* the rack cuts the involute away at the base circle */
-    GMI_TOOTH_FOOT = 3,     /* no point of the fillet has a tangent of 30 degrees */
+    GMI_TOOTH_FOOT = 3,     /* no point of the fillet has the tangent of the foot */
     GMI_TOOTH_CONTACT = 4,  /* the mate touches below the end of the fillet */
-    GMI_TOOTH_POINTED = 5   /* the contact lies beyond the tip of a pointed tooth */
+    GMI_TOOTH_POINTED = 5,  /* the contact lies beyond the tip of a pointed tooth */
+    GMI_TOOTH_SPACE = 6     /* the rounding does not fit into the space of a ring */
 };
 
 /* What a tooth is made of: the virtual spur gear of the normal section. */
 typedef struct gmi_tooth_params {
-    double virtual_teeth;         /* z_n = z / (cos(beta_b)^2 cos(beta)), a real number */
+    double
+        virtual_teeth; /* z_n = z / (cos(beta_b)^2 cos(beta)), a real number; < 0: a ring, whose radii and roll
+                             lengths are below 0 as well */
     double normal_module;         /* m_n (m) */
     double normal_pressure_angle; /* alpha_n (rad) */
     double profile_shift;         /* x (1) */
@@ -39,8 +42,11 @@ typedef struct gmi_tooth {
     double rounding_center; /* y_c of the rack's rounding, from the reference line, < 0 */
     double rounding_offset; /* e_c, from the middle of the space, >= 0 */
     double rounding_radius;
+    double circle_x,
+        circle_y; /* centre of a ring's rounding, from the centre line and the gear's centre */
+    double fillet_begin;                /* theta where fillet and involute meet */
     double fillet_roll_length;          /* rho_n where fillet and involute meet */
-    double foot_angle;                  /* theta of the tangent of 30 degrees */
+    double foot_angle;                  /* theta of its tangent: 30 degrees, 60 of a ring */
     double foot_y;                      /* y_f, along the centre line from the gear's centre */
     double foot_chord;                  /* S, whole thickness there */
     double root_y, root_half_thickness; /* end of the fillet on the root circle */

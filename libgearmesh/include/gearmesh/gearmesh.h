@@ -704,8 +704,8 @@ enum gm_law {
                               [Paper, Eq. 3] */
     GM_LAW_ISO6336 = 1,  /**< the same with K = c' times the common face width,
                               gm_iso6336_single_stiffness() */
-    GM_LAW_ELASTIC = 2 /**< teeth that bend, share the load and flatten, from drawing and material:
-                              docs/elastic.md */
+    GM_LAW_ELASTIC = 2 /**< teeth that bend, share the load and flatten, from drawing and material;
+                              unmeasured in rings: docs/elastic.md */
 };
 
 /**
