@@ -820,6 +820,40 @@ static void line_loads_are_the_force(void) {
     }
 }
 
+/* Pressures beyond 10 GPa, and teeth of a ring. */
+static void doubtful_loads_are_told(void) {
+    const gm_pair_params gears[2] = {spur62(), ring()};
+    for (int k = 0; k < 2; ++k) {
+        const gm_mesh_params law = elastic_law();
+        elastic_mesh m;
+        GM_ASSERT_INT(make(&m, &gears[k], &law, NULL, NULL), GM_OK);
+        const double press[2] = {1e-3, 0.3}; /* in modules */
+        int told[2];
+        for (int n = 0; n < 2; ++n) {
+            const double offset = 0.5 * m.pair.backlash + press[n] * m.pair.normal_module;
+            const gm_state state = pressed_state(&m, 0.01, offset);
+            gm_position position;
+            gm_line_loads loads;
+            GM_ASSERT_INT(gm_position_from_state(&m.pair, &state, &position), GM_OK);
+            GM_ASSERT_INT(gm_mesh_line_loads(m.mesh, &position, m.workspace, NULL, 0, &loads),
+                          GM_OK);
+            told[n] = loads.warnings & GM_WARN_LOAD_PRESSURE;
+            GM_ASSERT_INT(told[n] != 0, loads.largest_pressure > 10e9);
+            GM_ASSERT_INT(loads.warnings & ~GM_WARN_LOAD_PRESSURE, k == 1 ? GM_WARN_LOAD_RING : 0);
+        }
+        GM_ASSERT(told[0] == 0 && told[1] != 0);
+
+        /* None without a load. */
+        const gm_state apart = pressed_state(&m, 0.01, -1e-6);
+        gm_position position;
+        gm_line_loads loads;
+        GM_ASSERT_INT(gm_position_from_state(&m.pair, &apart, &position), GM_OK);
+        GM_ASSERT_INT(gm_mesh_line_loads(m.mesh, &position, m.workspace, NULL, 0, &loads), GM_OK);
+        GM_ASSERT_INT(loads.warnings, 0);
+        release(&m);
+    }
+}
+
 static void bad_input_is_refused(void) {
     const gm_pair_params gears = spur62();
     gm_mesh_params law = elastic_law();
@@ -977,6 +1011,7 @@ int main(int argc, char **argv) {
         GM_TEST(cache_holds_elastic_teeth),
         GM_TEST(wrench_acts_where_the_load_is),
         GM_TEST(line_loads_are_the_force),
+        GM_TEST(doubtful_loads_are_told),
         GM_TEST(bad_input_is_refused),
     };
     return gm_test_main("unit.elastic_mesh", tests, GM_TEST_COUNT(tests), argc, argv);

@@ -221,6 +221,19 @@ class Elastic(unittest.TestCase):
             error[teeth] = [-float(row["te_um"]) for row in self.table("run.csv")]
         self.assertTrue(all(1 < a / b < 1.04 for a, b in zip(error[-4000], error[4000])))
 
+    def test_pressure_that_no_material_bears_is_warned_of_once(self):
+        run = {"analysis": {"duration_s": 0.005}, "drive": {"start_rpm": 100, "end_rpm": 100},
+               "bodies": {"wheel_inertia_kg_m2": 0.02}, "mesh": {"damping_ratio": 0.05}}
+        for sections in ({}, {"output": {"columns": "te_um"}}, {"analysis": {"type": "static", "loads": 3, "positions": 4},
+                                                                "load": {"mean_Nm": 20000, "end_Nm": 100}}, run):
+            for torque in (100, 20000):
+                load = sections.get("load", {"mean_Nm": torque})
+                self.write(SPUR62 | {"load": load, "mesh": {}} | sections)
+                result = subprocess.run([GEARSIM, "run.ini"], cwd=self.folder, capture_output=True, text=True, check=False)
+                self.assertEqual(result.returncode, 0, result.stderr)
+                self.assertEqual(result.stderr.count("load.mean_Nm: warning: the contact pressure reaches"),
+                                 load["mean_Nm"] > 1000, result.stderr)
+
     def test_corner_contact_is_of_elastic_teeth(self):
         self.rows(SPUR62 | {"mesh": {"corner_contact": "on"}})
         self.refused(SPUR62 | {"mesh": {"corner_contact": "maybe"}}, "run.ini:", "mesh.corner_contact: must be off | on (got maybe)")

@@ -42,6 +42,17 @@ int gear_contact_line_loads(const gear_mesh *mesh, const gm_position *position,
                                         capacity, load);
 }
 
+void gear_contact_warn(const config *conf, const gm_line_loads *load) {
+    if (load->warnings & GM_WARN_LOAD_PRESSURE) {
+        const char *key = config_text(conf, "load.mean_Nm") != NULL ? "load.mean_Nm" : "load.file";
+
+        config_warn(conf, key,
+                    "the contact pressure reaches %.5g N/mm2; beyond 10000 no material stays "
+                    "elastic, and the results are those of one that would",
+                    1e-6 * load->largest_pressure);
+    }
+}
+
 int gear_contact_line_load_points(const gear_mesh *mesh) {
     return mesh->halves * gm_mesh_line_load_points(mesh->prepared[0]);
 }

@@ -19,6 +19,9 @@ int gear_contact_equilibrium(const gear_mesh *mesh, double pinion_angle, double 
                              gm_mesh_result *result);
 int gear_contact_line_loads(const gear_mesh *mesh, const gm_position *position,
                             gm_line_load_point *points, int capacity, gm_line_loads *load);
+
+/* Warns of a load that no material bears; the largest of a run is to be told once. */
+void gear_contact_warn(const config *conf, const gm_line_loads *load);
 int gear_contact_line_load_points(const gear_mesh *mesh);
 
 /* Of both halves together: stiffness and damping over all pairs that touch on average, and of what touches in a result. */

@@ -47,6 +47,8 @@ typedef struct dynamic_run {
     double rows;                  /* number of rows, a whole number */
     double past_stop; /* +1 or -1: the stop speed is reached from below, from above; 0 = none */
     dynamic_sample sample;
+    gear_motion hardest;        /* the sample with the largest force of elastic teeth, */
+    double hardest_force;       /* and that force (N) */
     double values[COLUMNS_MAX]; /* of the sample, of the columns asked for */
     char why[640];              /* the run ended early */
 } dynamic_run;
@@ -68,6 +70,10 @@ static int see_mesh(dynamic_run *run, enum column_need need) {
         snprintf(run->why, sizeof run->why, "no contact force at t = %.9g s; the gears: %s",
                  sample->time, gm_status_text(status));
         return EXIT_RUN_FAILED;
+    }
+    if (run->conf->law == LAW_ELASTIC && fabs(sample->mesh.force) > run->hardest_force) {
+        run->hardest = sample->motion;
+        run->hardest_force = fabs(sample->mesh.force);
     }
     return 0;
 }
@@ -538,6 +544,21 @@ static void summarize(const dynamic_run *run) {
                  counts.rejected, counts.derivatives, counts.looks);
 }
 
+/* Looks once at the pressure, where the force was largest. */
+static void warn_of_pressure(dynamic_run *run) {
+    const gear_mesh *gears = run->model.gears;
+    gm_mesh_result mesh;
+    gm_position position;
+    gm_line_loads load;
+    if (run->hardest_force > 0.0 &&
+        model_evaluate(&run->model, &run->hardest, GM_WANT_FORCE, &mesh) == GM_OK &&
+        gm_position_from_pinion_angle(&gears->pair, run->hardest.pinion_angle, run->hardest.offset,
+                                      0.0, &position) == GM_OK &&
+        gear_contact_line_loads(gears, &position, NULL, 0, &load) == GM_OK) {
+        gear_contact_warn(run->conf, &load);
+    }
+}
+
 /* Tells how it went and closes the file; returns the exit code of the run. */
 static int end_run(dynamic_run *run, int exit_code) {
     progress_clear(&run->progress);
@@ -547,6 +568,7 @@ static int end_run(dynamic_run *run, int exit_code) {
         config_warn(run->conf, "analysis.stop_rpm",
                     "not reached within analysis.duration_s, which ended the run");
     }
+    warn_of_pressure(run);
     summarize(run);
 
     const int closed = output_close(run->output, exit_code != 0 ? run->why : NULL);

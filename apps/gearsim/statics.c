@@ -69,6 +69,7 @@ typedef struct static_results {
     int column[COLUMNS_MAX]; /* their rows in static_columns */
     int place[COLUMNS_MAX];  /* where output_row() takes their values from */
     unsigned needs;          /* bits 1 << enum static_column_taking of all that is written */
+    gm_line_loads worst;     /* the load with the largest pressure that was seen */
 } static_results;
 
 /* What of a position goes to the result, and what has to be found for it beyond the equilibrium. */
@@ -91,31 +92,38 @@ static void choose_columns(static_results *results, const config *conf) {
 }
 
 /* The equilibrium itself has neither wrench nor line loads. */
-static int find_needed(const static_results *results, static_position *at) {
+static int find_needed(static_results *results, unsigned needs, static_position *at) {
     const unsigned wrench = 1u << TAKES_WRENCH, faces = 1u << TAKES_FACES;
     gm_position position;
     gm_mesh_result result;
-    if ((results->needs & (wrench | faces)) == 0) {
+    if ((needs & (wrench | faces)) == 0) {
         return GM_OK;
     }
     int status = gm_position_from_pinion_angle(&at->gears->pair, at->pinion_angle, at->offset, 0.0,
                                                &position);
 
     position.pinion_speed = at->conf->start_speed;
-    if (status == GM_OK && (results->needs & wrench)) {
+    if (status == GM_OK && (needs & wrench)) {
         status = gear_contact_evaluate(at->gears, &position, GM_WANT_WRENCH, &result);
         at->mesh.wrench = result.wrench;
     }
-    if (status == GM_OK && (results->needs & faces)) {
+    if (status == GM_OK && (needs & faces)) {
         status = gear_contact_line_loads(at->gears, &position, results->points, results->capacity,
                                          &at->faces);
+        if (at->faces.largest_pressure > results->worst.largest_pressure) {
+            results->worst = at->faces;
+        }
     }
     return status;
 }
 
 static int write_position(const config *conf, const gear_mesh *gears, double angle, sweep *before,
-                          const static_results *results, int *status) {
+                          static_results *results, int *status) {
     const gm_pair *pair = &gears->pair;
+
+    /* The pressure of elastic teeth is looked at under each load at least once. */
+    const int is_first = isnan(before->offset) && conf->law == LAW_ELASTIC;
+    const unsigned needs = results->needs | (is_first ? 1u << TAKES_FACES : 0);
     const double guess = before->offset + before->slope * (angle - before->angle);
     static_position position = {
         .conf = conf, .gears = gears, .pinion_angle = angle, .load = before->load};
@@ -135,7 +143,7 @@ static int write_position(const config *conf, const gear_mesh *gears, double ang
                                                    position.mesh.wheel_torque_by.pinion_angle /
                                                    position.mesh.wheel_torque_by.wheel_angle;
 
-    *status = find_needed(results, &position);
+    *status = find_needed(results, needs, &position);
     if (*status != GM_OK) {
         return EXIT_RUN_FAILED;
     }
@@ -189,7 +197,7 @@ static int interrupted(const config *conf, const static_results *results, double
 
 /* The period under one load; 0, or an exit code and the file is closed. */
 static int write_period(const config *conf, const gear_mesh *gears, double load,
-                        const static_results *results) {
+                        static_results *results) {
     sweep before = {load, 0.0, (double)NAN, 0.0};
 
     for (int position = 0; position < conf->positions; ++position) {
@@ -206,7 +214,7 @@ static int write_period(const config *conf, const gear_mesh *gears, double load,
     return 0;
 }
 
-static int write_all(const config *conf, const gear_mesh *gears, const static_results *results) {
+static int write_all(const config *conf, const gear_mesh *gears, static_results *results) {
     for (int index = 0; index < conf->loads; ++index) {
         if (is_no_load(conf, index)) {
             message_note(conf->messages,
@@ -258,6 +266,7 @@ int statics_run(const config *conf, const gear_mesh *gears) {
     if (results.output != NULL) {
         choose_columns(&results, conf);
         exit_code = write_all(conf, gears, &results);
+        gear_contact_warn(conf, &results.worst);
     } else {
         (void)load_file_close(results.distribution, "there is no result");
     }

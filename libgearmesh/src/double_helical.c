@@ -387,7 +387,7 @@ int gm_double_helical_line_loads(const gm_double_helical *gears, const gm_positi
     if (load == NULL) {
         return GM_ERR_NULL;
     }
-    const gm_line_loads none = {gmi_nan(), gmi_nan(), gmi_nan(), gmi_nan(), 0};
+    const gm_line_loads none = {gmi_nan(), gmi_nan(), gmi_nan(), gmi_nan(), 0, 0};
     *load = none;
     int status = position == NULL ? GM_ERR_NULL : check(gears);
     if (status != GM_OK) {
@@ -398,7 +398,7 @@ int gm_double_helical_line_loads(const gm_double_helical *gears, const gm_positi
     const double width = 2.0 * pair->pinion.face_width + gears->gap;
 
     /* One after the other, the second back from its mirror. */
-    gm_line_loads both = {0.0, 0.0, 0.0, 0.0, 0};
+    gm_line_loads both = {0.0, 0.0, 0.0, 0.0, 0, 0};
     double per_mean = 0.0; /* of the mean line loads, which both carry the same force */
     for (int k = 0; k < 2; ++k) {
         gm_position at = *position;
@@ -415,6 +415,7 @@ int gm_double_helical_line_loads(const gm_double_helical *gears, const gm_positi
         }
         both.points += half.points;
         both.touching_width += half.touching_width;
+        both.warnings |= half.warnings;
         if (half.largest_line_load > 0.0) {
             both.largest_line_load = fmax(both.largest_line_load, half.largest_line_load);
             both.largest_pressure = fmax(both.largest_pressure, half.largest_pressure);

@@ -14,6 +14,9 @@
 
 enum { STATIONS = 17 }; /* where the law has none of its own */
 
+/* Contact pressure that is warned of: steel yields below half of it (N/m2). */
+static const double largest_pressure = 10e9;
+
 static int stations_of(const gm_mesh *mesh) {
     return mesh->elastic != NULL ? mesh->elastic->law.stations : STATIONS;
 }
@@ -243,7 +246,7 @@ int gm_mesh_line_loads(const gm_mesh *mesh, const gm_position *position, gm_work
     if (load == NULL) {
         return GM_ERR_NULL;
     }
-    const gm_line_loads none = {gmi_nan(), gmi_nan(), gmi_nan(), gmi_nan(), 0};
+    const gm_line_loads none = {gmi_nan(), gmi_nan(), gmi_nan(), gmi_nan(), 0, 0};
     *load = none;
     if (mesh == NULL || position == NULL || (mesh->elastic != NULL && workspace == NULL)) {
         return GM_ERR_NULL;
@@ -257,7 +260,7 @@ int gm_mesh_line_loads(const gm_mesh *mesh, const gm_position *position, gm_work
     const gm_position posed = gmi_mesh_posed(mesh, position);
     int status = gmi_check_position(mesh->pair, &posed);
 
-    gm_line_loads found = {0.0, 0.0, 0.0, 0.0, 0};
+    gm_line_loads found = {0.0, 0.0, 0.0, 0.0, 0, 0};
     walk w = {.mesh = mesh, .points = points, .capacity = capacity, .load = &found};
     for (int side = GM_DRIVE; side <= GM_COAST && status == GM_OK; ++side) {
         status = walk_side(&w, side, &posed, workspace);
@@ -268,6 +271,11 @@ int gm_mesh_line_loads(const gm_mesh *mesh, const gm_position *position, gm_work
     if (found.largest_line_load > 0.0) {
         *load = found;
         load->face_load_factor = found.largest_line_load * w.length / w.force;
+
+        /* What to think of it. */
+        const int is_ring = mesh->elastic != NULL && mesh->pair->wheel.sign < 0.0;
+        load->warnings = (found.largest_pressure > largest_pressure ? GM_WARN_LOAD_PRESSURE : 0) |
+                         (is_ring ? GM_WARN_LOAD_RING : 0);
     }
     load->touching_width = found.touching_width;
     load->points = found.points;

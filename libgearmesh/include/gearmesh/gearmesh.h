@@ -1272,6 +1272,14 @@ typedef struct gm_line_load_point {
     double gap;      /**< between the surfaces, < 0 pressed into each other (m) */
 } gm_line_load_point;
 
+/** What is doubtful about a load. */
+enum gm_load_warning {
+    GM_WARN_LOAD_PRESSURE =
+        1 << 0, /**< largest_pressure above 10 GPa, which no material bears: it would yield */
+    GM_WARN_LOAD_RING =
+        1 << 1 /**< elastic teeth of a ring, which are unmeasured: docs/elastic.md */
+};
+
 /** How a mesh is loaded at one position; NaN where nothing touches. */
 typedef struct gm_line_loads {
     double largest_line_load; /**< of all points and ends of lines (N/m) */
@@ -1282,6 +1290,7 @@ typedef struct gm_line_loads {
 
     double touching_width; /**< touching part of the face, summed over all lines (m) */
     int points;            /**< how many were written */
+    int warnings;          /**< sum of enum gm_load_warning; 0 = none, or nothing touches */
 } gm_line_loads;
 
 /** How many points gm_mesh_line_loads() gives at most; 0 for NULL. */
