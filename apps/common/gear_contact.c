@@ -77,6 +77,14 @@ double gear_contact_touching_stiffness(const gear_mesh *mesh, const gm_mesh_resu
     return mesh->halves * gm_mesh_touching_stiffness(mesh->prepared[0], result);
 }
 
+double gear_contact_penetration(const gear_mesh *mesh, double force, double rate) {
+    const gm_mesh_result whole = {.contact = {.drive_contact = 1.0}};
+    const double stiffness = gear_contact_touching_stiffness(mesh, &whole);
+    const double slowness = gear_contact_mean_damping(mesh) / gear_contact_mean_stiffness(mesh);
+
+    return force / stiffness - slowness * rate;
+}
+
 /* ---------------------------------------------------------------------------------------------
  * What flanks can do to meet
  * ------------------------------------------------------------------------------------------- */

@@ -32,6 +32,10 @@ double gear_contact_touching_stiffness(const gear_mesh *mesh, const gm_mesh_resu
 /* How far the pinion of a double-helical pair had floated along +z when it was last asked for (m). */
 double gear_contact_apex(const gear_mesh *mesh);
 
+/* Penetration of flanks that are springs and dampers with nothing else (not elastic teeth), from their force and the rate of
+ * the penetration: the force law, the other way round (m). */
+double gear_contact_penetration(const gear_mesh *mesh, double force, double rate);
+
 /* Most material that the flanks of both gears add, and how steeply they rise along the roll length: what has to be bridged
  * before flanks of a side touch. Halves meet when both do, with the mean of both. */
 double gear_contact_peak(const gear_mesh *mesh, int side);  /* m */

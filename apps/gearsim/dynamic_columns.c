@@ -47,6 +47,14 @@ static double penetration_rate(const dynamic_sample *sample) {
     return sample->mesh.contact.rate * micro;
 }
 
+static double mean_penetration(const dynamic_sample *sample) {
+    return sample->mean_penetration * micro;
+}
+
+static double mean_penetration_rate(const dynamic_sample *sample) {
+    return sample->mean_rate * micro;
+}
+
 static double contact_force(const dynamic_sample *sample) {
     return sample->mesh.force;
 }
@@ -86,9 +94,9 @@ const dynamic_column dynamic_columns[] = {
     {"pinion_angle_rad", 0, NEEDS_MOTION, pinion_angle, NULL},
     {"wheel_angle_rad", 0, NEEDS_MOTION, wheel_angle, NULL},
     {"dte_um", 1, NEEDS_MOTION, transmission_error, NULL},
-    {"penetration_um", 1, NEEDS_MESH, penetration, NULL},
-    {"penetration_rate_um_per_s", 1, NEEDS_MESH, penetration_rate, NULL},
-    {"contact_force_N", 1, NEEDS_MESH, contact_force, mean_contact_force},
+    {"penetration_um", 1, NEEDS_MESH, penetration, mean_penetration},
+    {"penetration_rate_um_per_s", 1, NEEDS_MESH, penetration_rate, mean_penetration_rate},
+    {"contact_force_N", 1, NEEDS_FORCE, contact_force, mean_contact_force},
     {"load_torque_Nm", 1, NEEDS_MOTION, load, mean_load},
     {"pairs_in_contact", 0, NEEDS_PAIRS, pairs_in_contact, NULL},
 #define ROW(name, component) {#name, 1, NEEDS_WRENCH, name, NULL},

@@ -15,17 +15,20 @@ typedef struct dynamic_sample {
     const gear_model *model;
     double time; /* s */
     gear_motion motion;
-    gm_mesh_result mesh; /* only where some column asked for needs it */
-    double apex;         /* likewise, float of a double-helical pinion (m) */
-    double mean_force;   /* about the time, only where samples are filtered (N) */
-    double mean_load;    /* likewise (N m) */
+    gm_mesh_result mesh;     /* only where some column asked for needs it */
+    double apex;             /* likewise, float of a double-helical pinion (m) */
+    double mean_force;       /* about the time, only where samples are filtered (N) */
+    double mean_load;        /* likewise (N m) */
+    double mean_penetration; /* likewise (m) */
+    double mean_rate;        /* likewise (m/s) */
 } dynamic_sample;
 
 /* What a column takes; the further down, the more time. */
 enum column_need {
     NEEDS_TIME,   /* alone */
     NEEDS_MOTION, /* angles, speeds and x at the time */
-    NEEDS_MESH,   /* the penetration */
+    NEEDS_FORCE,  /* that of the mesh */
+    NEEDS_MESH,   /* and the penetration */
     NEEDS_PAIRS,  /* and the pairs that touch, which a cache has to count */
     NEEDS_WRENCH  /* and where they touch */
 };

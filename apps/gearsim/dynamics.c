@@ -35,8 +35,11 @@ typedef struct dynamic_run {
     double edge_time;           /* where the mean of the sample before has its end or its middle, */
     gear_motion edge;           /* and the motion there */
     gear_motion next;           /* at the next sample */
-    int follows;                /* drive or load depend on the motion */
-    double gathered_time;       /* up to which their integrals have been taken, */
+    double touched
+        [2]; /* see integrator_touched(), where the mean begins, and up to where it is known */
+    int shows_overlap;    /* a column shows the mean of the penetration or of its rate */
+    int follows;          /* drive or load depend on the motion */
+    double gathered_time; /* up to which their integrals have been taken, */
 
     /* of the part since the edge: of the torques, and of them times the share of it */
     model_torques gathered[2];
@@ -194,6 +197,39 @@ static model_torques mean_following(const dynamic_run *run, double begin, double
     return mean;
 }
 
+/*
+ * Means of the penetration and of its rate, without the mesh as long as the flanks carry: the rate is the part that touches
+ * times x', and the rest of the force comes from the penetration. Else their values at the sample's time.
+ */
+static int set_overlap(dynamic_run *run, enum column_need seen, double begin, double end,
+                       double speed) {
+    dynamic_sample *sample = &run->sample;
+    if (!run->shows_overlap) {
+        return 0;
+    }
+    double touched;
+    const int carries = integrator_touched(run->solver, begin, end, &touched);
+    const int is_hat = run->mean_kind == SAMPLE_HAT;
+
+    if (carries && run->is_started) {
+        sample->mean_rate = (touched - run->touched[0]) / (end - begin) * speed;
+        sample->mean_penetration =
+            gear_contact_penetration(run->model.gears, sample->mean_force, sample->mean_rate);
+    } else {
+        const int failed = seen < NEEDS_MESH ? see_mesh(run, NEEDS_MESH) : 0;
+        if (failed) {
+            return failed;
+        }
+        sample->mean_rate = sample->mesh.contact.rate;
+        sample->mean_penetration = sample->mesh.contact.penetration;
+    }
+
+    /* The next triangle begins in the middle of this one, where that before has ended. */
+    run->touched[0] = is_hat ? run->touched[1] : touched;
+    run->touched[1] = touched;
+    return 0;
+}
+
 /* The torques of a motion that follow it. */
 static model_torques following_at(const dynamic_run *run, const gear_motion *motion) {
     const model_torques linear =
@@ -205,7 +241,7 @@ static model_torques following_at(const dynamic_run *run, const gear_motion *mot
 }
 
 /* Over the sample's period: from the middle between two samples to the next, x'' from the change of x'. */
-static int see_box_means(dynamic_run *run, double row, int i) {
+static int see_box_means(dynamic_run *run, enum column_need seen, double row, int i) {
     const double end = sample_time(run, row, i + 0.5);
     gear_motion motion;
     int failed = gather(run, end);
@@ -233,10 +269,11 @@ static int see_box_means(dynamic_run *run, double row, int i) {
     const double speed = motion.pinion_speed - run->edge.pinion_speed;
     const double rest = run->is_started ? 0.0 : 0.5 * drive_acceleration(&run->model.drive, 0.0);
     set_means(run, &box, rest + speed * weight, &following, (motion.offset_rate - before) * weight);
+    failed = set_overlap(run, seen, begin, end, (motion.offset - run->edge.offset) * weight);
 
     run->edge_time = end;
     run->edge = motion;
-    return 0;
+    return failed;
 }
 
 /* Mean of the pinion's acceleration under a triangle: second difference of its angle, constant before t = 0. */
@@ -254,7 +291,7 @@ static double hat_acceleration(const dynamic_run *run, double begin, double midd
 }
 
 /* Under a triangle from the sample before to the next, x'' from the second difference of x. */
-static int see_hat_means(dynamic_run *run, double row, int i) {
+static int see_hat_means(dynamic_run *run, enum column_need seen, double row, int i) {
     const double middle = run->sample.time, end = sample_time(run, row, i + 1.0);
     gear_motion motion;
     int failed = gather(run, end);
@@ -289,10 +326,15 @@ static int see_hat_means(dynamic_run *run, double row, int i) {
     set_means(run, &hat, hat_acceleration(run, begin, middle, &motion, end), &following,
               peak * (fall - rise));
 
+    /* The mean speed under a triangle of a parabola. */
+    const double speed =
+        (run->edge.offset_rate + 10.0 * run->sample.motion.offset_rate + motion.offset_rate) / 12.0;
+    failed = set_overlap(run, seen, begin, end, speed);
+
     run->edge_time = middle;
     run->edge = run->sample.motion;
     run->next = motion;
-    return 0;
+    return failed;
 }
 
 /* The motion at the sample's time, where it is needed; the triangle of the sample before has ended there. */
@@ -308,12 +350,12 @@ static int see_sample_motion(dynamic_run *run, enum column_need need) {
     return see_motion(run, run->sample.time, &run->sample.motion);
 }
 
-static int see_means(dynamic_run *run, double row, int i) {
+static int see_means(dynamic_run *run, enum column_need seen, double row, int i) {
     switch (run->mean_kind) {
     case SAMPLE_BOX:
-        return see_box_means(run, row, i);
+        return see_box_means(run, seen, row, i);
     case SAMPLE_HAT:
-        return see_hat_means(run, row, i);
+        return see_hat_means(run, seen, row, i);
     default:
         return 0;
     }
@@ -324,10 +366,24 @@ static int is_force_of_momentum(const config *conf) {
     return !config_has_friction(conf) && !config_has_corners(conf);
 }
 
+/* And the force tells the penetration, where flanks are springs that CVODE keeps account of. */
+static int is_overlap_of_force(const config *conf, const gear_mesh *gears) {
+    return is_force_of_momentum(conf) && conf->law != LAW_ELASTIC && gears->halves == 1 &&
+           conf->method != METHOD_ERK;
+}
+
 static int takes_mean(const dynamic_run *run, const dynamic_column *column) {
-    const int is_force = column->need >= NEEDS_MESH;
-    return run->factor > 1 && column->mean != NULL &&
-           !(is_force && !is_force_of_momentum(run->conf));
+    if (run->factor == 1 || column->mean == NULL) {
+        return 0;
+    }
+    switch (column->need) {
+    case NEEDS_FORCE:
+        return is_force_of_momentum(run->conf);
+    case NEEDS_MESH:
+        return is_overlap_of_force(run->conf, run->model.gears);
+    default:
+        return 1;
+    }
 }
 
 /* Sample i of a row's period; values that nobody needs are left as they were. */
@@ -341,14 +397,14 @@ static int take_sample(dynamic_run *run, double row, int i) {
     if (!failed) {
         failed = see_sample_motion(run, need);
     }
-    if (!failed && need >= NEEDS_MESH) {
+    if (!failed && need >= NEEDS_FORCE) {
         failed = see_mesh(run, need);
     }
     if (!failed) {
         if (!run->is_started) {
             run->edge = run->sample.motion;
         }
-        failed = see_means(run, row, i);
+        failed = see_means(run, need, row, i);
     }
     if (failed) {
         return failed;
@@ -500,6 +556,7 @@ static int start_filter(dynamic_run *run) {
         run->show[k] = takes_mean(run, column) ? column->mean : column->value;
         if (kinds[k] == SAMPLE_BOX || kinds[k] == SAMPLE_HAT) {
             run->mean_kind = kinds[k];
+            run->shows_overlap |= column->need == NEEDS_MESH;
         } else {
             run->row_need = larger(run->row_need, column->need);
         }
@@ -576,15 +633,16 @@ static int end_run(dynamic_run *run, int exit_code) {
 }
 
 int dynamics_note(const gear_mesh *gears, config *conf) {
-    char text[200] = "values at the time of the row";
+    char text[240] = "values at the time of the row";
 
     if (conf->analysis != ANALYSIS_DYNAMIC) {
         return 0;
     }
     if (conf->oversampling > 1) {
         snprintf(text, sizeof text,
-                 "low-pass filtered, %sload_torque_Nm from means (%s of %.6g s), "
+                 "low-pass filtered, %s%sload_torque_Nm from means (%s of %.6g s), "
                  "but time_s, pinion_speed_rpm, angles and pairs_in_contact",
+                 is_overlap_of_force(conf, gears) ? "penetration and its rate, " : "",
                  is_force_of_momentum(conf) ? "contact_force_N and " : "",
                  mean_kind(conf, gears) == SAMPLE_HAT ? "triangle, each side" : "box",
                  1.0 / (conf->output_rate * conf->oversampling));

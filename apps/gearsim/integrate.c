@@ -148,6 +148,7 @@ integrator *integrator_create(const gear_model *model, const integrator_options 
     solver->package = package_of(options->method);
     solver->model = model;
     solver->options = *options;
+    solver->carried_since = HUGE_VAL;
     if (set_up(solver, start) == 0) {
         return solver;
     }
@@ -246,6 +247,21 @@ static int pass_row(integrator *solver) {
     return solver->package->restart(solver);
 }
 
+/* At the end of a step. */
+static void keep_account(integrator *solver, double before) {
+    const model_tangent *tangent = &solver->tangent;
+
+    solver->step_length = solver->time - before;
+    solver->touching[0] = solver->touching[1];
+    solver->touching[1] = tangent->touching;
+    solver->touched += 0.5 * (solver->touching[0] + solver->touching[1]) * solver->step_length;
+    if (!tangent->is_spring) {
+        solver->carried_since = HUGE_VAL;
+    } else if (solver->carried_since == HUGE_VAL) {
+        solver->carried_since = solver->time;
+    }
+}
+
 static int step(integrator *solver) {
     /* A fault that the solver got over by a smaller step is not the reason of a later failure, unless the
      * steps have been next to nothing since. */
@@ -270,6 +286,8 @@ static int step(integrator *solver) {
         free(name);
         return fail(solver, what);
     }
+
+    keep_account(solver, before);
 
     /* In front of a state that the model refuses the solver would creep up to it for ever. */
     const double turned = (solver->time - before) * solver->model->natural_frequency;
@@ -300,6 +318,15 @@ int integrator_advance(integrator *solver, double time, double state[]) {
         return fail(solver, "no value between the solver's steps");
     }
     return 0;
+}
+
+int integrator_touched(const integrator *solver, double since, double time, double *touched) {
+    const double rest = solver->time - time;
+    const double share = solver->step_length > 0.0 ? 0.5 * rest / solver->step_length : 0.0;
+    const double middle = solver->touching[1] + share * (solver->touching[0] - solver->touching[1]);
+
+    *touched = solver->touched - rest * middle;
+    return solver->carried_since <= since;
 }
 
 double integrator_time(const integrator *solver) {

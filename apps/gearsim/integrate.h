@@ -37,6 +37,13 @@ void integrator_free(integrator *solver);
  */
 int integrator_advance(integrator *solver, double time, double state[]);
 
+/*
+ * What the solver has seen of the contact on its way: the integral over time of the part of the flanks that touches, up to
+ * a time within its last step (s), by straight lines from step to step. Returns whether all that touched has carried at all
+ * steps since `since`. `erk` keeps no account of it and returns 0.
+ */
+int integrator_touched(const integrator *solver, double since, double time, double *touched);
+
 /* How far the integration has come (s). */
 double integrator_time(const integrator *solver);
 

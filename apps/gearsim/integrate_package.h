@@ -43,13 +43,17 @@ struct integrator {
     const gear_model *model;
     integrator_options options;
     SUNContext context;
-    N_Vector state;               /* at the end of the last step */
-    sunrealtype time;             /* end of the last step (s) */
-    enum mesh_contact contact;    /* in the last evaluation of the model */
-    model_tangent tangent;        /* likewise; of CVODE alone */
-    double row_time;              /* next row of the tables, HUGE_VAL = there is none */
-    double last_time;             /* before it; nothing is evaluated later until it is reached */
-    int is_kink;                  /* the solver starts again there */
+    N_Vector state;            /* at the end of the last step */
+    sunrealtype time;          /* end of the last step (s) */
+    enum mesh_contact contact; /* in the last evaluation of the model */
+    model_tangent tangent;     /* likewise; of CVODE alone */
+    double touching[2];        /* part of the flanks that touches, at both ends of the last step */
+    double touched;            /* its integral up to the end of the last step (s) */
+    double step_length;        /* of the last step (s) */
+    double carried_since;      /* all that touched has carried, HUGE_VAL = it does not */
+    double row_time;           /* next row of the tables, HUGE_VAL = there is none */
+    double last_time;          /* before it; nothing is evaluated later until it is reached */
+    int is_kink;               /* the solver starts again there */
     integrator_statistics before; /* of the starts before */
     long looks;                   /* evaluations of the mesh ahead of the solver */
     int stalled;                  /* steps of next to nothing in a row */

@@ -565,6 +565,10 @@ int model_derivative_and_tangent(const gear_model *model, double time, const dou
         stiffness * (gear_contact_mean_damping(gears) / gear_contact_mean_stiffness(gears));
     const double w0 = model->natural_frequency;
 
+    tangent->touching = mesh.contact.drive_contact + mesh.contact.coast_contact;
+    tangent->is_spring = (mesh.drive_force > 0.0 || mesh.coast_force > 0.0) &&
+                         (mesh.drive_force > 0.0) == (mesh.contact.drive_contact > 0.0) &&
+                         (mesh.coast_force > 0.0) == (mesh.contact.coast_contact > 0.0);
     tangent->carried = mesh_acceleration(model, &mesh) / model_speed_unit(model);
     memset(jacobian, 0, sizeof tangent->jacobian);
     jacobian[STATE_OFFSET_RATE][STATE_OFFSET] = w0;

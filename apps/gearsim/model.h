@@ -157,6 +157,8 @@ typedef struct model_tangent {
     double jacobian[STATES_MAX]
                    [STATES_MAX]; /* [column][row]: d derivative[row] / d state[column] */
     double carried;              /* what the mesh takes off the derivative of x' */
+    double touching;             /* part of the flanks that touches, of both sides, */
+    int is_spring;               /* and whether all of that carries, as a spring and a damper do */
 } model_tangent;
 
 /*
