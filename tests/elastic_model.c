@@ -10,7 +10,8 @@ typedef struct model_point {
     long double t;      /* between the stations of the element */
     long double weight; /* over z */
     long double s;      /* of the tooth layer */
-    long double w;      /* deviation */
+    long double w;      /* deviation, less the gap of an edge */
+    long double grows;  /* of the approach with x: less by what the roll of the wheel takes */
     long double B, L;   /* delta = B q (L - ln q) */
 } model_point;
 
@@ -114,17 +115,111 @@ static void set_teeth(const elastic_gear *g, const model_teeth *teeth, const lon
     p->L = (level - sum * logl(a_1)) / (0.5L * sum);
 }
 
-static void add_line(model *m, const elastic_gear *g, const elastic_deviation *d,
-                     const model_teeth *teeth, const double softness[2][3], int k,
-                     long double rho_0) {
+/* ---------------------------------------------------------------------------------------------
+ * Tip edges
+ * ------------------------------------------------------------------------------------------- */
+
+/*
+ * Roll of the mate at which its flank goes through a point. Lengths over its base radius, its axis in the origin: on the line
+ * of action the point (1, tau) has the roll tau.
+ */
+static long double roll_through(long double x, long double y) {
+    const long double distance = hypotl(x, y);
+    long double low = 0.0L, high = 10.0L;
+    for (int k = 0; k < 80; ++k) {
+        const long double tau = 0.5L * (low + high);
+        *(hypotl(1.0L, tau) < distance ? &low : &high) = tau;
+    }
+
+    /* The involute unwound by tau that began at the angle 0, and how far it has to turn. */
+    const long double flank_x = cosl(low) + low * sinl(low);
+    const long double flank_y = low * cosl(low) - sinl(low);
+    return atan2l(y, x) - atan2l(flank_y, flank_x);
+}
+
+/*
+ * Gap along the line of action after a roll of the gear whose tip it is: the corner is turned back about its axis, then the
+ * mate until it touches. [0] pinion's tip, [1] wheel's.
+ */
+static long double gap_of(const elastic_gear *g, int of, long double roll) {
+    const long double r_g = g->base_radius[of], r_m = g->base_radius[1 - of];
+    const long double radius = g->tip_radius[of];
+    const long double tip = copysignl(sqrtl((radius - r_g) * (radius + r_g)), r_g);
+    const long double length = g->line_of_action, start = length - tip;
+
+    /* Axes at (-r_m, 0) and (r_g, length), the corner on the line of action at first. */
+    const long double turn = roll / r_g;
+    const long double n = r_g - r_g * cosl(turn) + tip * sinl(turn);
+    const long double e = length - tip * cosl(turn) - r_g * sinl(turn);
+    const long double touching = r_m * roll_through((n + r_m) / r_m, e / r_m);
+    return touching - start + roll;
+}
+
+/* Tooth and contact law go on beyond the path as the slopes at its end say, for a while; the edge takes over. */
+static void hold_at_tip(const elastic_gear *g, const model_teeth *teeth, long double r2,
+                        long double rounding, long double end, long double beyond, model_point *p) {
+    const int of = beyond > 0.0L ? 0 : 1;
+    const long double radius = g->tip_radius[of], r_b = g->base_radius[of];
+    const long double tip = copysignl(sqrtl((radius - r_b) * (radius + r_b)), r_b);
+    const long double mate = g->line_of_action - tip;
+    const long double fading = rounding * r_b / tip;
+    const long double t = fminl(fabsl(beyond) / fading, 1.0L);
+    const long double moved = copysignl(fading * t * (1.0L - 0.5L * t), beyond);
+
+    /* Slopes by differences within the path. */
+    const long double soft[2] = {1.0L, 1.0L}, step = 1e-5L * g->normal_module;
+    model_point first = *p, second = *p;
+    set_teeth(g, teeth, soft, end - copysignl(step, beyond), r2, &first);
+    set_teeth(g, teeth, soft, end - copysignl(2.0L * step, beyond), r2, &second);
+    set_teeth(g, teeth, soft, end, r2, p);
+    const long double direction = copysignl(1.0L, beyond) / (2.0L * step);
+    const long double s_slope = direction * (3.0L * p->s - 4.0L * first.s + second.s);
+    const long double L_slope = direction * (3.0L * p->L - 4.0L * first.L + second.L);
+    p->s += moved * s_slope;
+    p->L -= logl(1.0L - moved * L_slope);
+
+    /* From the curvature of both flanks to that of flank and edge. */
+    const long double sharper = (1.0L / mate + 1.0L / rounding) / (1.0L / mate + 1.0L / tip);
+    p->L += logl(sharper) * t * t * (3.0L - 2.0L * t);
+}
+
+/* What edges change at a point of rho_p: beyond the path, and where the wheel has rolled on by x. */
+static void add_edge(const elastic_gear *g, const model_teeth *teeth, long double r2,
+                     long double rounding, long double rho, long double x, model_point *p) {
+    const long double begin = g->path_start, end = g->path_end;
+    const int leaves = rho > 0.5L * (begin + end);
+    const long double roll = leaves ? rho - end : begin + x - rho;
+    if (rho > end || rho < begin) {
+        hold_at_tip(g, teeth, r2, rounding, leaves ? end : begin, leaves ? rho - end : rho - begin,
+                    p);
+    }
+    if (roll > 0.0L) {
+        const long double step = 1e-5L * g->normal_module;
+        p->w -= gap_of(g, leaves ? 0 : 1, roll);
+        p->grows -=
+            leaves ? 0.0L : (gap_of(g, 1, roll + step) - gap_of(g, 1, roll - step)) / (2.0L * step);
+    }
+}
+
+/* What a line is made of beside the gears. */
+typedef struct model_lines {
+    const elastic_deviation *deviation;
+    const double (*softness)[3];
+    long double rounding, x; /* (m); 0: no edges */
+} model_lines;
+
+static void add_line(model *m, const elastic_gear *g, const model_lines *lines,
+                     const model_teeth *teeth, int k, long double rho_0) {
+    const double(*softness)[3] = lines->softness;
+    const long double further = lines->rounding > 0.0L ? 0.5L * g->pitch : 0.0L;
+    const long double begin = g->path_start - further, end = g->path_end + further;
     const long double climb = tanl(g->base_helix_angle), b = g->face_width;
     const long double h = b / (g->stations - 1);
     long double from = 0.0L, to = b;
     if (climb == 0.0L) {
-        to = rho_0 >= g->path_start && rho_0 <= g->path_end ? b : 0.0L;
+        to = rho_0 >= begin && rho_0 <= end ? b : 0.0L;
     } else {
-        const long double ends[2] = {(g->path_start - rho_0) / climb,
-                                     (g->path_end - rho_0) / climb};
+        const long double ends[2] = {(begin - rho_0) / climb, (end - rho_0) / climb};
         from = fmaxl(from, fminl(ends[0], ends[1]));
         to = fminl(to, fmaxl(ends[0], ends[1]));
     }
@@ -134,7 +229,12 @@ static void add_line(model *m, const elastic_gear *g, const elastic_deviation *d
     const long double soft[2] = {softness != NULL ? softness[0][((k % 3) + 3) % 3] : 1.0L,
                                  softness != NULL ? softness[1][((k % 3) + 3) % 3] : 1.0L};
     for (int e = 0; e < g->stations - 1; ++e) {
-        const long double low = fmaxl(from, e * h), high = fminl(to, (e + 1) * h);
+        /* Lines with edges go over whole elements. */
+        long double low = fmaxl(from, e * h), high = fminl(to, (e + 1) * h);
+        if (further > 0.0L && high > low) {
+            low = e * h;
+            high = (e + 1) * h;
+        }
         for (int half = 0; half < 2 && high > low; ++half) {
             model_point *p = &m->point[m->points++];
             const long double xi = 0.5L + (half == 0 ? -0.5L : 0.5L) / sqrtl(3.0L);
@@ -144,8 +244,13 @@ static void add_line(model *m, const elastic_gear *g, const elastic_deviation *d
             p->element = e;
             p->t = z / h - e;
             p->weight = 0.5L * (high - low);
-            p->w = deviation_at(g, d, k, (double)rho, (double)z, &ignored[0], &ignored[1]);
-            set_teeth(g, teeth, soft, rho, m->r2, p);
+            p->w = deviation_at(g, lines->deviation, k, (double)rho, (double)z, &ignored[0],
+                                &ignored[1]);
+            p->grows = 1.0L;
+            set_teeth(g, teeth, soft, fminl(fmaxl(rho, g->path_start), g->path_end), m->r2, p);
+            if (further > 0.0L) {
+                add_edge(g, teeth, m->r2, lines->rounding, rho, lines->x, p);
+            }
         }
     }
     m->index[m->lines++] = k;
@@ -257,7 +362,8 @@ static int solve(model *m, long double x) {
 }
 
 int elastic_model_solve(const elastic_gear *g, const elastic_deviation *d,
-                        const double softness[2][3], double o, double x, elastic_answer *answer) {
+                        const double softness[2][3], double tip_rounding, double o, double x,
+                        elastic_answer *answer) {
     static model m;
     model_teeth teeth;
     make_teeth(g, &teeth);
@@ -265,8 +371,9 @@ int elastic_model_solve(const elastic_gear *g, const elastic_deviation *d,
     m.r2 = 0.37L * (1.0L / g->youngs_modulus[0] + 1.0L / g->youngs_modulus[1]) / teeth.cosine;
     make_layer(g, 1.45L, 0.7L, m.tooth);
     make_layer(g, 2.9L, 0.0L, m.rim);
+    const model_lines lines = {d, softness, tip_rounding * g->normal_module * teeth.cosine, x};
     for (int k = -40; k <= 40; ++k) {
-        add_line(&m, g, d, &teeth, softness, k, o + k * (long double)g->pitch);
+        add_line(&m, g, &lines, &teeth, k, o + k * (long double)g->pitch);
     }
     make_compliance(&m, g->stations);
     const int converged = solve(&m, x);
@@ -282,7 +389,7 @@ int elastic_model_solve(const elastic_gear *g, const elastic_deviation *d,
         const model_point *p = &m.point[i];
         const long double q = m.load[i], gamma = approach_of(&m, i, x);
         answer->line_force[p->line] += p->weight * q;
-        answer->force += p->weight * q;
+        answer->force += p->weight * q * p->grows;
         answer->energy += p->weight * 0.5L * q * (x + p->w - gamma);
         if (q > 0.0L) {
             answer->energy +=

@@ -216,7 +216,7 @@ static void forces_are_those_of_full_compliance(void) {
                         drawn.teeth[1], drawn.helix_angle / degree, drawn.stations, x);
         elastic_answer exact;
         const gmi_elastic_result got = elastic_solve_at(&c, &at, &d, x, 0);
-        GM_ASSERT(elastic_model_solve(&c.gear, &d, softness, o, x, &exact));
+        GM_ASSERT(elastic_model_solve(&c.gear, &d, softness, 0.0, o, x, &exact));
         /* Tables of the teeth: mostly 1e-7, more where the line of action passes the end of a fillet, as of many rings. */
         const double scale = (double)exact.force;
         const double accuracy = drawn.teeth[1] > 0.0 ? 1e-6 : 2e-5;
@@ -240,6 +240,98 @@ static void forces_are_those_of_full_compliance(void) {
     GM_ASSERT_INT(done, 500);
     GM_ASSERT(with_deviation > 200);
     GM_ASSERT(rings > 60);
+}
+
+/* The same gears to the public interface, without backlash. */
+static gm_pair_params drawing_of(const elastic_gear *g) {
+    gm_pair_params p;
+    gm_pair_params_default(&p);
+    p.pinion_teeth = (int)g->teeth[0];
+    p.wheel_teeth = (int)g->teeth[1];
+    p.normal_module = g->normal_module;
+    p.normal_pressure_angle = g->pressure_angle;
+    p.helix_angle = g->helix_angle;
+    p.face_width = g->face_width;
+    p.center_distance = fabs(g->center_distance);
+    p.pinion_profile_shift = g->shift[0];
+    p.wheel_profile_shift = g->shift[1];
+    p.pinion_tip_radius = fabs(g->tip_radius[0]);
+    p.wheel_tip_radius = fabs(g->tip_radius[1]);
+    p.pinion_rack_dedendum = p.wheel_rack_dedendum = g->dedendum;
+    p.pinion_rack_fillet_radius = p.wheel_rack_fillet_radius = g->fillet_radius;
+    return p;
+}
+
+/* Tip edges of random gears through the mesh: force, and the work of the roll, by full compliance and a search for the gap. */
+static void edges_are_those_of_full_compliance(void) {
+    uint64_t seed = 71;
+    int done = 0, rings = 0, edged = 0;
+    for (int k = 0; done < 60 && k < 240; ++k) {
+        elastic_gear g = random_gear(&seed, k % 5 == 4);
+        g.stations = g.stations < 4 ? 4 : g.stations;
+        gm_mesh_params law;
+        gm_mesh_params_default(&law);
+        law.law = GM_LAW_ELASTIC;
+        law.stations = g.stations;
+        law.tip_rounding = gm_test_uniform(&seed, 0.02, 0.3);
+        law.pinion_youngs_modulus = g.youngs_modulus[0];
+        law.wheel_youngs_modulus = g.youngs_modulus[1];
+        law.pinion_poisson_ratio = g.poisson_ratio[0];
+        law.wheel_poisson_ratio = g.poisson_ratio[1];
+        const double x = g.normal_module * pow(10.0, gm_test_uniform(&seed, -3.5, -2.0));
+        const double xi = gm_test_uniform(&seed, 0.0, 1.0);
+        elastic_gear_derive(&g);
+        const gm_pair_params drawing = drawing_of(&g);
+        gm_pair pair;
+        const int is_pair = gm_pair_init(&pair, &drawing) == GM_OK;
+        const size_t size = is_pair ? gm_mesh_size(&law, &pair) : 0;
+        void *memory = malloc(size + 1);
+        gm_mesh *mesh = NULL;
+        if (size == 0 || g.path_start < 0.1 * g.pitch ||
+            gm_mesh_init(&mesh, &law, &pair, NULL, NULL, memory, size) != GM_OK) {
+            free(memory);
+            continue;
+        }
+        gm_test_context("gear %d: %g/%g teeth, helix %g deg, %d stations, x %g", k, g.teeth[0],
+                        g.teeth[1], g.helix_angle / degree, g.stations, x);
+        const size_t room = gm_workspace_size(mesh);
+        void *const workspace_memory = malloc(room);
+        gm_workspace *workspace;
+        GM_ASSERT_INT(gm_workspace_init(&workspace, mesh, workspace_memory, room), GM_OK);
+
+        /* Tooth 0 touches at o in z = 0, pressed by x. */
+        const double o = g.path_start + xi * g.pitch;
+        gm_state state = {0};
+        state.pinion_angle = (o - pair.phase_origin[GM_DRIVE]) / pair.pinion.base_radius;
+        state.wheel_angle =
+            (pair.pinion.base_radius * state.pinion_angle - x - 0.5 * pair.backlash) /
+            pair.wheel.base_radius;
+        gm_mesh_result r;
+        GM_ASSERT_INT(gm_mesh_evaluate(mesh, &state, GM_WANT_FORCE, workspace, &r), GM_OK);
+
+        elastic_answer exact, beside[2], without;
+        GM_ASSERT(elastic_model_solve(&g, &ideal, NULL, law.tip_rounding, o, x, &exact));
+        GM_ASSERT_REL(r.drive_force, (double)exact.force, 1e-6);
+        const double step = 1e-6 * g.normal_module;
+        for (int side = 0; side < 2; ++side) {
+            GM_ASSERT(elastic_model_solve(&g, &ideal, NULL, law.tip_rounding,
+                                          o + (side == 0 ? -step : step), x, &beside[side]));
+        }
+        const double rolled = (double)((beside[1].energy - beside[0].energy) / (2.0L * step));
+        GM_ASSERT_ABS(r.pinion_torque / pair.pinion.base_radius - r.drive_force, rolled,
+                      1e-6 * r.drive_force + 1e-5 * fabs(rolled));
+
+        /* Edges that make a difference. */
+        GM_ASSERT(elastic_model_solve(&g, &ideal, NULL, 0.0, o, x, &without));
+        edged += fabsl(exact.force - without.force) > 1e-3L * exact.force;
+        rings += g.teeth[1] < 0.0;
+        ++done;
+        free(workspace_memory);
+        free(memory);
+    }
+    gm_test_context("%s", "");
+    GM_ASSERT_INT(done, 60);
+    GM_ASSERT(edged > 30 && rings > 3);
 }
 
 /* ---------------------------------------------------------------------------------------------
@@ -762,7 +854,7 @@ static void many_lines_are_no_other_case(void) {
         at.tooth = 0;
         const gmi_elastic_result got = elastic_solve_at(&c, &at, &ideal, 4e-6, k > 0);
         GM_ASSERT(c.work.count >= 7);
-        GM_ASSERT(elastic_model_solve(&c.gear, &ideal, NULL, o, 4e-6, &exact));
+        GM_ASSERT(elastic_model_solve(&c.gear, &ideal, NULL, 0.0, o, 4e-6, &exact));
         GM_ASSERT_REL(got.force, (double)exact.force, 1e-7);
         GM_ASSERT_REL(got.energy, (double)exact.energy, 1e-7);
     }
@@ -793,6 +885,7 @@ static void stations_converge(void) {
 
 int main(int argc, char **argv) {
     static const gm_test tests[] = {GM_TEST(forces_are_those_of_full_compliance),
+                                    GM_TEST(edges_are_those_of_full_compliance),
                                     GM_TEST(derivatives_are_those_of_differences),
                                     GM_TEST(deviation_of_a_point_counts_as_it_says),
                                     GM_TEST(energy_is_kept_over_a_mesh_cycle),
