@@ -47,6 +47,7 @@ typedef struct dynamic_run {
     model_torques rising;         /* the second over the side of a triangle before its middle */
     enum column_need row_need;    /* the most that a column asked for needs of the mesh, */
     enum column_need sample_need; /* and of the mesh between the rows, as it is filtered */
+    noise_piece noise;            /* of the load, about the last mean */
     double rows;                  /* number of rows, a whole number */
     double past_stop; /* +1 or -1: the stop speed is reached from below, from above; 0 = none */
     dynamic_sample sample;
@@ -131,7 +132,7 @@ static int see_torques(dynamic_run *run, double time, model_torques *torques) {
     return 0;
 }
 
-/* Adds the integrals over a time on which the solver goes forward: Gauss's rule of four points in pieces that are short
+/* Adds the integrals over a time, if anything follows the motion, on which the solver goes forward: Gauss's rule of four points in pieces that are short
  * to a natural vibration, good to 1e-9 of what changes. The weights are 1, and the share of the time that is over. */
 static int gather(dynamic_run *run, double to) {
     static const double nodes[4] = {0.06943184420297371, 0.33000947820757187, 0.6699905217924281,
@@ -140,7 +141,7 @@ static int gather(dynamic_run *run, double to) {
                                      0.17392742256872693};
     const double from = run->gathered_time, length = to - from;
 
-    if (!run->follows || run->mean_kind == SAMPLE_PLAIN || !(length > 0.0)) {
+    if (!(length > 0.0)) {
         return 0;
     }
     const double pieces = ceil(length / model_smooth_time(&run->model, &run->edge));
@@ -174,8 +175,9 @@ static void set_means(dynamic_run *run, const mean_weight *weight, double pinion
 
     add_torques(&mean, 1.0, following);
     for (int side = 0; side < 2; ++side) {
-        mean.load += load_noise_integral(load, weight->time[side], weight->time[side + 1],
-                                         weight->weight[side][0], weight->weight[side][1]);
+        mean.load +=
+            load_noise_integral(load, weight->time[side], weight->time[side + 1],
+                                weight->weight[side][0], weight->weight[side][1], &run->noise);
     }
     sample->mean_load = mean.load;
     sample->mean_force = model_mean_force(&run->model, &mean, acceleration);
@@ -204,9 +206,6 @@ static model_torques mean_following(const dynamic_run *run, double begin, double
 static int set_overlap(dynamic_run *run, enum column_need seen, double begin, double end,
                        double speed) {
     dynamic_sample *sample = &run->sample;
-    if (!run->shows_overlap) {
-        return 0;
-    }
     double touched;
     const int carries = integrator_touched(run->solver, begin, end, &touched);
     const int is_hat = run->mean_kind == SAMPLE_HAT;
@@ -244,7 +243,7 @@ static model_torques following_at(const dynamic_run *run, const gear_motion *mot
 static int see_box_means(dynamic_run *run, enum column_need seen, double row, int i) {
     const double end = sample_time(run, row, i + 0.5);
     gear_motion motion;
-    int failed = gather(run, end);
+    int failed = run->follows ? gather(run, end) : 0;
     if (!failed) {
         failed = see_motion(run, end, &motion);
     }
@@ -269,7 +268,9 @@ static int see_box_means(dynamic_run *run, enum column_need seen, double row, in
     const double speed = motion.pinion_speed - run->edge.pinion_speed;
     const double rest = run->is_started ? 0.0 : 0.5 * drive_acceleration(&run->model.drive, 0.0);
     set_means(run, &box, rest + speed * weight, &following, (motion.offset_rate - before) * weight);
-    failed = set_overlap(run, seen, begin, end, (motion.offset - run->edge.offset) * weight);
+    failed = !run->shows_overlap
+                 ? 0
+                 : set_overlap(run, seen, begin, end, (motion.offset - run->edge.offset) * weight);
 
     run->edge_time = end;
     run->edge = motion;
@@ -294,7 +295,7 @@ static double hat_acceleration(const dynamic_run *run, double begin, double midd
 static int see_hat_means(dynamic_run *run, enum column_need seen, double row, int i) {
     const double middle = run->sample.time, end = sample_time(run, row, i + 1.0);
     gear_motion motion;
-    int failed = gather(run, end);
+    int failed = run->follows ? gather(run, end) : 0;
     if (!failed) {
         failed = see_motion(run, end, &motion);
     }
@@ -329,7 +330,7 @@ static int see_hat_means(dynamic_run *run, enum column_need seen, double row, in
     /* The mean speed under a triangle of a parabola. */
     const double speed =
         (run->edge.offset_rate + 10.0 * run->sample.motion.offset_rate + motion.offset_rate) / 12.0;
-    failed = set_overlap(run, seen, begin, end, speed);
+    failed = !run->shows_overlap ? 0 : set_overlap(run, seen, begin, end, speed);
 
     run->edge_time = middle;
     run->edge = run->sample.motion;
@@ -393,7 +394,7 @@ static int take_sample(dynamic_run *run, double row, int i) {
 
     /* Where the gears are, how they touch if a column needs to know, and what they do about that time. */
     run->sample.time = sample_time(run, row, i);
-    int failed = gather(run, run->sample.time);
+    int failed = run->follows ? gather(run, run->sample.time) : 0;
     if (!failed) {
         failed = see_sample_motion(run, need);
     }
@@ -570,6 +571,7 @@ static int start_filter(dynamic_run *run) {
         run->row_need = larger(run->row_need, NEEDS_MOTION);
         run->past_stop = run->conf->stop_speed >= run->conf->start_speed ? 1.0 : -1.0;
     }
+    run->follows = run->mean_kind != SAMPLE_PLAIN && model_follows_motion(&run->model);
     run->filter = decimator_create(run->factor, run->column_count, kinds);
     return run->filter != NULL ? 0 : message_no_memory(run->conf->messages);
 }
@@ -579,7 +581,6 @@ static int start_run(dynamic_run *run, const gear_mesh *gears) {
         return message_no_memory(run->conf->messages);
     }
     run->sample.model = &run->model;
-    run->follows = model_follows_motion(&run->model);
 
     int exit_code = start_solver(run);
     if (exit_code != 0) {

@@ -98,16 +98,18 @@ static double piece_integral(const double c[4], const double w[2], double from, 
 }
 
 double load_noise_integral(const load_signal *load, double from, double to, double first_weight,
-                           double last_weight) {
+                           double last_weight, noise_piece *kept) {
     if (load->amplitude == 0.0 || !(to > 0.0) || !(to > from)) {
         return 0.0;
     }
 
     /* In units of the interval; the weight stays that of the whole line where the part before 0 is left out. */
     const double h = load->interval;
-    const double slope = (last_weight - first_weight) * h / (to - from);
+    const double slope =
+        last_weight != first_weight ? (last_weight - first_weight) * h / (to - from) : 0.0;
+    const double begin = from / h;
     const double end = to / h;
-    double position = fmax(from, 0.0) / h;
+    double position = fmax(begin, 0.0);
     double sum = 0.0;
 
     /* Beyond 2^52 intervals there is no noise, see load_torque(). */
@@ -116,11 +118,14 @@ double load_noise_integral(const load_signal *load, double from, double to, doub
     }
     for (int64_t k = (int64_t)position; position < end; ++k) {
         const double next = fmin((double)k + 1.0, end);
-        const double weight[2] = {first_weight + slope * ((double)k - from / h), slope};
-        double c[4];
+        const double weight[2] = {first_weight + slope * ((double)k - begin), slope};
 
-        load_noise_cubic(load, k, c);
-        sum += piece_integral(c, weight, position - (double)k, next - (double)k);
+        if (!kept->is_known || kept->k != k) {
+            load_noise_cubic(load, k, kept->coefficients);
+            kept->k = k;
+            kept->is_known = 1;
+        }
+        sum += piece_integral(kept->coefficients, weight, position - (double)k, next - (double)k);
         position = next;
     }
     return h * sum;

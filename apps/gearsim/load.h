@@ -43,12 +43,19 @@ double load_with_noise(const load_signal *load, double torque, double time);
 double load_at_speed(const load_signal *load, double wheel_speed);
 double load_by_speed(const load_signal *load, double wheel_speed);
 
+/* A piece of the noise that is kept from one integral to the next, as most of them lie in the same piece or the one after. */
+typedef struct noise_piece {
+    int is_known;
+    int64_t k;
+    double coefficients[4];
+} noise_piece;
+
 /*
  * Integral of the noise from one time to a later one, weighted by a straight line between the weights at both, exact:
  * the sum of the closed forms of its cubic pieces (weight times N m s). No noise before t = 0, where the gears rest.
  */
 double load_noise_integral(const load_signal *load, double from, double to, double first_weight,
-                           double last_weight);
+                           double last_weight, noise_piece *kept);
 
 /* Noise value k as a share of the amplitude, uniform in (-1, 1). */
 double load_noise_value(const load_signal *load, int64_t k);

@@ -56,18 +56,48 @@ static int has_plain_tables(const config *conf, const gear_mesh *gears) {
            pose->skew == 0.0 && pose->inclination == 0.0;
 }
 
-/* How often a run evaluates the mesh, as far as that is known beforehand. */
-static double evaluations(const config *conf, const gear_mesh *gears) {
-    static const double turn = 6.283185307179586;
-    const double speed = conf->drive == DRIVE_TORQUE
-                             ? fabs(conf->start_speed)
-                             : 0.5 * (fabs(conf->start_speed) + fabs(conf->end_speed));
-    const double passes =
-        conf->drive_file == NULL ? speed * conf->duration * gears->pair.pinion.teeth / turn : 0.0;
-    const int samples =
-        conf->columns == NULL || strcmp(conf->columns, "all") == 0 ? conf->oversampling : 0;
+static double start_of(const time_table *table, double number) {
+    return table != NULL ? time_table_value(table, 0.0) : number;
+}
 
-    return evaluations_per_pass * passes + samples * conf->output_rate * conf->duration;
+/* Mean speed of a torque-driven pinion (rad/s): both bodies as one, under what acts at the start and drags on them. */
+static double driven_speed(const config *conf, const gear_mesh *gears) {
+    const double ratio = gears->pair.pinion.base_radius / gears->pair.wheel.base_radius;
+    const double start = conf->start_speed;
+    const double load = start_of(conf->load_table, conf->mean_load);
+    const double load_drag =
+        conf->load_per_speed + conf->load_per_speed_squared * fabs(ratio * start);
+
+    const double inertia = conf->pinion_inertia + ratio * ratio * conf->wheel_inertia;
+    const double drag = conf->pinion_drag + ratio * ratio * (conf->wheel_drag + load_drag);
+    const double torque = start_of(conf->drive_table, conf->drive_torque) - ratio * load;
+    const double acceleration = (torque - drag * start) / inertia;
+
+    /* It dies away with exp(-drag / inertia t): twice integrated over the run. */
+    const double decay = drag / inertia * conf->duration;
+    const double share = decay > 1e-3 ? (decay + expm1(-decay)) / (decay * decay) : 0.5;
+    return start + share * acceleration * conf->duration;
+}
+
+/* Tooth passes of the run, as far as they are known beforehand. */
+static double tooth_passes(const config *conf, const gear_mesh *gears) {
+    static const double turn = 6.283185307179586;
+    const double duration = conf->duration;
+    const double mean_speed = conf->drive == DRIVE_TORQUE ? driven_speed(conf, gears)
+                              : conf->drive_table != NULL
+                                  ? time_table_integral(conf->drive_table, duration) / duration
+                                  : 0.5 * (fabs(conf->start_speed) + fabs(conf->end_speed));
+
+    return fabs(mean_speed) * duration * gears->pair.pinion.teeth / turn;
+}
+
+/* How often a run evaluates the mesh. Most samples do without, and pairs in contact are counted in any case. */
+static double evaluations(const config *conf, const gear_mesh *gears) {
+    const int shows_all = conf->columns == NULL || strcmp(conf->columns, "all") == 0;
+    const double samples = shows_all && conf->method == METHOD_ERK ? conf->oversampling : 0.0;
+
+    return evaluations_per_pass * tooth_passes(conf, gears) +
+           samples * conf->output_rate * conf->duration;
 }
 
 /* Whether the run is so long that filling the tables takes less than they save. */
