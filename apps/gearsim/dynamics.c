@@ -174,7 +174,7 @@ static void set_means(dynamic_run *run, const mean_weight *weight, double pinion
     model_torques mean = model_mean_over_time(&run->model, weight, pinion_acceleration);
 
     add_torques(&mean, 1.0, following);
-    for (int side = 0; side < 2; ++side) {
+    for (int side = 0; side < 2 && weight->time[side] < weight->time[side + 1]; ++side) {
         mean.load +=
             load_noise_integral(load, weight->time[side], weight->time[side + 1],
                                 weight->weight[side][0], weight->weight[side][1], &run->noise);

@@ -38,7 +38,7 @@ int integrator_keep_status(integrator *solver, int status) {
 
 /* Up to a step of a table counts what is before it. */
 double integrator_seen_time(const integrator *solver, double time) {
-    return fmin(time, solver->last_time);
+    return time < solver->last_time ? time : solver->last_time;
 }
 
 /* The library's status is that of SUNDIALS: > 0 try a smaller step, < 0 give up. */

@@ -109,7 +109,7 @@ double load_noise_integral(const load_signal *load, double from, double to, doub
         last_weight != first_weight ? (last_weight - first_weight) * h / (to - from) : 0.0;
     const double begin = from / h;
     const double end = to / h;
-    double position = fmax(begin, 0.0);
+    double position = begin > 0.0 ? begin : 0.0;
     double sum = 0.0;
 
     /* Beyond 2^52 intervals there is no noise, see load_torque(). */
@@ -117,7 +117,7 @@ double load_noise_integral(const load_signal *load, double from, double to, doub
         return 0.0;
     }
     for (int64_t k = (int64_t)position; position < end; ++k) {
-        const double next = fmin((double)k + 1.0, end);
+        const double behind = (double)k + 1.0, next = behind < end ? behind : end;
         const double weight[2] = {first_weight + slope * ((double)k - begin), slope};
 
         if (!kept->is_known || kept->k != k) {
