@@ -173,16 +173,18 @@ class Elastic(unittest.TestCase):
             self.assertAlmostEqual(float(a["dte_um"]), float(b["dte_um"]), delta=0.1)
 
     def test_listing_states_the_stiffness_at_the_load(self):
-        self.write(NREL)
-        result = self.gearsim("--geometry")
-        lines = dict(line.split(" = ") for line in result.stdout.splitlines())
-        mean, smallest, largest = (float(value) for value in lines["mesh_stiffness_N_per_um"].split(", "))
-        stiffness = [float(row["mesh_stiffness_N_per_um"]) for row in self.rows(NREL)]
-        self.assertAlmostEqual(mean, sum(stiffness) / len(stiffness), delta=2e-3 * mean)
-        self.assertAlmostEqual(smallest, min(stiffness), delta=1e-2 * mean)
-        self.assertAlmostEqual(largest, max(stiffness), delta=1e-2 * mean)
-        single = [float(value) for value in lines["single_stiffness_N_per_um"].split(", ")]
-        self.assertTrue(single[1] < single[0] < single[2] < smallest)
+        for key in ("off", "on"):
+            gears = NREL | {"mesh": {"corner_contact": key}}
+            self.write(gears)
+            result = self.gearsim("--geometry")
+            lines = dict(line.split(" = ") for line in result.stdout.splitlines())
+            mean, smallest, largest = (float(value) for value in lines["mesh_stiffness_N_per_um"].split(", "))
+            stiffness = [float(row["mesh_stiffness_N_per_um"]) for row in self.rows(gears)]
+            self.assertAlmostEqual(mean, sum(stiffness) / len(stiffness), delta=2e-3 * mean)
+            self.assertAlmostEqual(smallest, min(stiffness), delta=1e-2 * mean)
+            self.assertAlmostEqual(largest, max(stiffness), delta=1e-2 * mean)
+            single = [float(value) for value in lines["single_stiffness_N_per_um"].split(", ")]
+            self.assertTrue(single[1] < single[0] < single[2] < smallest)
 
     def test_teeth_that_have_no_elastic_law_are_refused_with_the_reason(self):
         deep = SPUR62 | {"gears": SPUR62["gears"] | {"pinion_rack_dedendum": 1.75}}

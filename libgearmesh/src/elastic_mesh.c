@@ -234,10 +234,7 @@ int gmi_elastic_mesh_init(gmi_elastic_mesh *made, const gm_mesh_params *params, 
 
     made->tooth_stiffness[GM_PINION] = params->pinion_tooth_stiffness;
     made->tooth_stiffness[GM_WHEEL] = params->wheel_tooth_stiffness;
-    made->body_compliance = wind_up(&pair->pinion, params->pinion_bore_radius,
-                                    params->pinion_youngs_modulus, params->pinion_poisson_ratio) +
-                            wind_up(&pair->wheel, params->wheel_bore_radius,
-                                    params->wheel_youngs_modulus, params->wheel_poisson_ratio);
+    made->body_compliance = 0.0;
 
     /* A tip that reaches too deep has no flank to touch beyond the path. */
     made->tip_rounding = params->tip_rounding;
@@ -251,98 +248,13 @@ int gmi_elastic_mesh_init(gmi_elastic_mesh *made, const gm_mesh_params *params, 
     gmi_elastic_work *work = (gmi_elastic_work *)(made + 1);
     gmi_elastic_work_init(work, params->stations, law.lines, work + 1);
     find_stiffness(made, pair, at, force, work);
+
+    /* Which is that of the teeth; bodies come on top. */
+    made->body_compliance = wind_up(&pair->pinion, params->pinion_bore_radius,
+                                    params->pinion_youngs_modulus, params->pinion_poisson_ratio) +
+                            wind_up(&pair->wheel, params->wheel_bore_radius,
+                                    params->wheel_youngs_modulus, params->wheel_poisson_ratio);
     return GM_OK;
-}
-
-/* ---------------------------------------------------------------------------------------------
- * Stiffness between ideal flanks
- * ------------------------------------------------------------------------------------------- */
-
-/* dF/dx of lines that carry the force, and the place x where they do; NaN where none does. */
-static double stiffness_at(const gmi_elastic *law, const gmi_elastic_lines_at *lines, double force,
-                           double *approach, gmi_elastic_work *work) {
-    gmi_elastic_result result;
-    int status = gmi_elastic_place(law, lines, work);
-    memset(work->deviation, 0, 2 * sizeof(double) * (size_t)work->slots);
-    double x = *approach;
-    for (int step = 0; step < LOAD_STEPS_MAX && status == GM_OK && work->count > 0; ++step) {
-        status = gmi_elastic_solve(law, work, x, &result);
-        const double missing = force - result.force;
-        if (fabs(missing) <= 1e-9 * force) {
-            *approach = x;
-            return result.by_approach;
-        }
-
-        /* The force bends upwards: a step from above stays above; from no contact the way is doubled. */
-        const double next = x + missing / result.by_approach;
-        x = next > 0.25 * x && result.by_approach > 0.0 ? next : (missing > 0.0 ? 2.0 : 0.5) * x;
-    }
-    return gmi_nan();
-}
-
-typedef struct spread {
-    double sum, smallest, largest;
-    int count;
-} spread;
-
-static void add_to_spread(spread *values, double value) {
-    if (value > 0.0) {
-        values->smallest = values->count == 0 ? value : fmin(values->smallest, value);
-        values->largest = values->count == 0 ? value : fmax(values->largest, value);
-        values->sum += value;
-        ++values->count;
-    }
-}
-
-static void find_stiffness(gmi_elastic_mesh *made, const gm_pair *pair, const gmi_engagement *at,
-                           double force, gmi_elastic_work *work) {
-    const gmi_elastic *law = &made->law;
-    const double start =
-        fmax(at->start_roll_length[GM_PINION], at->line_of_action - at->tip_roll_length[GM_WHEEL]);
-    const double end =
-        fmin(at->tip_roll_length[GM_PINION], at->line_of_action - at->start_roll_length[GM_WHEEL]);
-    const double pitch = pair->transverse_base_pitch;
-    const double climb = pair->face_advance / pair->face_width;
-    const double rise = climb * law->face_width;
-    gmi_elastic_lines_at lines = {.pitch = pitch,
-                                  .climb = climb,
-                                  .lower = start,
-                                  .upper = end,
-                                  .line_of_action = at->line_of_action,
-                                  .step = 1,
-                                  .teeth = pair->pinion.teeth};
-
-    /* A first guess of x: 10 N/(mm um). */
-    double approach = force / (1e10 * law->face_width);
-    spread mesh = {0.0, 0.0, 0.0, 0};
-    for (int k = 0; k < STIFFNESS_POSITIONS; ++k) {
-        lines.origin = start + pitch * ((double)k + 0.5) / STIFFNESS_POSITIONS;
-        lines.first = (int)ceil((start - lines.origin - fmax(rise, 0.0)) / pitch);
-        lines.last = (int)floor((end - lines.origin - fmin(rise, 0.0)) / pitch);
-        lines.tooth = (lines.first % lines.teeth + lines.teeth) % lines.teeth;
-        add_to_spread(&mesh, stiffness_at(law, &lines, force, &approach, work));
-    }
-
-    /* One pair alone, all along the face, over its path. */
-    gmi_elastic_lines_at alone = lines;
-    alone.climb = 0.0;
-    alone.first = alone.last = alone.tooth = 0;
-    spread single = {0.0, 0.0, 0.0, 0};
-    gmi_elastic_work_reset(work);
-    for (int k = 0; k < STIFFNESS_POSITIONS; ++k) {
-        alone.origin = start + (end - start) * ((double)k + 0.5) / STIFFNESS_POSITIONS;
-        add_to_spread(&single, stiffness_at(law, &alone, force, &approach, work));
-    }
-
-    const gm_mesh_stiffness stiffness = {
-        .mesh_mean = mesh.sum / mesh.count,
-        .mesh_smallest = mesh.smallest,
-        .mesh_largest = mesh.largest,
-        .single_mean = single.sum / single.count,
-        .single_smallest = single.smallest,
-        .single_largest = single.largest,
-    };
-    made->stiffness = stiffness;
 }
 
 /* ---------------------------------------------------------------------------------------------
@@ -739,4 +651,127 @@ int gmi_side_sum_by_law(const gm_mesh *mesh, int side, const gm_position *positi
     gmi_side_sum_3d(mesh->pair, &mesh->engagement, &mesh->side[side], side, position, wanted,
                     total);
     return GM_OK;
+}
+
+/* ---------------------------------------------------------------------------------------------
+ * Stiffness between ideal flanks
+ * ------------------------------------------------------------------------------------------- */
+
+/* Lines between ideal flanks at the approach x, with the edges that touch then where tips is not NULL. */
+static int place_ideal(const gmi_elastic *law, const gmi_elastic_lines_at *within,
+                       const gmi_elastic_tips *tips, double x, gmi_elastic_work *work) {
+    gmi_elastic_lines_at lines = *within;
+    const double rise = lines.climb * law->face_width;
+    if (tips != NULL) {
+        lines.goes_on = lines.slopes = 1;
+        lines.below = gmi_elastic_tips_below(tips, x, 0.0);
+        lines.above = gmi_elastic_tips_above(tips, x, 0.0);
+        lines.fading[0] = tips->tip[GM_WHEEL].fading;
+        lines.fading[1] = tips->tip[GM_PINION].fading;
+    }
+    const double lower = lines.lower - lines.below - lines.origin;
+    const double upper = lines.upper + lines.above - lines.origin;
+    lines.first = (int)ceil((lower - fmax(rise, 0.0)) / lines.pitch);
+    lines.last = (int)floor((upper - fmin(rise, 0.0)) / lines.pitch);
+    lines.tooth = (lines.first % lines.teeth + lines.teeth) % lines.teeth;
+    const int status = gmi_elastic_place(law, &lines, work);
+    const size_t bytes = 2 * sizeof(double) * (size_t)work->slots;
+    memset(work->deviation, 0, bytes);
+    memset(work->deviation_by_roll, 0, bytes);
+    memset(work->deviation_by_z, 0, bytes);
+    work->is_entering = tips != NULL && gmi_elastic_edges_add(tips, x, 0.0, work);
+    return status;
+}
+
+/* dF/dx of lines that carry the force, and the place x where they do; NaN where none does. */
+static double stiffness_at(const gmi_elastic_mesh *made, const gmi_elastic_lines_at *lines,
+                           const gmi_elastic_tips *tips, double force, double *approach,
+                           gmi_elastic_work *work) {
+    const side_view view = {.elastic = made, .gain = 1.0};
+    double x = *approach;
+    for (int step = 0; step < LOAD_STEPS_MAX; ++step) {
+        gmi_elastic_result result;
+        int status = place_ideal(&made->law, lines, tips, x, work);
+        if (status != GM_OK || work->count == 0) {
+            break;
+        }
+        status = gmi_elastic_solve(&made->law, work, x, &result);
+        side_force found = {result.force, result.by_approach, 0.0};
+        if (status == GM_OK && work->is_entering && is_entry_loaded(work)) {
+            const gmi_elastic_gradient rolled = {.by_roll = 0.0};
+            found = enter(&view, work, &result, &rolled);
+        }
+        const double missing = force - found.value;
+        if (status != GM_OK || fabs(missing) <= 1e-9 * force) {
+            *approach = status == GM_OK ? x : *approach;
+            return status == GM_OK ? found.by_approach : gmi_nan();
+        }
+
+        /* The force bends upwards: a step from above stays above; from no contact the way is doubled. */
+        const double next = x + missing / found.by_approach;
+        x = next > 0.25 * x && found.by_approach > 0.0 ? next : (missing > 0.0 ? 2.0 : 0.5) * x;
+    }
+    return gmi_nan();
+}
+
+typedef struct spread {
+    double sum, smallest, largest;
+    int count;
+} spread;
+
+static void add_to_spread(spread *values, double value) {
+    if (value > 0.0) {
+        values->smallest = values->count == 0 ? value : fmin(values->smallest, value);
+        values->largest = values->count == 0 ? value : fmax(values->largest, value);
+        values->sum += value;
+        ++values->count;
+    }
+}
+
+static void find_stiffness(gmi_elastic_mesh *made, const gm_pair *pair, const gmi_engagement *at,
+                           double force, gmi_elastic_work *work) {
+    const gmi_elastic_tips *tips = made->has_corners ? &made->tips : NULL;
+    const double lower = at->line_of_action - at->tip_roll_length[GM_WHEEL];
+    const double upper = at->tip_roll_length[GM_PINION];
+    const double start = fmax(at->start_roll_length[GM_PINION], lower);
+    const double end = fmin(upper, at->line_of_action - at->start_roll_length[GM_WHEEL]);
+    const double pitch = pair->transverse_base_pitch;
+    gmi_elastic_lines_at lines = {.pitch = pitch,
+                                  .climb = pair->face_advance / pair->face_width,
+                                  .lower = tips != NULL ? lower : start,
+                                  .upper = tips != NULL ? upper : end,
+                                  .line_of_action = at->line_of_action,
+                                  .step = 1,
+                                  .teeth = pair->pinion.teeth};
+
+    /* A first guess of x: 10 N/(mm um). */
+    double approach = force / (1e10 * made->law.face_width);
+    spread mesh = {0.0, 0.0, 0.0, 0};
+    for (int k = 0; k < STIFFNESS_POSITIONS; ++k) {
+        lines.origin = start + pitch * ((double)k + 0.5) / STIFFNESS_POSITIONS;
+        add_to_spread(&mesh, stiffness_at(made, &lines, tips, force, &approach, work));
+    }
+
+    /* One pair alone, all along the face, over its path. */
+    gmi_elastic_lines_at alone = lines;
+    alone.climb = 0.0;
+    alone.lower = start;
+    alone.upper = end;
+    alone.pitch = 2.0 * (end - start);
+    spread single = {0.0, 0.0, 0.0, 0};
+    gmi_elastic_work_reset(work);
+    for (int k = 0; k < STIFFNESS_POSITIONS; ++k) {
+        alone.origin = start + (end - start) * ((double)k + 0.5) / STIFFNESS_POSITIONS;
+        add_to_spread(&single, stiffness_at(made, &alone, NULL, force, &approach, work));
+    }
+
+    const gm_mesh_stiffness stiffness = {
+        .mesh_mean = mesh.sum / mesh.count,
+        .mesh_smallest = mesh.smallest,
+        .mesh_largest = mesh.largest,
+        .single_mean = single.sum / single.count,
+        .single_smallest = single.smallest,
+        .single_largest = single.largest,
+    };
+    made->stiffness = stiffness;
 }

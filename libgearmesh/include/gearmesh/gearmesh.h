@@ -921,13 +921,15 @@ GM_API size_t gm_workspace_size(const gm_mesh *mesh);
 GM_API int gm_workspace_init(gm_workspace **workspace, const gm_mesh *mesh, void *memory,
                              size_t memory_size);
 
-/** Stiffness of elastic teeth at the reference torque, between ideal flanks, along the line of action (N/m). */
+/** Stiffness of elastic teeth at the reference torque, between ideal flanks, along the line of action (N/m). Taken at 32
+ *  places of the mesh cycle or the path; bodies with a bore are not in it. */
 typedef struct gm_mesh_stiffness {
-    double mesh_mean;     /**< dF/dx of all pairs, mean over a mesh cycle */
+    double
+        mesh_mean; /**< dF/dx of all pairs, with corner contact if the mesh has it, mean over a mesh cycle */
     double mesh_smallest; /**< in it */
     double mesh_largest;  /**< in it */
 
-    /** of one pair that carries the force alone, all along the face, mean over its path */
+    /** of one pair that carries the force alone, all along the face, within its path, mean over it */
     double single_mean;
 
     double single_smallest; /**< on it */
