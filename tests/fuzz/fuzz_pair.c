@@ -239,13 +239,15 @@ static void claim_elastic(fuzz_bytes *bytes, int how, const gm_pair *pair, const
     law.law = GM_LAW_ELASTIC;
     law.damping = 1e3;
     law.stations = 2 + fuzz_byte(bytes) % 20;
+    law.corner_contact = fuzz_byte(bytes) % 4 == 0 ? GM_CORNER_OFF : GM_CORNER_BY_LAW;
+    law.tip_rounding = pow(10.0, -3.0 * fuzz_byte(bytes) / 255.0);
     if (how & RAW_STATE) {
         law.pinion_youngs_modulus = fuzz_any(bytes);
         law.wheel_poisson_ratio = fuzz_any(bytes);
         law.reference_torque = fuzz_any(bytes);
         law.wheel_bore_radius = fuzz_any(bytes);
+        law.tip_rounding = fuzz_byte(bytes) % 2 == 0 ? law.tip_rounding : fuzz_any(bytes);
     }
-    law.corner_contact = how & 1 ? GM_CORNER_OFF : GM_CORNER_BY_LAW;
     const size_t size = gm_mesh_size(&law, pair);
     void *memory = malloc(size + 1);
     gm_mesh *mesh = NULL;
