@@ -81,6 +81,15 @@ static gm_pair_params helical(void) {
     return p;
 }
 
+/* Planet and ring, with a helix. */
+static gm_pair_params ring(void) {
+    gm_pair_params p = gears_of(36, -93, 21e-3, 8.0, 400e-3, 589.74e-3);
+    p.pinion_profile_shift = 0.5039;
+    p.wheel_profile_shift = 0.1171;
+    p.pinion_tip_alteration = -0.08338;
+    return p;
+}
+
 static gm_mesh_result evaluate(elastic_mesh *m, const gm_state *state, int wanted) {
     gm_mesh_result r;
     GM_ASSERT_INT(
@@ -91,10 +100,10 @@ static gm_mesh_result evaluate(elastic_mesh *m, const gm_state *state, int wante
 }
 
 /* ---------------------------------------------------------------------------------------------
- * Variants: three pairs, all laws, damped, posed, with flanks, with bodies that wind up
+ * Variants: four pairs, all laws, damped, posed, with flanks, with bodies that wind up
  * ------------------------------------------------------------------------------------------- */
 
-enum { VARIANTS = 12 };
+enum { VARIANTS = 16 };
 
 typedef struct variant {
     elastic_mesh rubbing, smooth;
@@ -105,29 +114,29 @@ typedef struct variant {
 
 static void variant_make(variant *v, int k, int n) {
     uint64_t seed = 91u + (uint64_t)k;
-    const gm_pair_params gears[3] = {spur62(), helical(), nrel3()};
-    gm_pair_params params = gears[k % 3];
+    const gm_pair_params gears[4] = {spur62(), helical(), nrel3(), ring()};
+    gm_pair_params params = gears[k % 4];
     gm_mesh_params law = elastic_law(0.3);
     gm_pair pair;
     memset(v, 0, sizeof *v);
     params.backlash = 20e-6;
     GM_ASSERT_INT(gm_pair_init(&pair, &params), GM_OK);
-    v->has_flanks = k >= 3;
+    v->has_flanks = k >= 4;
     for (int gear = 0; v->has_flanks && gear < 2; ++gear) {
         random_flanks_make(&v->flanks[gear], &seed, &pair, gear, 1e-3 * params.normal_module);
     }
-    law.friction_law = k % 4 == 1   ? GM_FRICTION_ISO14179
-                       : k % 4 == 2 ? GM_FRICTION_BENEDICT_KELLEY
-                                    : GM_FRICTION_CONSTANT;
+    law.friction_law = (k + k / 4) % 4 == 1   ? GM_FRICTION_ISO14179
+                       : (k + k / 4) % 4 == 2 ? GM_FRICTION_BENEDICT_KELLEY
+                                              : GM_FRICTION_CONSTANT;
     law.damping = k % 2 ? 1e4 : 0.0;
-    if (k >= 6) {
+    if (k >= 8) {
         law.pose.center_distance_change = 5e-3 * params.normal_module;
         law.pose.offset = -3e-3 * params.normal_module;
     }
-    if (k >= 9) {
+    if (k >= 12) {
         law.pose.skew = 1e-4;
         law.pose.inclination = -7e-5;
-        law.wheel_bore_radius = 0.1 * pair.wheel.root_radius;
+        law.pinion_bore_radius = 0.1 * pair.pinion.root_radius;
     }
     const gm_flanks *pinion = v->has_flanks ? v->flanks[0].flanks : NULL;
     const gm_flanks *wheel = v->has_flanks ? v->flanks[1].flanks : NULL;
@@ -179,8 +188,8 @@ static void what_friction_takes_is_lost(void) {
             const double length = r.force * v.rubbing.pair.center_distance;
             GM_ASSERT_ABS(r.wrench.pinion_moment[2] - s.wrench.pinion_moment[2], -on_pinion,
                           1e-10 * fabs(length));
-            GM_ASSERT_ABS(r.wrench.wheel_moment[2] - s.wrench.wheel_moment[2], -on_wheel,
-                          1e-10 * fabs(length));
+            GM_ASSERT_ABS(r.wrench.wheel_moment[2] - s.wrench.wheel_moment[2],
+                          -v.rubbing.pair.wheel.sign * on_wheel, 1e-10 * fabs(length));
             for (int axis = 0; axis < 3; ++axis) {
                 GM_ASSERT_ABS(r.wrench.pinion_force[axis] + r.wrench.wheel_force[axis], 0.0,
                               1e-12 * fabs(r.force));

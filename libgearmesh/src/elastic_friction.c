@@ -68,8 +68,22 @@ static gmi_elastic_gradient differentiate(const gm_mesh *mesh, const gmi_sliding
 }
 
 /*
- * Over the force of the side, with derivatives. Bodies in series take a part of x: x of the teeth is x - c F, so that it
- * moves by 1 / (1 + c dF/dx) with x, and falls by c dF/d roll with the roll.
+ * Of the sum of all line loads F_t, by the roll, with bodies in series; F itself where no edge enters, whose arm is shorter.
+ */
+static double loads_by_origin(const gm_mesh *mesh, const gmi_side_sum *total, double by_teeth,
+                              gmi_elastic_work *work) {
+    const double body = mesh->elastic->body_compliance;
+    if (!work->is_entering || body == 0.0) {
+        return mesh->law.stiffness * total->by_origin;
+    }
+    gmi_elastic_gradient loads, energy;
+    gmi_elastic_differentiate(&mesh->elastic->law, work, &loads, &energy);
+    return loads.by_roll / (1.0 + body * by_teeth);
+}
+
+/*
+ * Over the force of the side, with derivatives. Bodies in series take a part of x: x of the teeth is x - c F_t, so that it
+ * moves by 1 / (1 + c dF_t/dx) with x, and falls by c dF_t/d roll with the roll.
  */
 static gmi_varying per_force(const gm_mesh *mesh, int side, const gmi_sliding *sliding,
                              const gmi_side_sum *total, double value, int is_moment,
@@ -89,8 +103,9 @@ static gmi_varying per_force(const gm_mesh *mesh, int side, const gmi_sliding *s
     double held = 0.0, held_teeth = 0.0;
     const double force_by_origin = mesh->law.stiffness * total->by_origin;
     const double force_by_delta = mesh->law.stiffness * total->by_delta;
+    const double teeth_by_origin = -body * loads_by_origin(mesh, total, by_teeth, work);
     const gmi_elastic_gradient by = differentiate(mesh, sliding, is_moment, work);
-    const double by_origin = by.by_roll - body * by.by_approach * force_by_origin;
+    const double by_origin = by.by_roll + by.by_approach * teeth_by_origin;
 
     /* The gap of the wheel's edge follows x by itself. */
     const double *by_deviation = work->table[0] + 2 * work->slots;
