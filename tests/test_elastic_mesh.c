@@ -181,6 +181,7 @@ enum { VARIANTS = 16 };
 typedef struct variant {
     elastic_mesh mesh;
     random_flanks flanks[2];
+    double softness[2][100]; /* factors of the teeth, in the last ones */
     int has_flanks;
 } variant;
 
@@ -204,7 +205,12 @@ static void variant_make(variant *v, int k) {
         law.pose.offset = -3e-3 * params.normal_module;
         law.pose.axial_shift = k >= 12 ? 0.05 * params.face_width : 0.0;
     }
+    for (int tooth = 0; tooth < 200; ++tooth) {
+        v->softness[tooth / 100][tooth % 100] = gm_test_uniform(&seed, 0.5, 1.5);
+    }
     if (k >= 12) {
+        law.pinion_tooth_stiffness = v->softness[0];
+        law.wheel_tooth_stiffness = v->softness[1];
         law.pose.skew = 1e-4;
         law.pose.inclination = -7e-5;
         law.pinion_bore_radius = 0.5 * pair.pinion.root_radius;
