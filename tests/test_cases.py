@@ -233,6 +233,8 @@ class Cracked(Case):
 
         self.assertIn(f"by up to {1e6 * max(more):.2f} um more", self.page())
         self.assertIn(f"{spectra['cracked'][123]:.0f} N at order 123", self.page())
+        f_0 = g["eigenfrequency_Hz"]
+        self.assertIn(f"f_0 = {f_0:.0f} Hz or order {f_0 / 25:.0f} here", self.page())
 
 
 class Jumps(Case):
