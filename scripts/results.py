@@ -11,6 +11,7 @@ import program
 
 COLUMNS = ("time_s", "pinion_speed_rpm", "pinion_angle_rad", "contact_force_N")
 PAIRS_COLUMN = "pairs_in_contact"
+ROWS_AT_ONCE = 50000  # of a CSV
 HDF5_SIGNATURE = b"\x89HDF\r\n\x1a\n"
 
 # A sampled signal is trusted up to this share of its rate: the low-pass of gearsim passes it unchanged.
@@ -227,14 +228,24 @@ def _read_csv(path, wanted):
     used = [names.index(name) for name in chosen]
     if _is_cut_off(path):
         raise RunError(f"{path}: its last line must have an end (the file is cut off)")
-    if _count_rows(path, names, head_lines) == 0:
-        return dict.fromkeys(chosen, []), provenance, None
+    columns = {name: np.empty(_count_rows(path, names, head_lines)) for name in chosen}
     try:
-        table = np.loadtxt(path, delimiter=",", skiprows=head_lines, usecols=used, ndmin=2, encoding="utf-8")
+        _fill(path, columns, used, head_lines)
     except ValueError as error:
         raise RunError(_bad_row(path, names, used, head_lines) or f"{path}: {program.first_line_of(error)}") from error
-    columns = {name: np.ascontiguousarray(column) for name, column in zip(chosen, table.T)}
     return columns, provenance, _incomplete_reason(path)
+
+
+def _fill(path, columns, used, head_lines):
+    """Rows into the columns, some at a time: together they would take as much memory again."""
+    rows = len(next(iter(columns.values())))
+    with open(path, encoding="utf-8") as file:
+        for _ in range(head_lines):
+            file.readline()
+        for first in range(0, rows, ROWS_AT_ONCE):
+            table = np.loadtxt(file, delimiter=",", usecols=used, ndmin=2, max_rows=min(ROWS_AT_ONCE, rows - first))
+            for column, part in zip(columns.values(), table.T):
+                column[first : first + ROWS_AT_ONCE] = part
 
 
 def _count_rows(path, names, head_lines):

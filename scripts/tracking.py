@@ -26,6 +26,7 @@ FEWEST_TURNS, MOST_TURNS = 5, 40
 SWEEP_OF_TRACK, RESOLVED_DAMPING, TURNS_APART = 0.035, 0.02, 2.5
 BANDWIDTH_TURNS, LEAST_BANDWIDTH = 4.0, 0.1  # of a Vold-Kalman filter, times the turns of such a frame
 MOST_BANDWIDTH = 0.5  # of what is 1 order away, as the sidebands of a gear are, 1 % leaks in then
+BESIDE = 24  # rows to each side of a piece: more than the low-pass of a doubled rate reaches, and a spline feels
 POINTS = 600  # frames in a record, at most
 PADDING = 8  # between two bins of a map a Hann window then loses 0.3 % at most
 STEPS_OF_BANDWIDTH = 16  # steps of an envelope of the Vold-Kalman filter in 1 / bandwidth
@@ -40,18 +41,20 @@ class OverAngle:
     def __init__(self, run):
         self.turn = run.angle_rad / (2.0 * np.pi)
         self.rate_Hz = run.rate_Hz
-        self.values = signal.resample_poly(run.force_N - run.force_N.mean(), 2, 1)
-
-        # The angle half-way between two rows is their mean.
-        self.fine_turn = np.repeat(self.turn, 2)
-        self.fine_turn[1:-1:2] += 0.5 * np.diff(self.turn)
+        self.values, self.mean = run.force_N, run.force_N.mean()
 
     def piece(self, start, turns, samples):
         """So many samples at even steps of the angle."""
-        first, last = np.searchsorted(self.fine_turn, (start, start + turns))
-        part = slice(max(0, first - 16), last + 16)
-        growing = np.flatnonzero(np.diff(self.fine_turn[part], prepend=-np.inf) > 0)  # it may stand still beside the piece
-        spline = interpolate.CubicSpline(self.fine_turn[part][growing], self.values[part][growing])
+        first, last = np.searchsorted(self.turn, (start, start + turns))
+        part = slice(max(0, first - BESIDE), last + BESIDE)
+
+        # At twice the rate. The angle half-way between two rows is their mean.
+        values = signal.resample_poly(self.values[part] - self.mean, 2, 1)
+        turn = np.repeat(self.turn[part], 2)
+        turn[1:-1:2] += 0.5 * np.diff(self.turn[part])
+
+        growing = np.flatnonzero(np.diff(turn, prepend=-np.inf) > 0)  # it may stand still beside the piece
+        spline = interpolate.CubicSpline(turn[growing], values[growing])
         return spline(start + np.arange(samples) * (turns / samples))
 
     def samples_per_turn(self, highest_order, lowest_rpm):
