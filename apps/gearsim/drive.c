@@ -132,7 +132,6 @@ drive_motion drive_at(const pinion_drive *drive, double time) {
     drive_motion motion = {
         .angle = steady_angle(drive, time),
         .speed = steady_speed(drive, time),
-        .acceleration = drive_acceleration(drive, time),
     };
 
     if (drive->turned != NULL) {

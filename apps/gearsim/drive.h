@@ -25,9 +25,8 @@ typedef struct pinion_drive {
 } pinion_drive;
 
 typedef struct drive_motion {
-    double angle;        /* phi_p, 0 at t = 0 (rad) */
-    double speed;        /* rad/s */
-    double acceleration; /* rad/s2 */
+    double angle; /* phi_p, 0 at t = 0 (rad) */
+    double speed; /* rad/s */
 } drive_motion;
 
 /* Returns 0, or EXIT_RUN_FAILED if there is no memory. */
@@ -40,7 +39,7 @@ void drive_free(pinion_drive *drive);
  */
 drive_motion drive_at(const pinion_drive *drive, double time);
 
-/* Its acceleration alone. */
+/* And its acceleration (rad/s2). */
 double drive_acceleration(const pinion_drive *drive, double time);
 
 /* Whether the acceleration is the same at all times. */

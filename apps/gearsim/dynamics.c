@@ -455,8 +455,8 @@ static int take_row_period(dynamic_run *run, double row) {
         }
 
         decimator_push(run->filter, run->values);
-        tell_progress(run);
         if (i == 0) {
+            tell_progress(run);
             look_for_stop(run, row);
         }
 

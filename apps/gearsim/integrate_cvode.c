@@ -22,9 +22,9 @@ typedef struct cvode_memory {
     void *cvode;
     SUNNonlinearSolver corrector;
     N_Vector scratch;
-    N_Vector reader; /* takes CVODE's polynomial down, see read_polynomial() */
-    int order;       /* of the polynomial below, -1: that of the last step has not been read */
-    double length;   /* of the step (s) */
+    N_Vector reader;   /* takes CVODE's polynomial down, see read_polynomial() */
+    int order;         /* of the polynomial below, -1: that of the last step has not been read */
+    double per_length; /* of the step (1/s) */
     double polynomial[ORDERS + 1][STATES_MAX]; /* over the share of the step from its end on */
 } cvode_memory;
 
@@ -128,9 +128,14 @@ static int restart(integrator *solver) {
  * gets to see (take_down()). By derivatives it would take a call for each of them.
  */
 static int read_polynomial(const integrator *solver, cvode_memory *memory) {
-    return CVodeGetLastStep(memory->cvode, &memory->length) != CV_SUCCESS ||
-           CVodeGetDky(memory->cvode, solver->time, 0, memory->reader) != CV_SUCCESS ||
-           memory->order < 0;
+    sunrealtype length;
+    if (CVodeGetLastStep(memory->cvode, &length) != CV_SUCCESS ||
+        CVodeGetDky(memory->cvode, solver->time, 0, memory->reader) != CV_SUCCESS ||
+        memory->order < 0) {
+        return -1;
+    }
+    memory->per_length = 1.0 / length;
+    return 0;
 }
 
 static int interpolate(integrator *solver, double time, double state[]) {
@@ -139,7 +144,7 @@ static int interpolate(integrator *solver, double time, double state[]) {
     if (memory->order < 0 && read_polynomial(solver, memory) != 0) {
         return -1;
     }
-    const double share = (time - solver->time) / memory->length;
+    const double share = (time - solver->time) * memory->per_length;
     for (int i = 0; i < solver->model->states; i += 2) {
         double first = 0.0, second = 0.0;
         for (int k = memory->order; k >= 0; --k) {

@@ -20,6 +20,7 @@ load_signal load_create(double mean, double amplitude, double interval, uint64_t
     const load_signal created = {.mean = mean,
                                  .amplitude = amplitude,
                                  .interval = interval,
+                                 .per_interval = 1.0 / interval,
                                  .stream = mix(seed + golden_step)};
 
     return created;
@@ -107,8 +108,8 @@ double load_noise_integral(const load_signal *load, double from, double to, doub
     const double h = load->interval;
     const double slope =
         last_weight != first_weight ? (last_weight - first_weight) * h / (to - from) : 0.0;
-    const double begin = from / h;
-    const double end = to / h;
+    const double begin = from * load->per_interval;
+    const double end = to * load->per_interval;
     double position = begin > 0.0 ? begin : 0.0;
     double sum = 0.0;
 

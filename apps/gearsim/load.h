@@ -20,6 +20,7 @@ typedef struct load_signal {
     ripple ripple;            /* over the pinion's angle (N m) */
     double amplitude;         /* noise values are uniform in +- amplitude, N m */
     double interval;          /* between noise values, s */
+    double per_interval;      /* 1/s */
     uint64_t stream;          /* what the seed has been mixed to */
     double per_speed;         /* c of what follows the wheel's speed w: c w + c2 w |w| (N m s) */
     double per_speed_squared; /* c2 (N m s2) */
