@@ -71,6 +71,16 @@ class Tracking(unittest.TestCase):
             frames = tracking.frames_of(run, 10, 80)
             self.assert_known(run, tracking.tracked(frames, tracking.OverAngle(run), np.array(list(KNOWN))))
 
+    def test_short_frames_tell_the_asked_orders_apart(self):
+        """In a fast sweep a frame is as short as tells two orders apart at all; the weak one is not what leaks of the other."""
+        known = {1.0: (0.4, 0.0), 1.25: (1.0, 0.5), 8.0: (3.0, 0.3), 9.0: (0.2, 1.0)}
+        run = run_of(600, 4000, lambda angle: waves(angle, known))
+        frames = tracking.track_frames(run, 0.25)
+        self.assertLess(np.min(frames.turns), 11)
+        found = tracking.tracked(frames, tracking.OverAngle(run), np.array(list(known)))
+        for (amplitude, _), values in zip(known.values(), found):
+            np.testing.assert_allclose(values, amplitude, rtol=0.01)
+
     def test_a_reversing_shaft_has_frames_on_both_sides(self):
         run = run_of(2000, -2000)
         frames = tracking.frames_of(run, 6, 120)

@@ -41,7 +41,7 @@ static const char options_help[] =
     "  --template [KIND]        prints a parameter file with comments that runs as it stands: all "
     "keys, or those\n"
     "                           of a KIND: dynamic, static, speed, torque, simple, 3d, constant, "
-    "iso6336\n"
+    "iso6336, elastic\n"
     "  --help                   this text\n"
     "  --version                the version\n"
     "  --                       all that follows is no option\n"
