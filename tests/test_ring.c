@@ -342,6 +342,53 @@ static void a_ring_out_of_mesh_is_refused(void) {
     }
 }
 
+/*
+ * Axes that have moved are another drawing of the same gears: what is in the way there is in the way of the pose.
+ * Trimming alone is not, as the gears were put together where they are drawn.
+ */
+static void tips_in_the_way_of_a_moved_ring_are_refused(void) {
+    int refused = 0, taken = 0;
+    for (int i = 0; i < 12 * 15; ++i) {
+        const int teeth = 68 + i / 15;
+        const double along_x = 1e-4 * (i % 15 - 4); /* 0.5 mm is left to the root */
+        gm_test_context("60/-%d moved by %g", teeth, along_x);
+        gm_pair_params params = ring_params(60, teeth, 2e-3, (teeth - 60) * 1e-3, 0.0, 0.0);
+        params.backlash = 1e-3; /* so that it is the tips that decide, not the flanks */
+        gm_pair pair;
+        if (gm_pair_init(&pair, &params) != GM_OK) {
+            continue;
+        }
+
+        /* All that belongs to one gear is given; a ring that moves along +x comes nearer. */
+        gm_pair_params there = params;
+        there.center_distance -= along_x;
+        there.backlash = (double)NAN;
+        there.pinion_normal_thickness = pair.pinion.normal_thickness;
+        there.wheel_normal_thickness = pair.wheel.normal_thickness;
+        there.pinion_tip_radius = pair.pinion.tip_radius;
+        there.wheel_tip_radius = pair.wheel.tip_radius;
+        const char *requirement = NULL;
+        const int status = gm_pair_params_check(&there, NULL, &requirement);
+
+        plain_mesh room;
+        gm_mesh *mesh;
+        gm_mesh_params law;
+        gm_mesh_params_default(&law);
+        law.stiffness = 1e8;
+        law.pose.center_distance_change = along_x;
+        const int posed =
+            gm_mesh_init(&mesh, &law, &pair, NULL, NULL, room.memory, sizeof room.memory);
+        if (status == GM_OK) {
+            GM_ASSERT_INT(posed, GM_OK);
+            ++taken;
+        } else if (requirement != NULL && strstr(requirement, "trochoid") != NULL) {
+            GM_ASSERT_INT(posed, GM_POSE_OUT_OF_MESH);
+            ++refused;
+        }
+    }
+    GM_ASSERT(refused > 5 && taken > 100);
+}
+
 int main(int argc, char **argv) {
     static const gm_test tests[] = {
         GM_TEST(a_published_ring_has_its_geometry),
@@ -352,6 +399,7 @@ int main(int argc, char **argv) {
         GM_TEST(the_pinion_drives_the_ring_its_own_way),
         GM_TEST(a_cache_of_a_ring_is_as_good),
         GM_TEST(a_ring_out_of_mesh_is_refused),
+        GM_TEST(tips_in_the_way_of_a_moved_ring_are_refused),
     };
     return gm_test_main("unit.ring", tests, GM_TEST_COUNT(tests), argc, argv);
 }
