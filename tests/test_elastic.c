@@ -16,92 +16,50 @@ static const elastic_deviation ideal = {0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, {0.0,
 enum { KINDS = 4 };
 
 static elastic_gear gear_of(int kind) {
-    elastic_gear spur = {2e-3,
-                         20.0 * degree,
-                         0.0,
-                         0.124,
-                         0.02,
-                         {62.0, 62.0},
-                         {0.0, 0.0},
-                         {64e-3, 64e-3},
-                         1.25,
-                         0.38,
-                         {206e9, 206e9},
-                         {0.3, 0.3},
-                         17,
-                         0,
-                         {0},
-                         0,
-                         0,
-                         0,
-                         0};
-    if (kind == 1) {
-        const elastic_gear paper = {1.65e-3,
-                                    16.0 * degree,
-                                    33.0 * degree,
-                                    85.0000164e-3,
-                                    17.5e-3,
-                                    {45.0, 41.0},
-                                    {0.1242, 0.1242},
-                                    {46.12141724645e-3, 42.18661838017e-3},
-                                    1.25,
-                                    0.38,
-                                    {206e9, 206e9},
-                                    {0.3, 0.3},
-                                    17,
-                                    0,
-                                    {0},
-                                    0,
-                                    0,
-                                    0,
-                                    0};
-        return paper;
+    const elastic_gear drawings[KINDS] = {
+        {.normal_module = 2e-3,
+         .pressure_angle = 20.0 * degree,
+         .center_distance = 0.124,
+         .face_width = 0.02,
+         .teeth = {62.0, 62.0},
+         .tip_radius = {64e-3, 64e-3}},
+        {.normal_module = 1.65e-3,
+         .pressure_angle = 16.0 * degree,
+         .helix_angle = 33.0 * degree,
+         .center_distance = 85.0000164e-3,
+         .face_width = 17.5e-3,
+         .teeth = {45.0, 41.0},
+         .shift = {0.1242, 0.1242},
+         .tip_radius = {46.12141724645e-3, 42.18661838017e-3}},
+        {.normal_module = 14e-3,
+         .pressure_angle = 20.0 * degree,
+         .helix_angle = -10.0 * degree,
+         .center_distance = 861.0001467e-3,
+         .face_width = 0.36,
+         .teeth = {24.0, 95.0},
+         .shift = {0.48, 0.6691},
+         .tip_radius = {190.3736708e-3, 697.6880969e-3}},
+        {.normal_module = 21e-3,
+         .pressure_angle = 20.0 * degree,
+         .helix_angle = 8.0 * degree,
+         .center_distance = 589.74e-3,
+         .face_width = 0.4,
+         .teeth = {36.0, -93.0},
+         .shift = {0.5039, 0.1171},
+         .tip_radius = {411.54e-3, 962.64e-3}},
+    };
+    elastic_gear gear = drawings[kind];
+
+    /* All cut by the same rack; steel, but for one wheel. */
+    gear.dedendum = 1.25;
+    gear.fillet_radius = 0.38;
+    gear.stations = 17;
+    for (int k = 0; k < 2; ++k) {
+        const int is_softer = kind == 2 && k == 1;
+        gear.youngs_modulus[k] = is_softer ? 170e9 : 206e9;
+        gear.poisson_ratio[k] = is_softer ? 0.27 : 0.3;
     }
-    if (kind == 2) {
-        const elastic_gear turbine = {14e-3,
-                                      20.0 * degree,
-                                      -10.0 * degree,
-                                      861.0001467e-3,
-                                      0.36,
-                                      {24.0, 95.0},
-                                      {0.48, 0.6691},
-                                      {190.3736708e-3, 697.6880969e-3},
-                                      1.25,
-                                      0.38,
-                                      {206e9, 170e9},
-                                      {0.3, 0.27},
-                                      17,
-                                      0,
-                                      {0},
-                                      0,
-                                      0,
-                                      0,
-                                      0};
-        return turbine;
-    }
-    if (kind == 3) {
-        const elastic_gear ring = {21e-3,
-                                   20.0 * degree,
-                                   8.0 * degree,
-                                   589.74e-3,
-                                   0.4,
-                                   {36.0, -93.0},
-                                   {0.5039, 0.1171},
-                                   {411.54e-3, 962.64e-3},
-                                   1.25,
-                                   0.38,
-                                   {206e9, 206e9},
-                                   {0.3, 0.3},
-                                   17,
-                                   0,
-                                   {0},
-                                   0,
-                                   0,
-                                   0,
-                                   0};
-        return ring;
-    }
-    return spur;
+    return gear;
 }
 
 static void make(elastic_case *c, int kind, int stations) {

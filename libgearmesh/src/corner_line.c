@@ -208,12 +208,15 @@ static void take_nearer(double cut, double from, double *next) {
 static double next_cut(const view *v, const whole_line *whole, double from, double to) {
     double next = to;
     for (int role = GM_PINION; role <= GM_WHEEL; ++role) {
+        /* Ends of the table. */
         const gmi_grid *grid = v->running[role];
         if (grid->face_rate > 0.0) {
             const double profile = profile_of(&whole->line, role);
             take_nearer(-profile / profile_rate(grid), from, &next);
             take_nearer((grid->profile_cells - profile) / profile_rate(grid), from, &next);
         }
+
+        /* The tip, and beyond it the next joint. */
         const gmi_beyond *beyond = &whole->beyond[role];
         const gmi_corner *corner = &v->mesh->corners[role];
         const double rounding = JOINT_ROUNDING * corner->fine;
@@ -448,12 +451,16 @@ static OWN_STACK void tilt_line(const view *v, whole_line *whole) {
     gmi_tilted_line tilted;
     gmi_tilt_clip(pair, at, v->side, whole->origin, v->lines.delta, FACES_ALONE, 1, &part);
     gmi_tilt_line(pair, at, v->side, whole->origin, &tilted);
+
+    /* How overlap and ends move. */
     whole->gain = tilted.gain;
     for (int k = 0; k < 2; ++k) {
         whole->by_origin[k] = tilted.by_origin[k];
         whole->from_by[k] = part.from_by[k];
         whole->to_by[k] = part.to_by[k];
     }
+
+    /* The parabola as seen from the line's beginning. */
     gmi_line *line = &whole->line;
     const double *shift = tilted.shift;
     line->from = part.from;

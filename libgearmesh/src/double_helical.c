@@ -362,6 +362,8 @@ int gm_double_helical_equilibrium(const gm_double_helical *gears, double pinion_
     }
     *offset = gmi_nan();
     int status = check(gears);
+
+    /* Each half carries half the torque; between them they say where pinion and apex are. */
     if (status == GM_OK) {
         const double helix = tan_base_helix(gears->half[0]->pair);
         double halves[2] = {guess - *apex * helix, guess + *apex * helix};

@@ -46,6 +46,7 @@ const char *gmi_elastic_field_at_fault(const gm_mesh_params *params, const char 
         int is_right;
         const char *wanted;
     } checks[] = {
+        /* Materials and bodies. */
         {"pinion_youngs_modulus", is_modulus(params->pinion_youngs_modulus),
          "a modulus from 1e6 to 1e15 N/m2"},
         {"wheel_youngs_modulus", is_modulus(params->wheel_youngs_modulus),
@@ -54,6 +55,8 @@ const char *gmi_elastic_field_at_fault(const gm_mesh_params *params, const char 
         {"wheel_poisson_ratio", is_ratio(params->wheel_poisson_ratio), "a ratio from 0 to 0.499"},
         {"pinion_bore_radius", is_bore(params->pinion_bore_radius), "a radius from 1e-6 to 1e9 m"},
         {"wheel_bore_radius", is_bore(params->wheel_bore_radius), "a radius from 1e-6 to 1e9 m"},
+
+        /* The load that stiffness is stated at, edges, and the grid along the face. */
         {"reference_torque",
          isnan(params->reference_torque) ||
              (params->reference_torque > 0.0 && gmi_is_finite(params->reference_torque)),
@@ -63,6 +66,8 @@ const char *gmi_elastic_field_at_fault(const gm_mesh_params *params, const char 
         {"stations", params->stations >= 2 && params->stations <= GMI_ELASTIC_STATIONS_MAX,
          "a whole number from 2 to 97"},
     };
+
+    /* The first that is wrong. */
     for (size_t k = 0; k < sizeof checks / sizeof checks[0]; ++k) {
         if (!checks[k].is_right) {
             *wanted = checks[k].wanted;
@@ -180,6 +185,7 @@ static int is_given_well(const gm_mesh_params *params, const gm_pair *pair, cons
                   {"wheel_bore_radius", "wheel_tooth_stiffness", &pair->wheel,
                    params->wheel_bore_radius, params->wheel_tooth_stiffness}};
     for (int role = GM_PINION; role <= GM_WHEEL; ++role) {
+        /* A bore lies in the body below the teeth, which a ring has not. */
         if (given[role].gear->sign < 0.0 && !isnan(given[role].bore)) {
             return refuse(given[role].bore_field, "none: a ring has no bore below its teeth", field,
                           requirement);
@@ -188,6 +194,8 @@ static int is_given_well(const gm_mesh_params *params, const gm_pair *pair, cons
             return refuse(given[role].bore_field, "a bore below the root circle", field,
                           requirement);
         }
+
+        /* Teeth that are softer or stiffer than the others. */
         for (int k = 0; given[role].factors != NULL && k < given[role].gear->teeth; ++k) {
             if (!(given[role].factors[k] >= 0.01 && given[role].factors[k] <= 100.0)) {
                 return refuse(given[role].factor_field, "factors from 0.01 to 100", field,
@@ -557,6 +565,7 @@ static int is_entry_loaded(const gmi_elastic_work *work) {
  */
 static side_force enter(const side_view *view, gmi_elastic_work *work,
                         const gmi_elastic_result *result, const gmi_elastic_gradient *rolled) {
+    /* The weights 1 - g of the force, and what the teeth's place alone moves. */
     const int count = 2 * work->slots;
     double *grows = work->table[0], *grows_by_roll = work->table[1];
     double *by_deviation = work->table[2];
@@ -567,6 +576,8 @@ static side_force enter(const side_view *view, gmi_elastic_work *work,
         held_teeth += work->by_deviation[p] * work->entry_slope[p];
         sharper += work->force[p] * work->entry_curvature[p];
     }
+
+    /* Its adjoint. */
     const gmi_elastic_functional functional = {grows, grows_by_roll, NULL, NULL};
     gmi_elastic_gradient force;
     gmi_elastic_differentiate_functional(&view->elastic->law, work, &functional, by_deviation,
@@ -574,6 +585,8 @@ static side_force enter(const side_view *view, gmi_elastic_work *work,
     for (int p = 0; p < count; ++p) {
         held += by_deviation[p] * work->entry_slope[p];
     }
+
+    /* The bodies' share of x. */
     const double compliance = view->elastic->body_compliance;
     const double share = 1.0 / (1.0 + compliance * result->by_approach);
     const double teeth_by_approach = share * (view->gain + compliance * held_teeth);
@@ -662,6 +675,8 @@ static int place_ideal(const gmi_elastic *law, const gmi_elastic_lines_at *withi
                        const gmi_elastic_tips *tips, double x, gmi_elastic_work *work) {
     gmi_elastic_lines_at lines = *within;
     const double rise = lines.climb * law->face_width;
+
+    /* Beyond the path as far as the edges touch. */
     if (tips != NULL) {
         lines.goes_on = lines.slopes = 1;
         lines.below = gmi_elastic_tips_below(tips, x, 0.0);
@@ -669,12 +684,16 @@ static int place_ideal(const gmi_elastic *law, const gmi_elastic_lines_at *withi
         lines.fading[0] = tips->tip[GM_WHEEL].fading;
         lines.fading[1] = tips->tip[GM_PINION].fading;
     }
+
+    /* All lines that are there. */
     const double lower = lines.lower - lines.below - lines.origin;
     const double upper = lines.upper + lines.above - lines.origin;
     lines.first = (int)ceil((lower - fmax(rise, 0.0)) / lines.pitch);
     lines.last = (int)floor((upper - fmin(rise, 0.0)) / lines.pitch);
     lines.tooth = (lines.first % lines.teeth + lines.teeth) % lines.teeth;
     const int status = gmi_elastic_place(law, &lines, work);
+
+    /* Ideal flanks have no deviations but the gaps of the edges. */
     const size_t bytes = 2 * sizeof(double) * (size_t)work->slots;
     memset(work->deviation, 0, bytes);
     memset(work->deviation_by_roll, 0, bytes);
