@@ -7,7 +7,7 @@
 
 #include "keys.h"
 #include "output.h"
-#include "process.h"
+#include "platform.h"
 
 #include "gm_test.h"
 

@@ -12,6 +12,7 @@
 #include "keys.h"
 #include "memory.h"
 #include "modification_keys.h"
+#include "platform.h"
 #include "slips.h"
 
 #include <math.h>
@@ -94,8 +95,7 @@ static char *default_output_file(const char *path) {
         return copy_text(path);
     }
 
-    const char *slash = strrchr(path, '/');
-    const char *name = slash == NULL ? path : slash + 1;
+    const char *name = path + path_name_start(path);
     const char *dot = strrchr(name, '.');
     const size_t length = dot == NULL || dot == name ? strlen(name) : (size_t)(dot - name);
     char *file = join_texts(name, ".csv");

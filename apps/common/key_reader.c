@@ -4,6 +4,7 @@
 #include "key_reader.h"
 #include "ini_file.h"
 #include "memory.h"
+#include "platform.h"
 
 #include <stdarg.h>
 #include <stdlib.h>
@@ -91,14 +92,14 @@ static void unknown_key(key_reader *reader, const char *section, const char *nam
 
 /* `name` as seen from the folder of `path`. */
 static char *path_beside(const char *path, const char *name) {
-    const char *slash = strrchr(path, '/');
-    if (slash == NULL || *name == '/') {
+    const size_t folder = path_name_start(path);
+    if (folder == 0 || path_is_absolute(name)) {
         return copy_text(name);
     }
 
     char *joined = join_texts(path, name);
     if (joined != NULL) {
-        strcpy(joined + (slash - path) + 1, name);
+        strcpy(joined + folder, name);
     }
     return joined;
 }

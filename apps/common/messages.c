@@ -3,10 +3,10 @@
 
 #include "messages.h"
 #include "exit_code.h"
+#include "platform.h"
 
 #include <stdio.h>
 #include <string.h>
-#include <unistd.h>
 
 enum { LINE_SIZE = 8192 }; /* more than the longest path and text */
 
@@ -27,7 +27,7 @@ static void show_on_stream(void *user, const char *line) {
 message_sink messages_to(FILE *stream, const char *program) {
     message_sink made = {.program = program, .put = put_to_stream, .user = stream};
 
-    if (isatty(fileno(stream))) {
+    if (is_terminal(stream)) {
         made.show = show_on_stream;
     }
     return made;

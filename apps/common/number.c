@@ -9,6 +9,7 @@
 #include "number.h"
 
 #include <math.h>
+#include <stddef.h>
 #include <stdint.h>
 #include <stdio.h>
 #include <string.h>
@@ -236,7 +237,7 @@ static const char *skip_digits(const char *text) {
 int number_is_plain(const char *text) {
     const char *start = text + (*text == '+' || *text == '-');
     const char *end = skip_digits(start);
-    long digits = end - start;
+    ptrdiff_t digits = end - start;
 
     /* Digits before the point, behind it, or both. */
     if (*end == '.') {

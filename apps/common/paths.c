@@ -2,22 +2,13 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 
 #include "paths.h"
+#include "platform.h"
 
 #include <errno.h>
 #include <stdlib.h>
 #include <string.h>
 #include <sys/stat.h>
 #include <unistd.h>
-
-int is_same_file(const char *a, const char *b) {
-    struct stat status_a, status_b;
-
-    if (strcmp(a, b) == 0) {
-        return 1;
-    }
-    return stat(a, &status_a) == 0 && stat(b, &status_b) == 0 &&
-           status_a.st_dev == status_b.st_dev && status_a.st_ino == status_b.st_ino;
-}
 
 /* ---------------------------------------------------------------------------------------------
  * Folders and links
@@ -27,12 +18,6 @@ enum {
     LINKS_MAX = 40,       /* in a row, as the kernel follows them */
     LINK_TEXT_SIZE = 4096 /* of a link's target */
 };
-
-static const char *name_in_folder(const char *path) {
-    const char *slash = strrchr(path, '/');
-
-    return slash == NULL ? path : slash + 1;
-}
 
 /* The first characters of a path. */
 static char *beginning_of(const char *path, size_t length) {
@@ -46,7 +31,7 @@ static char *beginning_of(const char *path, size_t length) {
 }
 
 char *path_folder(const char *path) {
-    const size_t length = (size_t)(name_in_folder(path) - path);
+    const size_t length = path_name_start(path);
 
     if (length == 0) {
         return beginning_of(".", 1);
@@ -57,7 +42,7 @@ char *path_folder(const char *path) {
 
 /* What the text of a link at `path` means from here. */
 static char *target_of(const char *path, const char *text) {
-    const size_t folder = text[0] == '/' ? 0 : (size_t)(name_in_folder(path) - path);
+    const size_t folder = path_is_absolute(text) ? 0 : path_name_start(path);
     char *target = malloc(folder + strlen(text) + 1);
 
     if (target != NULL) {
@@ -72,12 +57,10 @@ char *path_behind_links(const char *path) {
 
     for (int i = 0; i < LINKS_MAX && reached != NULL; ++i) {
         char text[LINK_TEXT_SIZE];
-        const ssize_t length = readlink(reached, text, sizeof text - 1);
-        if (length < 0) {
+        if (!path_read_link(reached, text, sizeof text)) {
             return reached;
         }
 
-        text[length] = '\0';
         char *next = target_of(reached, text);
         free(reached);
         reached = next;
@@ -96,7 +79,8 @@ int is_same_place(const char *a, const char *b) {
     if (target_a != NULL && target_b != NULL && !same) {
         char *folder_a = path_folder(target_a), *folder_b = path_folder(target_b);
         same = folder_a != NULL && folder_b != NULL && is_same_file(folder_a, folder_b) &&
-               strcmp(name_in_folder(target_a), name_in_folder(target_b)) == 0;
+               is_same_name(target_a + path_name_start(target_a),
+                            target_b + path_name_start(target_b));
         free(folder_a);
         free(folder_b);
     }

@@ -5,9 +5,6 @@
 #ifndef APPS_PATHS_H
 #define APPS_PATHS_H
 
-/* Whether two paths lead to one file, also by links. 0 or 1. */
-int is_same_file(const char *a, const char *b);
-
 /* Whether two paths name one file, also one that is not there yet. 0 or 1. */
 int is_same_place(const char *a, const char *b);
 

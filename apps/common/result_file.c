@@ -4,22 +4,15 @@
 #include "result_file.h"
 #include "exit_code.h"
 #include "paths.h"
+#include "platform.h"
 
 #include <errno.h>
-#include <fcntl.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <sys/file.h>
-#include <sys/stat.h>
 #include <unistd.h>
 
-enum {
-    FILE_MODE = 0666, /* as the umask allows */
-    OPEN_ATTEMPTS = 100,
-    OLD_NAMES = 100,
-    NUMBER_SIZE = 16
-};
+enum { OPEN_ATTEMPTS = 100, OLD_NAMES = 100, NUMBER_SIZE = 16 };
 
 static const char part_ending[] = ".part";
 
@@ -67,11 +60,10 @@ static int check_folder(result_file *file) {
         return refuse_for(file, file->part, errno, EXIT_RUN_FAILED);
     }
 
-    const int denied = access(folder, W_OK | X_OK) != 0;
-    const int error = errno;
+    const int error = folder_refusal(folder);
     free(folder);
 
-    return denied ? refuse_for(file, file->part, error, EXIT_BAD_INPUT) : EXIT_DONE;
+    return error != 0 ? refuse_for(file, file->part, error, EXIT_BAD_INPUT) : EXIT_DONE;
 }
 
 int result_file_would_replace(const char *path, const char *input) {
@@ -104,7 +96,6 @@ int result_file_check(result_file *file, const char *path) {
     }
 
     /* What is there already. */
-    struct stat status;
     const char *obstacle = path_obstacle(file->path);
     if (obstacle != NULL) {
         return refuse(file, file->path, obstacle, EXIT_BAD_INPUT);
@@ -114,7 +105,7 @@ int result_file_check(result_file *file, const char *path) {
     if (obstacle != NULL) {
         return refuse(file, path, obstacle, EXIT_BAD_INPUT);
     }
-    if (lstat(file->part, &status) == 0 && S_ISLNK(status.st_mode)) {
+    if (path_kind(file->part) == PATH_LINK) {
         return refuse(file, file->part, "is a symbolic link; remove it", EXIT_BAD_INPUT);
     }
     obstacle = path_obstacle(file->part);
@@ -128,36 +119,10 @@ int result_file_check(result_file *file, const char *path) {
  * FILE.part
  * ------------------------------------------------------------------------------------------- */
 
-static int try_lock(int descriptor) {
-    int failed;
-
-    do {
-        failed = flock(descriptor, LOCK_EX | LOCK_NB);
-    } while (failed != 0 && errno == EINTR);
-    return failed;
-}
-
-/* Whether the path, not followed, is the file that is open: 1 or 0, or -1 if that cannot be told, with errno. */
-static int compare_open_file(const char *path, int descriptor) {
-    struct stat at_path, opened;
-
-    if (lstat(path, &at_path) != 0) {
-        return errno == ENOENT ? 0 : -1;
-    }
-    if (fstat(descriptor, &opened) != 0) {
-        return -1;
-    }
-    return at_path.st_dev == opened.st_dev && at_path.st_ino == opened.st_ino;
-}
-
-static int is_open_file(const char *path, int descriptor) {
-    return compare_open_file(path, descriptor) == 1;
-}
-
 /* Locks what is open under the name FILE.part. Where the file system has no locks there is none; the check before the
  * rename then finds out that another run has replaced the file. */
 static int lock_part(result_file *file, int descriptor) {
-    if (try_lock(descriptor) == 0 || errno != EWOULDBLOCK) {
+    if (file_lock(descriptor) == 0) {
         return EXIT_DONE;
     }
     return refuse(file, file->part, "is being written by another run; wait for it, or name another",
@@ -166,7 +131,7 @@ static int lock_part(result_file *file, int descriptor) {
 
 /* Removes a FILE.part that no run writes any more. */
 static int remove_stale(result_file *file) {
-    const int stale = open(file->part, O_RDWR | O_NOFOLLOW | O_NONBLOCK | O_CLOEXEC);
+    const int stale = file_open_old(file->part);
     if (stale < 0) {
         /* Gone in the meantime: the next attempt creates it. */
         return errno == ENOENT ? EXIT_DONE : refuse_for(file, file->part, errno, EXIT_BAD_INPUT);
@@ -174,7 +139,7 @@ static int remove_stale(result_file *file) {
 
     /* A run that ended since may have renamed this one, and the name may be that of a third run. */
     int exit_code = lock_part(file, stale);
-    if (exit_code == EXIT_DONE && is_open_file(file->part, stale) && unlink(file->part) != 0 &&
+    if (exit_code == EXIT_DONE && file_is_at(file->part, stale) == 1 && unlink(file->part) != 0 &&
         errno != ENOENT) {
         exit_code = refuse_for(file, file->part, errno, EXIT_BAD_INPUT);
     }
@@ -184,7 +149,7 @@ static int remove_stale(result_file *file) {
 
 /* Creates FILE.part; *descriptor is -1 if something is in the way that the next attempt may find gone. */
 static int create_part(result_file *file, int *descriptor) {
-    *descriptor = open(file->part, O_RDWR | O_CREAT | O_EXCL | O_NOFOLLOW | O_CLOEXEC, FILE_MODE);
+    *descriptor = file_create(file->part);
     if (*descriptor < 0) {
         return errno == EEXIST ? remove_stale(file)
                                : refuse_for(file, file->part, errno, EXIT_BAD_INPUT);
@@ -192,7 +157,7 @@ static int create_part(result_file *file, int *descriptor) {
 
     /* Before the lock another run may have taken it for stale, and removed it. */
     const int exit_code = lock_part(file, *descriptor);
-    if (exit_code != EXIT_DONE || !is_open_file(file->part, *descriptor)) {
+    if (exit_code != EXIT_DONE || file_is_at(file->part, *descriptor) != 1) {
         close(*descriptor);
         *descriptor = -1;
     }
@@ -212,7 +177,7 @@ int result_file_open(result_file *file) {
         return refuse_for(file, file->part, EEXIST, EXIT_BAD_INPUT);
     }
 
-    file->lock = fcntl(file->data, F_DUPFD_CLOEXEC, 0);
+    file->lock = file_duplicate(file->data);
     if (file->lock < 0) {
         exit_code = refuse_for(file, file->part, errno, EXIT_RUN_FAILED);
         result_file_remove(file);
@@ -224,26 +189,17 @@ int result_file_open(result_file *file) {
  * Becoming FILE
  * ------------------------------------------------------------------------------------------- */
 
-/* Some file systems have nothing to bring to the disk, or no way to. */
-static int sync_failed(int descriptor) {
-    return fsync(descriptor) != 0 && errno != EINVAL && errno != ENOTSUP && errno != ENOSYS &&
-           errno != EROFS;
-}
-
 /* The bytes of FILE.part reach the disk, and it is still the file that was opened. */
 static int finish_part(result_file *file) {
-    const int not_synced = sync_failed(file->data);
-    int error = errno;
-    const int not_closed = close(file->data) != 0;
-
-    if (!not_synced && not_closed) {
+    int error = file_sync(file->data);
+    if (close(file->data) != 0 && error == 0) {
         error = errno;
     }
     file->data = -1;
-    if (not_synced || not_closed) {
+    if (error != 0) {
         return refuse_for(file, file->part, error, EXIT_RUN_FAILED);
     }
-    const int is_ours = compare_open_file(file->part, file->lock);
+    const int is_ours = file_is_at(file->part, file->lock);
     if (is_ours < 0) {
         return refuse_for(file, file->part, errno, EXIT_RUN_FAILED);
     }
@@ -254,17 +210,12 @@ static int finish_part(result_file *file) {
 
 /* Gives the old FILE a second name. Where the file system has no links it goes under that name for a moment. */
 static int name_old(const char *path, const char *name) {
-    struct stat status;
+    const int error = file_link(path, name);
 
-    /* link() never replaces a file of that name. */
-    if (link(path, name) == 0) {
-        return 0;
-    }
-    const int error = errno;
-    if (error == ENOENT || error == EEXIST || (lstat(name, &status) == 0 || errno != ENOENT)) {
+    if (error == 0 || error == ENOENT || error == EEXIST || path_kind(name) != PATH_NOTHING) {
         return error;
     }
-    return rename(path, name) == 0 ? 0 : errno;
+    return file_rename(path, name);
 }
 
 /* Keeps an old FILE, so that it can come back; EXIT_DONE also if there is none. */
@@ -303,31 +254,24 @@ static void restore(result_file *file, int was_renamed) {
         return;
     }
     /* Two names of one file both stay, so that the second still has to go. */
-    if (rename(file->old, file->path) == 0) {
+    if (file_rename(file->old, file->path) == 0) {
         forget_old(file);
     }
 }
 
 static int rename_part(result_file *file) {
-    return rename(file->part, file->path) == 0
-               ? EXIT_DONE
-               : refuse_for(file, file->path, errno, EXIT_RUN_FAILED);
+    const int error = file_rename(file->part, file->path);
+
+    return error == 0 ? EXIT_DONE : refuse_for(file, file->path, error, EXIT_RUN_FAILED);
 }
 
-/* The new name reaches the disk as well; a folder that may not be read cannot be told to. */
+/* The new name reaches the disk as well. */
 static int sync_folder(result_file *file) {
     char *folder = path_folder(file->path);
-    const int opened = folder != NULL ? open(folder, O_RDONLY | O_CLOEXEC) : -1;
-    int exit_code = EXIT_DONE;
+    const int error = folder != NULL ? folder_sync(folder) : 0;
 
-    if (opened >= 0) {
-        if (sync_failed(opened)) {
-            exit_code = refuse_for(file, file->path, errno, EXIT_RUN_FAILED);
-        }
-        close(opened);
-    }
     free(folder);
-    return exit_code;
+    return error == 0 ? EXIT_DONE : refuse_for(file, file->path, error, EXIT_RUN_FAILED);
 }
 
 /* Runs a step over the files until one fails; *done counts those that did not. */
@@ -374,7 +318,7 @@ int result_files_replace(result_file files[], int count, const result_file **wro
 void result_file_remove(result_file *file) {
     const int descriptor = file->lock >= 0 ? file->lock : file->data;
 
-    if (descriptor >= 0 && is_open_file(file->part, descriptor)) {
+    if (descriptor >= 0 && file_is_at(file->part, descriptor) == 1) {
         unlink(file->part);
     }
 }

@@ -8,7 +8,7 @@
 #include "gear_mesh.h"
 #include "make.h"
 #include "measured.h"
-#include "process.h"
+#include "platform.h"
 #include "report.h"
 
 #include <errno.h>

@@ -3,7 +3,7 @@
 
 #include "write.h"
 #include "exit_code.h"
-#include "interrupt.h"
+#include "platform.h"
 #include "result_file.h"
 
 #include <errno.h>

@@ -10,9 +10,9 @@
 #include "dynamic_columns.h"
 #include "gear_contact.h"
 #include "integrate.h"
-#include "interrupt.h"
 #include "model.h"
 #include "output.h"
+#include "platform.h"
 #include "progress.h"
 
 #include <math.h>

@@ -7,6 +7,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+enum { LINE_SIZE = 4096 }; /* of most lines */
+
 /* At once, as the rows of the result take another way to the same place. */
 static void put_as_comment(void *user, const char *line) {
     (void)user;
@@ -70,13 +72,38 @@ static int run_line(const arguments *args, char *line, int (*perform)(const argu
     return status;
 }
 
+/* Reads a line of any length without its end into `line`, which grows. 0 at the end of all lines, or without memory. */
+static int read_line(char **line, size_t *size) {
+    int c = getchar();
+    if (c == EOF) {
+        return 0;
+    }
+
+    for (size_t length = 0;; c = getchar()) {
+        if (length == *size) {
+            const size_t more = 2 * *size + LINE_SIZE;
+            char *longer = realloc(*line, more);
+            if (longer == NULL) {
+                return 0;
+            }
+            *line = longer;
+            *size = more;
+        }
+        if (c == EOF || c == '\n') {
+            (*line)[length] = '\0';
+            return 1;
+        }
+        (*line)[length++] = (char)c;
+    }
+}
+
 int each_run(const arguments *args, int (*perform)(const arguments *args)) {
     char *line = NULL;
     size_t size = 0;
     int exit_code = EXIT_DONE;
 
-    while (getline(&line, &size, stdin) >= 0) {
-        line[strcspn(line, "\r\n")] = '\0';
+    while (read_line(&line, &size)) {
+        line[strcspn(line, "\r")] = '\0';
         const int status = run_line(args, line, perform);
         exit_code = status != EXIT_DONE ? status : exit_code;
 

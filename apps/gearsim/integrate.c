@@ -4,7 +4,7 @@
 /* Step by step to the samples, with whichever package of SUNDIALS 6 or 7 has the method asked for. */
 #include "flight.h"
 #include "integrate_package.h"
-#include "interrupt.h"
+#include "platform.h"
 #include "small_vector.h"
 
 #include <float.h>

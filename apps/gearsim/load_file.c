@@ -99,7 +99,7 @@ int load_file_open(load_file **file, const config *conf) {
     }
     if (status == EXIT_DONE) {
         const int descriptor = dup(opened->result.data);
-        opened->stream = descriptor >= 0 ? fdopen(descriptor, "w") : NULL;
+        opened->stream = descriptor >= 0 ? fdopen(descriptor, "wb") : NULL;
         status = opened->stream != NULL ? EXIT_DONE : fail(opened);
     }
     if (status != EXIT_DONE) {

@@ -19,7 +19,7 @@
 #include "key_template.h"
 #include "mesh_cache.h"
 #include "output.h"
-#include "process.h"
+#include "platform.h"
 #include "static_columns.h"
 #include "statics.h"
 #include "time_table.h"

@@ -3,11 +3,12 @@
 
 #include "output_format.h"
 #include "paths.h"
-#include "progress.h"
+#include "platform.h"
 
+#ifdef GEARSIM_HDF5
 #include <dlfcn.h>
+#endif
 #include <errno.h>
-#include <fcntl.h>
 #include <limits.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -153,7 +154,7 @@ int output_check(const config *conf, const char *const names[], int name_count) 
 
 /* A descriptor of our own, to be closed as that of a file. */
 static int open_stream(output_file *output) {
-    output->result.data = fcntl(STDOUT_FILENO, F_DUPFD_CLOEXEC, 0);
+    output->result.data = file_duplicate(STDOUT_FILENO);
     return settle(output, output->result.data >= 0 ? 0 : errno);
 }
 
@@ -200,7 +201,7 @@ int output_row(output_file *output, const double values[]) {
  * ------------------------------------------------------------------------------------------- */
 
 /* What there is now, where, and how long it took. */
-static void tell(const output_file *output, const char *path, const char *incomplete) {
+static void tell_result(const output_file *output, const char *path, const char *incomplete) {
     message_note(output->messages, "gearsim: %s: %.0f rows%s in %.3g s",
                  output->is_stream ? "standard output" : path, output->rows,
                  incomplete != NULL ? ", incomplete," : "", wall_clock() - output->started);
@@ -217,7 +218,8 @@ int output_close(output_file *output, const char *incomplete) {
         }
     }
     if (exit_code == EXIT_DONE) {
-        tell(output, incomplete == NULL ? output->result.path : output->result.part, incomplete);
+        tell_result(output, incomplete == NULL ? output->result.path : output->result.part,
+                    incomplete);
     }
     output_free(output);
     return exit_code;

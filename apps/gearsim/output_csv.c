@@ -22,11 +22,11 @@ typedef struct csv_memory {
     char buffer[BUFFER_SIZE];
 } csv_memory;
 
-/* Writes as much as the disk takes, in *done; returns an errno or 0. */
+/* Writes as much as the disk takes, in *done; returns an errno or 0. Buffers are far below the 4 GB of an unsigned. */
 static int write_all(int file, const char *text, size_t size, size_t *done) {
     *done = 0;
     while (*done < size) {
-        const ssize_t count = write(file, text + *done, size - *done);
+        const ssize_t count = write(file, text + *done, (unsigned)(size - *done));
         if (count < 0 && errno != EINTR) {
             return errno;
         }
@@ -137,8 +137,9 @@ static void give_up_rows(const output_file *output, size_t bytes) {
     const size_t size = rows < BUFFER_SIZE ? (size_t)rows : BUFFER_SIZE;
 
     /* The end of the file, and within it the end of the last row that can stay. */
-    if (size >= bytes && pread(output->result.data, memory->buffer, size,
-                               memory->written - (off_t)size) == (ssize_t)size) {
+    (void)lseek(output->result.data, memory->written - (off_t)size, SEEK_SET);
+    if (size >= bytes &&
+        read(output->result.data, memory->buffer, (unsigned)size) == (ssize_t)size) {
         memory->written -= (off_t)(size - whole_lines(memory->buffer, size - bytes));
     }
     cut_to_whole_lines(output);

@@ -1,24 +1,16 @@
 /* SPDX-FileCopyrightText: The gearmesh authors */
 /* SPDX-License-Identifier: BSD-3-Clause */
-#define _POSIX_C_SOURCE 200809L
 
 #include "progress.h"
+#include "platform.h"
 
 #include <stdio.h>
-#include <time.h>
 
 /* Between two looks at the clock; a sample takes some microseconds. */
 enum { CALLS_PER_LOOK = 256 };
 
 static const double seconds_between_updates = 0.2;
 static const double rpm = 60.0 / 6.283185307179586; /* of 1 rad/s */
-
-double wall_clock(void) {
-    struct timespec time;
-
-    clock_gettime(CLOCK_MONOTONIC, &time);
-    return (double)time.tv_sec + 1e-9 * (double)time.tv_nsec;
-}
 
 void progress_start(progress *line, double end, message_sink *messages) {
     const double start = wall_clock();

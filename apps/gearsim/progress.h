@@ -33,9 +33,6 @@ void progress_update(progress *line, const progress_state *state);
 /* Clears the line. Has to come before any other message. */
 void progress_clear(const progress *line);
 
-/* Seconds of a clock that only runs forward. */
-double wall_clock(void);
-
 /* Wall clock since the start (s). */
 double progress_elapsed(const progress *line);
 

@@ -6,10 +6,10 @@
  */
 #include "statics.h"
 #include "gear_contact.h"
-#include "interrupt.h"
 #include "load_file.h"
 #include "memory.h"
 #include "output.h"
+#include "platform.h"
 #include "static_columns.h"
 
 #include <math.h>
