@@ -77,25 +77,66 @@ static int evaluate_bodies(const gm_mesh *mesh, size_t count, const gm_body *bod
     return status < GM_OK ? status : GM_OK;
 }
 
+/* Where to begin at the second of two loads [2] from the first: x goes on in first order. NaN: under another torque. */
+static double guess_from(const gm_pair *pair, const double loads[4], double offset,
+                         const gm_mesh_result *result) {
+    const gm_gradient *by = &result->force_by;
+    const double slope =
+        pair->pinion.base_radius + pair->wheel.base_radius * by->pinion_angle / by->wheel_angle;
+
+    return loads[3] == loads[1] ? offset + slope * (loads[2] - loads[0]) : NAN;
+}
+
 /* loads: [count][2] pinion angle (rad), torque on the wheel (N m). */
 static int solve_static(const gm_mesh *mesh, size_t count, const double *loads,
                         gm_workspace *workspace, double *offsets, gm_mesh_result *results) {
     const gm_pair *pair = gm_mesh_pair(mesh);
-    const double r_bp = pair->pinion.base_radius;
-    const double r_bw = pair->wheel.base_radius;
     int status = GM_OK;
     for (size_t k = 0; k < count && status >= GM_OK; ++k) {
         const double *load = &loads[2 * k];
-
-        /* From one position to the next, x goes on in first order. */
-        double guess = NAN;
-        if (k > 0 && load[1] == load[-1]) {
-            const gm_gradient *by = &results[k - 1].force_by;
-            guess = offsets[k - 1] +
-                    (r_bp + r_bw * by->pinion_angle / by->wheel_angle) * (load[0] - load[-2]);
-        }
+        const double guess =
+            k > 0 ? guess_from(pair, load - 2, offsets[k - 1], &results[k - 1]) : NAN;
         status = gm_static_equilibrium(mesh, load[0], load[1], guess, workspace, &offsets[k],
                                        &results[k]);
+    }
+    return status < GM_OK ? status : GM_OK;
+}
+
+/*
+ * Double-helical pairs. coordinates as in evaluate_offsets(); each: [count][2] of both halves. The float of the pinion
+ * begins where it was.
+ */
+static int evaluate_halves(const gm_double_helical *gears, size_t count, const double *coordinates,
+                           int wanted, double *apexes, gm_mesh_result *each,
+                           gm_mesh_result *results) {
+    int status = GM_OK;
+    for (size_t k = 0; k < count && status >= GM_OK; ++k) {
+        const double *given = &coordinates[3 * k];
+        gm_position position;
+        status = gm_position_from_pinion_angle(gm_mesh_pair(gears->half[0]), given[0], given[1],
+                                               given[2], &position);
+        if (status >= GM_OK) {
+            apexes[k] = k > 0 && isfinite(apexes[k - 1]) ? apexes[k - 1] : 0.0;
+            status = gm_double_helical_evaluate_at(gears, &position, wanted, &apexes[k],
+                                                   &each[2 * k], &results[k]);
+        }
+    }
+    return status < GM_OK ? status : GM_OK;
+}
+
+/* loads as in solve_static(). */
+static int solve_halves(const gm_double_helical *gears, size_t count, const double *loads,
+                        double *offsets, double *apexes, gm_mesh_result *each,
+                        gm_mesh_result *results) {
+    int status = GM_OK;
+    for (size_t k = 0; k < count && status >= GM_OK; ++k) {
+        const double *load = &loads[2 * k];
+        const double guess = k > 0 ? guess_from(gm_mesh_pair(gears->half[0]), load - 2,
+                                                offsets[k - 1], &results[k - 1])
+                                   : NAN;
+        apexes[k] = k > 0 && isfinite(apexes[k - 1]) ? apexes[k - 1] : 0.0;
+        status = gm_double_helical_equilibrium(gears, load[0], 0.0, load[1], guess, &offsets[k],
+                                               &apexes[k], &each[2 * k], &results[k]);
     }
     return status < GM_OK ? status : GM_OK;
 }

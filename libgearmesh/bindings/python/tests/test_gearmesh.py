@@ -303,6 +303,88 @@ def test_threads_share_a_mesh(pair, mesh):
 
 
 # ----------------------------------------------------------------------------------------------------
+# Double-helical pairs
+# ----------------------------------------------------------------------------------------------------
+
+GAP = 6e-3
+WHOLE = {"pinion_teeth": 23, "wheel_teeth": 31, "normal_module": 2e-3, "normal_pressure_angle": np.radians(20),
+         "helix_angle": np.radians(24), "center_distance": 27 * 2e-3 / np.cos(np.radians(24)), "face_width": 36e-3,
+         "backlash": 60e-6}
+
+
+def test_halves_are_the_gears_of_a_single_helix_of_their_width_on_average():
+    gears = gearmesh.DoubleHelical(gearmesh.Pair.half(GAP, **WHOLE), GAP, **LAW)
+    single = gearmesh.Mesh(gearmesh.Pair(**{**WHOLE, "face_width": 36e-3 - GAP}), stiffness=2.1e8, damping=2 * 844.0)
+    angle = np.linspace(0, 2 * np.pi / 23, 2000, endpoint=False)
+    found = gears.evaluate_offset(angle, 40e-6, 1e-3)
+    # Sums over a period of a function with kinks: (1 / 2000)^2.
+    assert found.result.force.mean() == pytest.approx(single.evaluate_offset(angle, 40e-6, 1e-3).force.mean(), rel=1e-6)
+    assert found.halves.force.sum(axis=-1) == pytest.approx(found.result.force, rel=1e-12)
+    assert found.halves.force[:, 0] == pytest.approx(found.halves.force[:, 1], rel=1e-9)
+    assert found.apex == pytest.approx(0.0, abs=1e-12)
+
+
+def test_halves_of_elastic_teeth_carry_the_torque():
+    gears = gearmesh.DoubleHelical(gearmesh.Pair.half(GAP, **WHOLE), GAP, law="elastic", stations=5)
+    static = gears.static(np.linspace(0, 0.2, 5)[:, None], [150.0, 300.0])
+    # The torque of elastic teeth is that of the force on the base circle, as there is no friction.
+    assert static.result.wheel_torque == pytest.approx(np.broadcast_to([150.0, 300.0], (5, 2)), rel=1e-6)
+    assert static.halves.force.shape == (5, 2, 2)
+
+
+def test_pinion_floats_by_half_the_error_of_one_half():
+    pair, error = gearmesh.Pair.half(GAP, **WHOLE), 8e-6
+    thick = gearmesh.Flanks(pair, "pinion", np.full((2, 2), error))
+    for first, second, sign in (((thick, None), (None, None), 1), ((None, None), (thick, None), -1)):
+        gears = gearmesh.DoubleHelical(pair, GAP, first, second, **LAW)
+        static = gears.static(np.linspace(0, 0.2, 9), 20.0)
+        # Given along the normal, error / cos(beta_b) along the line of action. The ends of the path follow x, not the
+        # thickness: that counts as the overlap, here below the error, against the length of the path.
+        assert static.apex == pytest.approx(sign * 0.5 * error / np.sin(pair.base_helix_angle),
+                                            rel=2 * error / (pair.path_end - pair.path_start))
+        assert static.result.wheel_torque == pytest.approx(20.0, rel=1e-9)
+        assert static.halves.force[:, 0] == pytest.approx(static.halves.force[:, 1], rel=1e-6)
+        again = gears.evaluate_offset(0.2, static.offset[-1], want=["derivatives", "wrench"])
+        assert again.result.force == pytest.approx(static.result.force[-1], rel=1e-9)
+        assert again.result.wrench["pinion_force"][2] == pytest.approx(0.0, abs=1e-9 * again.result.force)
+
+        # Lines of both halves, none in the gap, and all of the force.
+        load, points = gears.line_loads(0.2, static.offset[-1], static.apex[-1])
+        assert ((points.z < 15e-3 + 1e-6) | (points.z > 21e-3 - 1e-6)).all()
+        assert points.z.min() < 15e-3 < 21e-3 < points.z.max()
+        assert load.largest_line_load * load.touching_width / load.face_load_factor == pytest.approx(
+            static.result.force[-1], rel=1e-9)
+
+
+def test_pose_is_that_of_the_whole_wheel():
+    pair, angle, change = gearmesh.Pair.half(GAP, **WHOLE), np.linspace(0, 0.2, 50), 1e-6
+    plain, moved, *skewed = (gearmesh.DoubleHelical(pair, GAP, **LAW, pose=pose).static(angle, 20.0) for pose in
+                             ({}, {"center_distance_change": change}, {"skew": 1e-4}, {"skew": -1e-4}))
+    # As of a single helix: the drive gap opens by dx sin(alpha_wt), to first order.
+    assert np.mean(moved.offset - plain.offset) == pytest.approx(change * np.sin(pair.working_pressure_angle), rel=1e-2)
+
+    # A skew takes the halves apart, one to each side, and the pinion follows: by some um of 1e-4 rad of 21 mm.
+    assert skewed[0].apex == pytest.approx(-skewed[1].apex, rel=1e-2)
+    assert (1e-6 < np.abs(skewed[0].apex)).all()
+    assert (np.abs(skewed[0].apex) < 1e-4 * 21e-3 * 3).all()
+
+
+def test_halves_that_cannot_be_are_refused():
+    with pytest.raises(gearmesh.Error, match="gap: must be at least 0"):
+        gearmesh.Pair.half(-1e-3, **WHOLE)
+    with pytest.raises(gearmesh.Error, match="faces wider than the gap"):
+        gearmesh.Pair.half(40e-3, **WHOLE)
+    with pytest.raises(gearmesh.Error, match="normal_module: must be"):
+        gearmesh.Pair.half(GAP, **{**WHOLE, "normal_module": -1.0})
+    pair = gearmesh.Pair.half(GAP, **WHOLE)
+    with pytest.raises(gearmesh.Error, match="gap: must be at least 0"):
+        gearmesh.DoubleHelical(pair, np.nan, **LAW)
+    gears = gearmesh.DoubleHelical(pair, GAP, **LAW)
+    assert np.isnan(gears.evaluate_offset([0.0, np.nan, 0.0], 40e-6).result.force).tolist() == [False, True, False]
+    assert np.isnan(gears.static(0.0, [150.0, 0.0, 150.0]).offset).tolist() == [False, True, False]
+
+
+# ----------------------------------------------------------------------------------------------------
 # Flanks
 # ----------------------------------------------------------------------------------------------------
 

@@ -17,11 +17,13 @@ here is called as in C, by `gearmesh.lib` and `gearmesh.ffi` (cffi).
 from ._gearmesh import ffi, lib
 from ._memory import Error
 from ._records import Gear, MeshResult
+from .double_helical import DoubleHelical, DoubleHelicalResult, DoubleHelicalStaticResult
 from .flanks import Flanks, Modification
 from .mesh import BodiesResult, LineLoadsResult, Mesh, StaticResult
 from .pair import Pair
 from .runs import Run, gearsim, read_run
 
 __version__ = ffi.string(lib.gm_version()).decode()
-__all__ = ["BodiesResult", "Error", "Flanks", "Gear", "LineLoadsResult", "Mesh", "MeshResult", "Modification", "Pair",
-           "Run", "StaticResult", "ffi", "gearsim", "lib", "read_run"]
+__all__ = ["BodiesResult", "DoubleHelical", "DoubleHelicalResult", "DoubleHelicalStaticResult", "Error", "Flanks", "Gear",
+           "LineLoadsResult", "Mesh", "MeshResult", "Modification", "Pair", "Run", "StaticResult", "ffi", "gearsim", "lib",
+           "read_run"]

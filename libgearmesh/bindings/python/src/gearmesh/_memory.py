@@ -7,7 +7,7 @@ from collections.abc import Mapping
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike, NDArray
 
 from ._gearmesh import ffi, lib
 from ._records import ENUM_FIELDS, ENUMS
@@ -124,3 +124,8 @@ def filled(kind: np.dtype, values: Mapping[str, Any], *, required: bool = False)
     for name, array in arrays.items():
         structs[name] = array
     return structs
+
+
+def stacked(*values: ArrayLike) -> NDArray[np.float64]:
+    """Arrays that broadcast together, beside each other along a last axis."""
+    return np.stack(np.broadcast_arrays(*(np.asarray(value, dtype=float) for value in values)), axis=-1)

@@ -13,7 +13,7 @@ from numpy.typing import ArrayLike, NDArray
 from . import _records
 from ._gearmesh import ffi, lib
 from ._memory import (BODY, LINE_LOADS, LOAD, POINT, POSE, RESULT, STATE, TANGENT, Error, doubles, enum_value, fill, filled,
-                      refusal, status_text)
+                      refusal, stacked, status_text)
 from ._records import Body, LineLoadPoint, LineLoads, MeshResult, Tangent
 from .flanks import Flanks
 from .pair import Pair
@@ -126,8 +126,7 @@ class Mesh:
 
         Derivatives are by the angles all the same; at a fixed pinion angle d/dx = -(d/d phi_w) / r_bw.
         """
-        coordinates = np.stack(np.broadcast_arrays(*(np.asarray(value, dtype=float) for value in
-                                                     (pinion_angle, offset, offset_rate))), axis=-1)
+        coordinates = stacked(pinion_angle, offset, offset_rate)
         return self._evaluate(lib.evaluate_offsets, "double *", coordinates, coordinates.shape[:-1], want, pose, pose_rate)
 
     def tangent(self, pinion_angle: ArrayLike, wheel_angle: ArrayLike, pinion_speed: ArrayLike = 0.0,
@@ -142,9 +141,9 @@ class Mesh:
         states = filled(STATE, {"pinion_angle": pinion_angle, "wheel_angle": wheel_angle, "pinion_speed": pinion_speed,
                                 "wheel_speed": wheel_speed})
         tangents: Any = np.empty(states.shape, TANGENT)
-        _check(lib.evaluate_tangents(self._struct, tangents.size, _pointer("gm_state *", states),
-                                     _pointer("gm_pose *", _poses(states.shape, pose, pose_rate)),
-                                     _pointer("gm_tangent *", tangents)))
+        check(lib.evaluate_tangents(self._struct, tangents.size, pointer("gm_state *", states),
+                                    pointer("gm_pose *", _poses(states.shape, pose, pose_rate)),
+                                    pointer("gm_tangent *", tangents)))
         shown: Tangent = tangents.view(Tangent) if tangents.shape else tangents[()]
         return shown
 
@@ -159,9 +158,9 @@ class Mesh:
         pair = np.broadcast_arrays(*(filled(BODY, body, required=True) for body in (pinion, wheel)))
         bodies = np.stack(pair, axis=-1)
         results, loads = np.empty(bodies.shape[:-1], RESULT), np.empty(bodies.shape, LOAD)
-        _check(lib.evaluate_bodies(self._struct, results.size, _pointer("gm_body *", bodies), _wanted(want),
-                                   self._workspace(), _pointer("gm_mesh_result *", results), _pointer("gm_load *", loads)))
-        return BodiesResult(_shown(results), loads["force"][..., 0, :], loads["moment"][..., 0, :],
+        check(lib.evaluate_bodies(self._struct, results.size, pointer("gm_body *", bodies), wanted(want),
+                                  self._workspace(), pointer("gm_mesh_result *", results), pointer("gm_load *", loads)))
+        return BodiesResult(shown(results), loads["force"][..., 0, :], loads["moment"][..., 0, :],
                             loads["force"][..., 1, :], loads["moment"][..., 1, :])
 
     def static(self, pinion_angle: ArrayLike, wheel_torque: ArrayLike) -> StaticResult:
@@ -171,15 +170,14 @@ class Mesh:
         The transmission error is -offset. Neighbouring angles under the same torque cost half. NaN where there is no
         equilibrium.
         """
-        loads = np.stack(np.broadcast_arrays(*(np.asarray(value, dtype=float) for value in (pinion_angle, wheel_torque))),
-                         axis=-1)
+        loads = stacked(pinion_angle, wheel_torque)
         shape = loads.shape[:-1]
         offsets = np.empty(shape)
         results = np.empty(shape, RESULT)
-        status = lib.solve_static(self._struct, offsets.size, _pointer("double *", loads), self._workspace(),
-                                  _pointer("double *", offsets), _pointer("gm_mesh_result *", results))
-        _check(status)
-        return StaticResult(offsets[()], _shown(results))
+        status = lib.solve_static(self._struct, offsets.size, pointer("double *", loads), self._workspace(),
+                                  pointer("double *", offsets), pointer("gm_mesh_result *", results))
+        check(status)
+        return StaticResult(offsets[()], shown(results))
 
     def line_loads(self, pinion_angle: float, offset: float) -> LineLoadsResult:
         """
@@ -195,8 +193,8 @@ class Mesh:
         status = lib.gm_position_from_pinion_angle(self.pair._struct, pinion_angle, offset, 0.0, position)
         if status >= lib.GM_OK:
             status = lib.gm_mesh_line_loads(self._struct, position, self._workspace(),
-                                            _pointer("gm_line_load_point *", points), points.size,
-                                            _pointer("gm_line_loads *", load))
+                                            pointer("gm_line_load_point *", points), points.size,
+                                            pointer("gm_line_loads *", load))
         if status < lib.GM_OK:
             raise Error(status_text(status))
         return LineLoadsResult(load[()], points[:load["points"]].view(LineLoadPoint))
@@ -226,7 +224,7 @@ class Mesh:
             return ffi.NULL
         if not hasattr(self._of_thread, "workspace"):
             memory, workspace = doubles(size), ffi.new("gm_workspace **")
-            _check(lib.gm_workspace_init(workspace, self._struct, memory, size))
+            check(lib.gm_workspace_init(workspace, self._struct, memory, size))
             self._of_thread.memory, self._of_thread.workspace = memory, workspace[0]
         return self._of_thread.workspace
 
@@ -237,10 +235,10 @@ class Mesh:
         if pose is not None or pose_rate is not None:
             poses = _poses(shape, pose, pose_rate)
         results = np.empty(shape, RESULT)
-        _check(loop(self._struct, results.size, _pointer(kind, given),
-                    ffi.NULL if poses is None else _pointer("gm_pose *", poses), _wanted(want), self._workspace(),
-                    _pointer("gm_mesh_result *", results)))
-        return _shown(results)
+        check(loop(self._struct, results.size, pointer(kind, given),
+                   ffi.NULL if poses is None else pointer("gm_pose *", poses), wanted(want), self._workspace(),
+                   pointer("gm_mesh_result *", results)))
+        return shown(results)
 
 
 def _poses(shape: tuple[int, ...], pose: Mapping[str, ArrayLike] | None,
@@ -251,20 +249,20 @@ def _poses(shape: tuple[int, ...], pose: Mapping[str, ArrayLike] | None,
     return poses
 
 
-def _wanted(want: Union[str, Iterable[str]]) -> int:
+def wanted(want: Union[str, Iterable[str]]) -> int:
     return sum({enum_value("gm_wanted", name) for name in ([want] if isinstance(want, str) else want)})
 
 
-def _pointer(kind: str, array: NDArray[Any]) -> Any:
+def pointer(kind: str, array: NDArray[Any]) -> Any:
     return ffi.cast(kind, array.ctypes.data)
 
 
-def _check(status: int) -> None:
+def check(status: int) -> None:
     if status != lib.GM_OK:
         raise Error(status_text(status))
 
 
-def _shown(results: Any) -> MeshResult:
+def shown(results: Any) -> MeshResult:
     """Fields as attributes; a single result has numbers."""
     shown: MeshResult = results.view(MeshResult) if results.shape else results[()]
     return shown

@@ -4,11 +4,12 @@
 from __future__ import annotations
 
 import dataclasses
+from collections.abc import Mapping
 from typing import TYPE_CHECKING, Any
 
 from . import _records
 from ._gearmesh import ffi, lib
-from ._memory import fill, refusal
+from ._memory import Error, fill, refusal
 from ._records import ENUMS, Gear, PairRecord
 
 if TYPE_CHECKING:
@@ -26,6 +27,13 @@ def _numbers(record: Any, struct: Any) -> dict[str, Any]:
     return {field.name: number(getattr(struct, field.name)) for field in dataclasses.fields(record)}
 
 
+def _drawing(parameters: Mapping[str, Any]) -> Any:
+    struct = ffi.new("gm_pair_params *")
+    lib.gm_pair_params_default(struct)
+    fill(struct, parameters)
+    return struct
+
+
 class Pair(PairRecord):
     """
     A gear pair: what follows from a drawing, as read-only attributes.
@@ -41,15 +49,30 @@ class Pair(PairRecord):
     """
 
     def __init__(self, **parameters: Unpack[_records.PairParameters]):
-        struct = ffi.new("gm_pair_params *")
-        lib.gm_pair_params_default(struct)
-        fill(struct, parameters)
+        self._derive(_drawing(parameters))
 
+    @classmethod
+    def half(cls, gap: float, **parameters: Unpack[_records.PairParameters]) -> Pair:
+        """
+        The pair of one half of a double-helical one (DoubleHelical), from the drawing of the whole. `gap` between the
+        halves (m) is part of both face widths, `helix_angle` that of the half at the pinion's face I, `axial_offset` 0.
+        """
+        whole, struct = _drawing(parameters), ffi.new("gm_pair_params *")
+        status = lib.gm_double_helical_half(whole, gap, struct)
+        if status == lib.GM_ERR_PARAMETER:
+            raise Error(f"gap: must be at least 0 (got {gap})")
+        if status != lib.GM_OK:
+            raise Error("must be helical gears without axial_offset, their faces wider than the gap")
+        pair = cls.__new__(cls)
+        pair._derive(struct)
+        return pair
+
+    def _derive(self, struct: Any) -> None:
         pair = ffi.new("gm_pair *")
         status = lib.gm_pair_init(pair, struct)
         if status != lib.GM_OK:
             raise refusal(lib.gm_pair_params_check, struct, status)
-        super().__init__(**_numbers(PairRecord, pair))
+        PairRecord.__init__(self, **_numbers(PairRecord, pair))
         object.__setattr__(self, "_struct", pair)
         object.__setattr__(self, "_warnings", lib.gm_pair_warnings(pair, struct))
 
