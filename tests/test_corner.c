@@ -190,6 +190,18 @@ static void gaps_are_those_of_turned_corners(void) {
             GM_ASSERT_NEAR(place.by_roll_twice, (next.by_roll - last.by_roll) / (2.0 * (double)h),
                            5e-6, 1e-9 / p);
 
+            /* How far the normal has turned, and what the mate's roll length exceeds that of the line of action by. */
+            const double half = sin(0.5 * place.turn);
+            gmi_corner_place start;
+            gmi_corner_at(&corner, 0.0, &start);
+            GM_ASSERT_NEAR(place.versine, 2.0 * half * half, 1e-12, 1e-16);
+            GM_ASSERT_NEAR(place.gain, place.mate_roll - start.mate_roll + (double)u, 1e-12,
+                           1e-14 * fabs(at.line_of_action));
+            GM_ASSERT_NEAR(place.versine_by_roll, (next.versine - last.versine) / (2.0 * (double)h),
+                           5e-6, 1e-9 / p);
+            GM_ASSERT_NEAR(place.gain_by_roll, (next.gain - last.gain) / (2.0 * (double)h), 5e-6,
+                           1e-9);
+
             /* The arm of the tip is d overlap / d angle, overlap = roll of both less gap. */
             GM_ASSERT_REL(place.tip_arm, corner.tip_base * (1.0 - place.by_roll), 1e-15);
         }

@@ -12,19 +12,39 @@
 
 enum { POINTS = 4000 };
 
+static const double stiffness_of_all = 1e8;
+
 typedef union room {
     double alignment;
     char memory[8192];
 } room;
 
-static int make_mesh(room *where, const gm_pair *pair, const gm_flanks *pinion,
-                     const gm_flanks *wheel, int corner, double damping, gm_mesh **mesh) {
+static gm_mesh_params params_with(int corner, double damping) {
     gm_mesh_params params;
     gm_mesh_params_default(&params);
-    params.stiffness = 1e8;
+    params.stiffness = stiffness_of_all;
     params.damping = damping;
     params.corner_contact = corner;
+    return params;
+}
+
+static int make_mesh(room *where, const gm_pair *pair, const gm_flanks *pinion,
+                     const gm_flanks *wheel, int corner, double damping, gm_mesh **mesh) {
+    const gm_mesh_params params = params_with(corner, damping);
     return gm_mesh_init(mesh, &params, pair, pinion, wheel, where->memory, sizeof where->memory);
+}
+
+/* With friction, of the law of its index. */
+static int make_rough(room *where, const random_case *c, double damping, int law, double speed,
+                      gm_mesh **mesh) {
+    gm_mesh_params params = params_with(GM_CORNER_ON, damping);
+    params.friction_law = law;
+    params.friction_coefficient = 0.1;
+    params.friction_speed = speed;
+    params.oil_viscosity = 0.05;
+    params.roughness = 0.6e-6;
+    return gm_mesh_init(mesh, &params, &c->pair, c->use[0], c->use[1], where->memory,
+                        sizeof where->memory);
 }
 
 /* ---------------------------------------------------------------------------------------------
@@ -61,6 +81,10 @@ typedef struct brute {
     double sum, contact, arm[2]; /* of one side; arm: integral of f gap', [role] */
     double force[3], moment[3];  /* on the wheel, about the pinion's axis, per stiffness */
     double beyond;               /* part of the sum that is beyond the path */
+
+    /* Friction, and by what: mu, v0, speeds of both gears counter-clockwise. */
+    double coefficient, creep, pinion_speed, wheel_speed;
+    double loss, slid; /* power and force that it takes, per stiffness */
 } brute;
 
 /* Unit normal of the mate's involute at C, on the side of e: tangent to its base circle. */
@@ -106,7 +130,19 @@ static void add_acting(const gm_pair *pair, const gmi_engagement *at, double sig
                       fabs(role == GM_PINION ? at->wheel_base_radius : r), place, e, normal);
         }
     }
-    const double f[3] = {q * normal[0], sign * q * normal[1],
+    /* The pinion's flank slides over the wheel's, and takes it along. */
+    const double omega_p = sign * b->pinion_speed, omega_w = sign * b->wheel_speed;
+    const double tangent[2] = {-normal[1], normal[0]};
+    const double v_t =
+        tangent[0] * (omega_w - omega_p) * place[1] +
+        tangent[1] * (omega_p * place[0] - omega_w * (place[0] - at->center_distance));
+    const double share =
+        b->coefficient * v_t / sqrt(v_t * v_t + b->creep * b->creep) / cos(pair->base_helix_angle);
+    const double slid = b->coefficient > 0.0 ? share * q : 0.0;
+    b->loss += slid * v_t;
+    b->slid += fabs(slid);
+    const double f[3] = {q * normal[0] + slid * tangent[0],
+                         sign * (q * normal[1] + slid * tangent[1]),
                          -sign * q * pair->face_advance / pair->face_width};
     const double x[3] = {place[0], sign * place[1], z};
     for (int k = 0; k < 3; ++k) {
@@ -116,8 +152,7 @@ static void add_acting(const gm_pair *pair, const gmi_engagement *at, double sig
     }
 }
 
-static void brute_side(const random_case *c, const gm_mesh *mesh, const gm_position *position,
-                       int side, brute *b) {
+static void brute_side(const random_case *c, const gm_position *position, int side, brute *b) {
     const gm_pair *pair = &c->pair;
     gmi_engagement at;
     gmi_corner corners[2];
@@ -130,8 +165,6 @@ static void brute_side(const random_case *c, const gm_mesh *mesh, const gm_posit
         pair->pinion.tip_roll_length - pair->pinion.start_roll_length,
         at.tip_roll_length[GM_WHEEL] - at.wheel_profile_start,
     };
-    memset(b, 0, sizeof *b);
-    (void)mesh;
     const int lines = 6 + (int)(pair->total_contact_ratio + 1.0);
     for (int k = -lines; k <= lines; ++k) {
         const int steps = side == GM_DRIVE ? k : -k;
@@ -197,6 +230,21 @@ static gm_position random_place(uint64_t *seed, const random_case *c, int i) {
     return position;
 }
 
+/* What both sides are together, and that the overlap times the stiffness is the force. */
+static void check_contact(const gm_mesh_result *r, double rate) {
+    const gm_penetration *contact = &r->contact;
+    const double k = stiffness_of_all;
+    GM_ASSERT_REL(contact->penetration, contact->drive - contact->coast, 1e-15);
+    GM_ASSERT_REL(contact->drive_rate, rate * contact->drive_contact, 1e-15);
+    GM_ASSERT_REL(contact->coast_rate, -rate * contact->coast_contact, 1e-15);
+    GM_ASSERT_REL(contact->rate, contact->drive_rate - contact->coast_rate, 1e-15);
+    GM_ASSERT_INT(contact->drive_pairs > 0, contact->drive_contact > 0.0);
+    GM_ASSERT_INT(contact->coast_pairs > 0, contact->coast_contact > 0.0);
+    GM_ASSERT_REL(k * contact->penetration, r->force, 1e-14);
+    GM_ASSERT_REL(k * contact->d_pinion_angle, r->force_by.pinion_angle, 1e-14);
+    GM_ASSERT_REL(k * contact->d_wheel_angle, r->force_by.wheel_angle, 1e-14);
+}
+
 static void forces_are_sums_over_points(void) {
     uint64_t seed = 4711;
     int met = 0, at_corners = 0;
@@ -208,22 +256,25 @@ static void forces_are_sums_over_points(void) {
             gm_test_context("case %d", i);
             GM_ASSERT_INT(make_mesh(&where, &c.pair, c.use[0], c.use[1], GM_CORNER_ON, 0.0, &mesh),
                           GM_OK);
-            const gm_position position = random_place(&seed, &c, i);
+            gm_position position = random_place(&seed, &c, i);
+            position.offset_rate = 0.01; /* of no force: without damping */
             gm_mesh_result r;
             GM_ASSERT_INT(gm_mesh_evaluate_at(mesh, &position, GM_WANT_WRENCH | GM_WANT_DERIVATIVES,
                                               NULL, &r),
                           GM_OK);
-            brute b[2];
-            brute_side(&c, mesh, &position, GM_DRIVE, &b[GM_DRIVE]);
-            brute_side(&c, mesh, &position, GM_COAST, &b[GM_COAST]);
+            brute b[2] = {{.sum = 0.0}, {.sum = 0.0}};
+            brute_side(&c, &position, GM_DRIVE, &b[GM_DRIVE]);
+            brute_side(&c, &position, GM_COAST, &b[GM_COAST]);
             const double largest = fmax(b[0].sum, b[1].sum);
-            const double k = 1e8, r_bp = c.pair.pinion.base_radius, r_bw = c.pair.wheel.base_radius;
+            const double k = stiffness_of_all, r_bp = c.pair.pinion.base_radius,
+                         r_bw = c.pair.wheel.base_radius;
 
             /* A few points of so many are all that can be told apart. */
             const double e = 2e-5 * largest + 1e-8 * c.pair.normal_module;
             GM_ASSERT_ABS(r.contact.drive, b[GM_DRIVE].sum, e);
             GM_ASSERT_ABS(r.contact.coast, b[GM_COAST].sum, e);
             GM_ASSERT_ABS(r.contact.drive_contact, b[GM_DRIVE].contact, 30.0 / POINTS);
+            check_contact(&r, position.offset_rate);
             GM_ASSERT_ABS(r.pinion_torque,
                           k * r_bp *
                               (b[0].sum - b[0].arm[GM_PINION] - (b[1].sum - b[1].arm[GM_PINION])),
@@ -258,6 +309,138 @@ static void forces_are_sums_over_points(void) {
     GM_ASSERT(at_corners > 30);
 }
 
+/* Friction acts across the normal at each point, against the speed at which the gears' bodies slide there. */
+static void friction_is_that_of_the_bodies_at_each_point(void) {
+    uint64_t seed = 4712;
+    int met = 0, at_corners = 0;
+    for (int i = 0; i < 90; ++i) {
+        random_case c;
+        room where;
+        gm_mesh *mesh;
+        if (random_corner_case(&c, &seed, i)) {
+            gm_test_context("case %d", i);
+            const double creep = i % 2 != 0 && c.pair.face_advance == 0.0 ? 0.1 : 1e-6;
+            GM_ASSERT_INT(make_rough(&where, &c, 0.0, GM_FRICTION_CONSTANT, creep, &mesh), GM_OK);
+            gm_position position = random_place(&seed, &c, i);
+            position.pinion_speed = i % 3 == 0 ? -40.0 : 100.0;
+            gm_mesh_result r;
+            GM_ASSERT_INT(gm_mesh_evaluate_at(mesh, &position, GM_WANT_WRENCH, NULL, &r), GM_OK);
+            const double k = stiffness_of_all, sign = c.pair.wheel.sign;
+            const brute rough = {.coefficient = 0.1,
+                                 .creep = creep,
+                                 .pinion_speed = position.pinion_speed,
+                                 .wheel_speed = -sign * position.pinion_speed *
+                                                c.pair.pinion.base_radius /
+                                                c.pair.wheel.base_radius};
+            brute b[2] = {rough, rough};
+            brute_side(&c, &position, GM_DRIVE, &b[GM_DRIVE]);
+            brute_side(&c, &position, GM_COAST, &b[GM_COAST]);
+
+            /* The points' share, and that of parts of helical lines in which the sliding speed turns round. */
+            const double sum = b[0].sum + b[1].sum;
+            const double e = 4.0 * k * (2e-5 * sum + 1e-8 * c.pair.normal_module) +
+                             2e-4 * k * (b[0].slid + b[1].slid);
+            const double lever = c.pair.center_distance + c.pair.face_width;
+            for (int axis = 0; axis < 3; ++axis) {
+                GM_ASSERT_ABS(r.wrench.wheel_force[axis], k * (b[0].force[axis] + b[1].force[axis]),
+                              e);
+                GM_ASSERT_ABS(-r.wrench.pinion_moment[axis],
+                              k * (b[0].moment[axis] + b[1].moment[axis]), e * lever);
+            }
+            const double fastest = fabs(position.pinion_speed) *
+                                   (fabs(c.pair.line_of_action) + c.pair.normal_module) *
+                                   (1.0 + c.pair.pinion.base_radius / c.pair.wheel.base_radius);
+            GM_ASSERT_ABS(r.loss, k * (b[0].loss + b[1].loss), 0.5 * e * fastest);
+
+            /* Action is reaction. */
+            const double d = c.pair.center_distance * sign, size = k * sum * lever;
+            GM_ASSERT_ABS(-r.wrench.pinion_moment[2], r.pinion_torque, 1e-12 * size);
+            GM_ASSERT_ABS(sign * -r.wrench.wheel_moment[2], r.wheel_torque, 1e-12 * size);
+            GM_ASSERT_ABS(r.wrench.wheel_moment[2] + d * r.wrench.wheel_force[1] +
+                              r.wrench.pinion_moment[2],
+                          0.0, 1e-12 * size);
+            ++met;
+            at_corners += b[0].beyond + b[1].beyond > 0.02 * sum;
+        }
+        random_case_free(&c);
+    }
+    GM_ASSERT(met > 50);
+    GM_ASSERT(at_corners > 15);
+}
+
+static double dot(const double a[3], const double b[3]) {
+    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+}
+
+/* Axes that move and tilt: what friction takes from both bodies is its loss. */
+static void friction_takes_its_loss_from_the_bodies(void) {
+    uint64_t seed = 4713;
+    int met = 0, lossy = 0;
+    for (int i = 0; i < 200; ++i) {
+        random_case c;
+        room rough_room, smooth_room;
+        gm_mesh *rough, *smooth;
+        if (random_corner_case(&c, &seed, i)) {
+            gm_test_context("case %d", i);
+            const gm_pair *pair = &c.pair;
+            const double damping = i % 2 == 0 ? 0.0 : 1e5, m = pair->normal_module;
+            GM_ASSERT_INT(make_rough(&rough_room, &c, damping, i % 3, 0.01, &rough), GM_OK);
+            GM_ASSERT_INT(
+                make_mesh(&smooth_room, pair, c.use[0], c.use[1], GM_CORNER_ON, damping, &smooth),
+                GM_OK);
+            gm_motion motion = {.position = random_place(&seed, &c, i)};
+            motion.position.pinion_speed = gm_test_uniform(&seed, -100.0, 100.0);
+            if (i % 4 != 0) {
+                motion.pose = (gm_pose){gm_test_uniform(&seed, -0.01, 0.01) * m,
+                                        gm_test_uniform(&seed, -0.01, 0.01) * m, 0.0, 0.0, 0.0};
+                motion.pose_rate =
+                    (gm_pose){gm_test_uniform(&seed, -1.0, 1.0), gm_test_uniform(&seed, -1.0, 1.0),
+                              gm_test_uniform(&seed, -1.0, 1.0),
+                              i % 4 < 2 ? 0.0 : gm_test_uniform(&seed, -5.0, 5.0),
+                              i % 4 < 2 ? 0.0 : gm_test_uniform(&seed, -5.0, 5.0)};
+            }
+            gm_mesh_result with, without;
+            const int wanted = GM_WANT_WRENCH;
+            const int status = gm_mesh_evaluate_posed(rough, &motion, wanted, NULL, &with);
+            GM_ASSERT_INT(gm_mesh_evaluate_posed(smooth, &motion, wanted, NULL, &without), status);
+            if (status == GM_OK && with.drive_force + with.coast_force > 0.0) {
+                /* The wheel's body, whose moments are about its own axis; its tilt is about the middle of its face. */
+                const gm_pose *rate = &motion.pose_rate;
+                const double velocity[3] = {rate->center_distance_change, rate->offset,
+                                            rate->axial_shift};
+                const double turning[3] = {rate->skew, rate->inclination, 0.0};
+                const double z =
+                    pair->face_start + pair->wheel.face_start + 0.5 * pair->wheel.face_width;
+                double force[3], moment[3], pinion[3];
+                for (int k = 0; k < 3; ++k) {
+                    force[k] = with.wrench.wheel_force[k] - without.wrench.wheel_force[k];
+                    moment[k] = with.wrench.wheel_moment[k] - without.wrench.wheel_moment[k];
+                    pinion[k] = with.wrench.pinion_moment[k] - without.wrench.pinion_moment[k];
+                }
+                moment[0] += z * force[1];
+                moment[1] -= z * force[0];
+                const double wheel_speed =
+                    (pair->pinion.base_radius * motion.position.pinion_speed -
+                     motion.position.offset_rate) /
+                    pair->wheel.base_radius;
+                const double power = pinion[2] * motion.position.pinion_speed -
+                                     pair->wheel.sign * moment[2] * wheel_speed +
+                                     dot(force, velocity) + dot(moment, turning);
+                const double size = (with.drive_force + with.coast_force) *
+                                    (fabs(motion.position.pinion_speed) * pair->center_distance +
+                                     3.0 + 5.0 * pair->face_width);
+                GM_ASSERT(with.loss >= 0.0);
+                GM_ASSERT_ABS(power, -with.loss, 1e-12 * size);
+                lossy += with.loss > 1e-4 * size;
+                ++met;
+            }
+        }
+        random_case_free(&c);
+    }
+    GM_ASSERT(met > 100);
+    GM_ASSERT(lossy > 50);
+}
+
 /* ---------------------------------------------------------------------------------------------
  * Derivatives
  * ------------------------------------------------------------------------------------------- */
@@ -270,6 +453,7 @@ static gm_motion turned(const gm_pair *pair, const gm_motion *motion, int which,
         result.position.phase += which == 0 ? r_bp * by : 0.0;
     } else {
         result.position.offset_rate += which == 2 ? r_bp * by : -r_bw * by;
+        result.position.pinion_speed += which == 2 ? by : 0.0;
     }
     return result;
 }
@@ -280,7 +464,7 @@ static double part_of(const gm_gradient *gradient, int which) {
     return parts[which];
 }
 
-/* Force and both torques by both angles and speeds; tables, ramps and tilted axes, damped and not. */
+/* Force and both torques by both angles and speeds; tables, ramps and tilted axes, damped and not, with friction and not. */
 static void derivatives_are_those_of_differences(void) {
     uint64_t seed = 99;
     int met = 0, rejected = 0;
@@ -290,19 +474,28 @@ static void derivatives_are_those_of_differences(void) {
         gm_mesh *mesh;
         if (random_corner_case(&c, &seed, i)) {
             const gm_pair *pair = &c.pair;
-            GM_ASSERT_INT(make_mesh(&where, pair, c.use[0], c.use[1], GM_CORNER_ON,
-                                    i % 2 == 0 ? 0.0 : 1e5, &mesh),
+            const double damping = i % 2 == 0 ? 0.0 : 1e5;
+            const int is_rough = i % 4 < 2;
+            GM_ASSERT_INT(is_rough ? make_rough(&where, &c, damping, i % 3, 0.1, &mesh)
+                                   : make_mesh(&where, pair, c.use[0], c.use[1], GM_CORNER_ON,
+                                               damping, &mesh),
                           GM_OK);
             const double m = pair->normal_module;
             const double tilt =
                 i % 3 == 0 ? 0.02 * pair->transverse_base_pitch / pair->face_width : 0.0;
             gm_motion motion = {.position = random_place(&seed, &c, i)};
             motion.position.offset_rate = gm_test_uniform(&seed, -1e-3, 1e-3) * m;
+            motion.position.pinion_speed = is_rough ? 50.0 : 0.0;
             if (i % 3 != 1) {
                 motion.pose = (gm_pose){gm_test_uniform(&seed, -0.01, 0.01) * m,
                                         gm_test_uniform(&seed, -0.01, 0.01) * m, 0.0,
                                         gm_test_uniform(&seed, -tilt, tilt),
                                         gm_test_uniform(&seed, -tilt, tilt)};
+            }
+            if (i % 8 ==
+                0) { /* rough and without damping, the speed of which is a mean while axes tilt */
+                motion.pose_rate = (gm_pose){0.3, -0.2, 0.1, gm_test_uniform(&seed, -90.0, 90.0),
+                                             gm_test_uniform(&seed, -90.0, 90.0)};
             }
             gm_mesh_result r, far[2], near[2];
             int status = gm_mesh_evaluate_posed(mesh, &motion, GM_WANT_DERIVATIVES, NULL, &r);
@@ -324,6 +517,7 @@ static void derivatives_are_those_of_differences(void) {
                 const double narrow[3] = {near[1].force - near[0].force,
                                           near[1].pinion_torque - near[0].pinion_torque,
                                           near[1].wheel_torque - near[0].wheel_torque};
+                const double value[3] = {r.force, r.pinion_torque, r.wheel_torque};
                 for (int k = 0; k < 3; ++k) {
                     const double by = narrow[k] / h;
                     const double size = fabs(got[k]) + 1e-3 * fabs(got[0]);
@@ -331,7 +525,8 @@ static void derivatives_are_those_of_differences(void) {
                         ++rejected; /* a kink between */
                         continue;
                     }
-                    GM_ASSERT_ABS(got[k], by, 2e-5 * size);
+                    const double rounding = 4.0 * DBL_EPSILON * fabs(value[k]) / h;
+                    GM_ASSERT_ABS(got[k], by, 2e-5 * size + rounding);
                     ++met;
                 }
             }
@@ -341,6 +536,72 @@ static void derivatives_are_those_of_differences(void) {
     }
     GM_ASSERT(met > 1000);
     GM_ASSERT(rejected < met / 5);
+}
+
+/* A number that changes with each motion, and what it is after one of them. */
+static gmi_varying random_varying(uint64_t *seed, double least, double most) {
+    gmi_varying result = {.value = gm_test_uniform(seed, least, most)};
+    for (int k = 0; k < GMI_MOTIONS; ++k) {
+        result.by[k] = gm_test_uniform(seed, -most, most);
+    }
+    return result;
+}
+
+static gmi_varying moved_by(const gmi_varying *varying, int which, double by) {
+    gmi_varying result = *varying;
+    result.value += by * varying->by[which];
+    return result;
+}
+
+/* One part alone, where nothing else is large beside its friction: every term of the sliding speed at a turned tangent. */
+static void friction_of_a_tip_follows_each_motion(void) {
+    uint64_t seed = 4714;
+    for (int i = 0; i < 40; ++i) {
+        const gmi_friction friction = {
+            .is_on = 1, .law = GM_FRICTION_CONSTANT, .normal = 1.1, .creep_squared = 4.0};
+        const gmi_sliding sliding = {
+            .friction = &friction,
+            .pinion_speed = gm_test_uniform(&seed, -2.0, 2.0),
+            .wheel_speed = gm_test_uniform(&seed, -2.0, 2.0),
+            .wheel_sign = i % 2 == 0 ? 1.0 : -1.0,
+            .line_of_action = 3.0,
+            .sideways = {gm_test_uniform(&seed, -1.0, 1.0), gm_test_uniform(&seed, -1.0, 1.0)},
+            .forward = {gm_test_uniform(&seed, -1.0, 1.0), gm_test_uniform(&seed, -1.0, 1.0)}};
+        const gmi_part_force part = {
+            random_varying(&seed, 1.0, 2.0), random_varying(&seed, 1.0, 2.0),
+            random_varying(&seed, 1.0, 2.0), random_varying(&seed, 1.0, 2.0)};
+        const gmi_tip_place place = {
+            random_varying(&seed, 0.1, 0.5), random_varying(&seed, 0.1, 0.5),
+            random_varying(&seed, 0.1, 0.5), random_varying(&seed, 0.1, 0.5)};
+        gmi_friction_sum at = {.loss = 0.0};
+        gmi_tip_friction tip_at = {.versine = 0.0};
+        gmi_friction_add_tip(&sliding, &part, &place, &at, &tip_at);
+        for (int which = 0; which < GMI_MOTIONS; ++which) {
+            gm_test_context("case %d, by %d", i, which);
+            const double h = 1e-5;
+            gmi_friction_sum sums[2] = {{.loss = 0.0}, {.loss = 0.0}};
+            gmi_tip_friction tips[2] = {{.versine = 0.0}, {.versine = 0.0}};
+            for (int k = 0; k < 2; ++k) {
+                const double by = k == 0 ? -h : h;
+                gmi_sliding s = sliding;
+                s.pinion_speed += which == GMI_PINION_SPEED ? by : 0.0;
+                s.wheel_speed += which == GMI_WHEEL_SPEED ? s.wheel_sign * by : 0.0;
+                const gmi_part_force p = {
+                    moved_by(&part.force, which, by), moved_by(&part.moment, which, by),
+                    moved_by(&part.contact, which, by), moved_by(&part.force_t1, which, by)};
+                const gmi_tip_place q = {
+                    moved_by(&place.lead, which, by), moved_by(&place.longer, which, by),
+                    moved_by(&place.versine, which, by), moved_by(&place.sine, which, by)};
+                gmi_friction_add_tip(&s, &p, &q, &sums[k], &tips[k]);
+            }
+            GM_ASSERT_ABS(at.force.by[which],
+                          (sums[1].force.value - sums[0].force.value) / (2.0 * h), 1e-7);
+            GM_ASSERT_ABS(at.moment.by[which],
+                          (sums[1].moment.value - sums[0].moment.value) / (2.0 * h), 1e-7);
+            GM_ASSERT_ABS(tip_at.longer.by[which],
+                          (tips[1].longer.value - tips[0].longer.value) / (2.0 * h), 1e-7);
+        }
+    }
 }
 
 /* ---------------------------------------------------------------------------------------------
@@ -536,6 +797,41 @@ static void equilibrium_carries_the_torque(void) {
     }
 }
 
+/* With friction torques do not jump either, where pairs come and go: steps a quarter as long, a quarter of the jump. */
+static void torques_of_friction_have_no_jumps(void) {
+    for (int which = 0; which < 4; ++which) {
+        random_case c = {.pair = pair_of(which)};
+        const gm_pair *pair = &c.pair;
+        room where;
+        gm_mesh *mesh;
+        GM_ASSERT_INT(make_rough(&where, &c, 0.0, GM_FRICTION_CONSTANT, 0.01, &mesh), GM_OK);
+        double largest[2][2] = {{0.0, 0.0}, {0.0, 0.0}};
+        for (int fine = 0; fine < 2; ++fine) {
+            const int steps = fine == 0 ? 4000 : 16000;
+            double last[2] = {(double)NAN, (double)NAN};
+            for (int k = 0; k <= steps; ++k) {
+                gm_position there = {0};
+                gm_mesh_result r;
+                const double x = 0.5 * pair->backlash + 5e-3 * pair->normal_module;
+                (void)gm_position_from_pinion_angle(pair, 0.0, x, 0.0, &there);
+                there.phase = pair->transverse_base_pitch * k / steps;
+                there.pinion_speed = 10.0;
+                GM_ASSERT_INT(gm_mesh_evaluate_at(mesh, &there, 0, NULL, &r), GM_OK);
+                const double friction[2] = {r.pinion_torque, r.wheel_torque};
+                for (int gear = 0; gear < 2; ++gear) {
+                    const double step = fabs(friction[gear] - last[gear]);
+                    largest[fine][gear] = k == 0 ? 0.0 : fmax(largest[fine][gear], step);
+                    last[gear] = friction[gear];
+                }
+            }
+        }
+        for (int gear = 0; gear < 2; ++gear) {
+            gm_test_context("pair %d, gear %d", which, gear);
+            GM_ASSERT(largest[1][gear] < 0.3 * largest[0][gear]);
+        }
+    }
+}
+
 /* A pair of which a tip reaches to the mate's base circle, and what no corner goes with. */
 static void what_corners_do_not_go_with_is_refused(void) {
     const gm_pair pair = reference_pair(REFERENCE_FACE_WIDTH);
@@ -545,10 +841,6 @@ static void what_corners_do_not_go_with_is_refused(void) {
     params.stiffness = 1e8;
     params.corner_contact = GM_CORNER_ON;
     GM_ASSERT_INT(gm_mesh_params_check(&params, &field, &requirement), GM_OK);
-    params.friction_coefficient = 0.05;
-    GM_ASSERT_INT(gm_mesh_params_check(&params, &field, &requirement), GM_ERR_PARAMETER);
-    GM_ASSERT_STRING(field, "corner_contact");
-    params.friction_coefficient = 0.0;
     params.model = GM_MODEL_SIMPLE;
     GM_ASSERT_INT(gm_mesh_params_check(&params, &field, &requirement), GM_ERR_PARAMETER);
     GM_ASSERT_STRING(field, "corner_contact");
@@ -586,9 +878,13 @@ static void what_corners_do_not_go_with_is_refused(void) {
 int main(int argc, char **argv) {
     static const gm_test tests[] = {
         GM_TEST(forces_are_sums_over_points),
+        GM_TEST(friction_is_that_of_the_bodies_at_each_point),
+        GM_TEST(friction_takes_its_loss_from_the_bodies),
         GM_TEST(derivatives_are_those_of_differences),
+        GM_TEST(friction_of_a_tip_follows_each_motion),
         GM_TEST(energy_is_kept_over_a_mesh_cycle),
         GM_TEST(nothing_jumps_and_helical_gears_have_no_kinks),
+        GM_TEST(torques_of_friction_have_no_jumps),
         GM_TEST(equilibrium_carries_the_torque),
         GM_TEST(what_corners_do_not_go_with_is_refused),
     };

@@ -182,14 +182,12 @@ static int check_outputs_are_no_inputs(const config *conf) {
 
 /* What corners do not go with. */
 static int check_corners(const config *conf) {
-    const char *other = config_has_friction(conf) ? "friction"
-                        : conf->analysis == ANALYSIS_STATIC && conf->load_distribution != NULL
-                            ? "output.load_distribution"
-                            : NULL;
-    if (!config_has_corners(conf) || other == NULL) {
+    if (!config_has_corners(conf) || conf->analysis != ANALYSIS_STATIC ||
+        conf->load_distribution == NULL) {
         return 0;
     }
-    config_complain(conf, "mesh.corner_contact", "must be off with %s (got on)", other);
+    config_complain(conf, "mesh.corner_contact",
+                    "must be off with output.load_distribution (got on)");
     return 1;
 }
 

@@ -145,6 +145,7 @@ void gmi_corner_at(const gmi_corner *corner, double roll, gmi_corner_place *plac
     place->along = e_way + roll;
     place->versine = versine;
     place->turn = angle_of(sine, cosine);
+    place->gain = longer + roll;
 
     /* The gap: by the roll, and by T, which moves the corner along e and the end of the path with it. */
     const double per_base = 1.0 / r_g;
@@ -160,6 +161,8 @@ void gmi_corner_at(const gmi_corner *corner, double roll, gmi_corner_place *plac
     const double turn_by_roll = (rho_by_roll + 1.0 - place->by_roll) / r_m;
     place->by_roll_twice =
         (base_sum * sine + corner->line_of_action * cosine) * turn_by_roll * per_base;
+    place->versine_by_roll = sine * turn_by_roll;
+    place->gain_by_roll = rho_by_roll + 1.0;
 }
 
 /* The gap is convex: from beyond, Newton's method comes closer from the same side. */

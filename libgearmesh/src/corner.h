@@ -22,7 +22,11 @@ typedef struct gmi_corner_place {
                              axis and along the line (m) */
     double
         versine; /* 1 - cos of the turn of the normal from the line of action, with the axes held */
+    double versine_by_roll;
     double turn; /* that turn (rad) */
+    double
+        gain; /* what roll lengths of the flank touched are longer by than on the line of action (m) */
+    double gain_by_roll;
     double
         tip_arm; /* of that normal about the axis of the tip: d overlap / d angle (m); about the other: mate_base */
 } gmi_corner_place;
@@ -50,12 +54,20 @@ typedef struct gmi_tip_load {
     double arm_by_speed;                /* and by the speed of approach (N s/m) */
 } gmi_tip_load;
 
+/* One side: its sum, the force at both tips, [enum gm_role], and friction, as far as there is any. */
+typedef struct gmi_corner_sums {
+    gmi_side_sum side;
+    gmi_tip_load tips[2];
+    gmi_friction_sum friction;
+    gmi_tip_friction tip_friction;
+} gmi_corner_sums;
+
 /*
- * corner_line.c: the sum of a side whose lines go on beyond the path, and the force at both tips, [enum gm_role], at a
- * speed of approach. wanted: GMI_MOMENTS and GMI_DERIVATIVES, which here are those of the touching part too.
+ * corner_line.c: of a side whose lines go on beyond the path, at a speed of approach. wanted: GMI_MOMENTS and
+ * GMI_DERIVATIVES, which here are those of the touching part too; sliding: NULL = without friction.
  */
 void gmi_side_sum_corners(const gm_mesh *mesh, int side, const gm_position *position, int wanted,
-                          double approach_speed, gmi_side_sum *total, gmi_tip_load tips[2]);
+                          double approach_speed, const gmi_sliding *sliding, gmi_corner_sums *sums);
 
 /* The roll at which the gap is as large as an overlap, or the corner is off the flank; 0 for an overlap <= 0 (m). */
 double gmi_corner_touch(const gmi_corner *corner, double overlap);
@@ -63,6 +75,11 @@ double gmi_corner_touch(const gmi_corner *corner, double overlap);
 /* wrench.c: what the tip of one gear changes. */
 void gmi_wrench_add_tip(const gm_pair *pair, const gmi_engagement *at, const gmi_tip_load *load,
                         int role, int side_of_teeth, gm_wrench *wrench);
+
+/* And the friction at both. */
+void gmi_wrench_add_tip_friction(const gm_pair *pair, const gmi_engagement *at,
+                                 const gmi_tip_friction *friction, int side_of_teeth,
+                                 gm_wrench *wrench);
 
 /* The tips of both gears at one engagement, [enum gm_role]; 0 where one of them has no flank to touch. */
 int gmi_corners_init(const gm_pair *pair, const gmi_engagement *at, gmi_corner corners[2]);

@@ -26,7 +26,8 @@ static const gmi_grid no_grid = {0};
 /* What is known of the corner at a joint. */
 typedef struct joint {
     double gap, slope;
-    double versine, across, along;
+    double versine, across, along, gain;
+    double versine_by_roll, gain_by_roll; /* of spur gears */
 } joint;
 
 /* The gap around one roll: a parabola from `from` on, and where the corner is. */
@@ -48,10 +49,17 @@ typedef struct view {
     parabola last; /* what was found last, of the tip of this gear: */
     int last_role;
     gmi_line_tangent tangent;
-    gmi_side_sum *total;
-    gmi_tip_load *tips;
-    double viscous; /* damping times speed of approach (N) */
+    gmi_corner_sums *sums;
+    double approach_speed;      /* (m/s) */
+    double viscous;             /* damping times speed of approach (N) */
+    const gmi_sliding *sliding; /* NULL = without friction */
 } view;
+
+/* A place at which a line is cut, and how that moves by origin and delta. */
+typedef struct cut {
+    double t1;
+    double by[2];
+} cut;
 
 /* One line of it. */
 typedef struct whole_line {
@@ -98,6 +106,9 @@ static void find_joint(const gmi_corner *corner, double roll, joint *found) {
     found->versine = place.versine;
     found->across = place.across;
     found->along = place.along;
+    found->gain = place.gain;
+    found->versine_by_roll = place.versine_by_roll;
+    found->gain_by_roll = place.gain_by_roll;
 }
 
 /* Both parabolas between two joints meet halfway with the same slope: gap and slope at both ends say which. */
@@ -198,22 +209,29 @@ static double profile_rate(const gmi_grid *grid) {
     return grid->direction * grid->climb;
 }
 
-static void take_nearer(double cut, double from, double *next) {
-    if (cut > from && cut < *next) { /* not for spur gears: infinite, or no number */
-        *next = cut;
+static void take_nearer(double t1, double from, double by_origin, double by_delta, cut *next) {
+    if (t1 > from && t1 < next->t1) { /* not for spur gears: infinite, or no number */
+        next->t1 = t1;
+        next->by[GMI_BY_ORIGIN] = by_origin;
+        next->by[GMI_BY_DELTA] = by_delta;
     }
 }
 
-/* Where the next part begins: at an end of either flank's table, at a tip, or at a joint of the gap. */
-static double next_cut(const view *v, const whole_line *whole, double from, double to) {
-    double next = to;
+/* Where the next part begins: at an end of either flank's table, at a tip, at a joint of the gap, and on the path of contact
+ * where sliding speeds differ enough. */
+static cut next_cut(const view *v, const whole_line *whole, double from, double to) {
+    cut next = {to, {0.0, 0.0}};
+    const double per_advance = 1.0 / v->lines.advance;
+    int is_on_path = 1;
     for (int role = GM_PINION; role <= GM_WHEEL; ++role) {
         /* Ends of the table. */
         const gmi_grid *grid = v->running[role];
         if (grid->face_rate > 0.0) {
             const double profile = profile_of(&whole->line, role);
-            take_nearer(-profile / profile_rate(grid), from, &next);
-            take_nearer((grid->profile_cells - profile) / profile_rate(grid), from, &next);
+            const double by_delta = role == GM_PINION ? 0.0 : per_advance;
+            take_nearer(-profile / profile_rate(grid), from, -per_advance, by_delta, &next);
+            take_nearer((grid->profile_cells - profile) / profile_rate(grid), from, -per_advance,
+                        by_delta, &next);
         }
 
         /* The tip, and beyond it the next joint. */
@@ -222,12 +240,15 @@ static double next_cut(const view *v, const whole_line *whole, double from, doub
         const double rounding = JOINT_ROUNDING * corner->fine;
         const double roll = roll_at(beyond, from);
         const int climbs = beyond->per_t1 > 0.0;
-        if (climbs ? roll < -rounding : roll <= rounding) {
-            take_nearer(-beyond->at_zero / beyond->per_t1, from, &next);
-        } else {
-            const double next_roll = next_joint(corner, roll, climbs);
-            take_nearer((next_roll - beyond->at_zero) / beyond->per_t1, from, &next);
-        }
+        const int is_before = climbs ? roll < -rounding : roll <= rounding;
+        is_on_path = is_on_path && is_before;
+        const double next_roll = is_before ? 0.0 : next_joint(corner, roll, climbs);
+        take_nearer((next_roll - beyond->at_zero) / beyond->per_t1, from,
+                    -beyond->by_origin / beyond->per_t1, -beyond->by_delta / beyond->per_t1, &next);
+    }
+    for (int k = 0; k < GMI_FRICTION_CUTS && v->sliding != NULL && is_on_path; ++k) {
+        take_nearer((v->sliding->friction->cuts[k] - whole->origin) * per_advance, from,
+                    -per_advance, 0.0, &next);
     }
     return next;
 }
@@ -341,9 +362,102 @@ static void add_tip_load(const view *v, const gmi_beyond *beyond, const parabola
     }
 }
 
-/* The end of a face that moves under tilted axes, and takes the overlap and the touching part along. */
-static void add_face_end(gmi_line_tangent *tangent, double sign, double t1, double f,
-                         const double end_by[2]) {
+/* What a part has at a place and speed of the side's friction: the normal force with its moments. */
+static gmi_part_force force_with_moments(const view *v, const whole_line *whole,
+                                         const part_force *load, const gmi_line_sum *sum) {
+    const gm_pair *pair = v->mesh->pair;
+    const int side = v->side;
+    const double damping = v->mesh->law.damping, advance = v->lines.advance;
+    const double origin = whole->origin;
+    double moment_by[2] = {load->whole, 0.0}, touching_by[2] = {0.0, 0.0};
+    for (int k = GMI_BY_ORIGIN; k <= GMI_BY_DELTA && v->wanted & GMI_DERIVATIVES; ++k) {
+        moment_by[k] += origin * load->whole_by[k] + advance * load->by_t1_by[k];
+        touching_by[k] = v->tangent.flow_by[k][0];
+    }
+    const gmi_part_force result = {
+        .force = gmi_varying_of(pair, side, load->whole, load->whole_by[GMI_BY_ORIGIN],
+                                load->whole_by[GMI_BY_DELTA], damping * sum->contact),
+        .moment = gmi_varying_of(pair, side, origin * load->whole + advance * load->by_t1,
+                                 moment_by[GMI_BY_ORIGIN], moment_by[GMI_BY_DELTA],
+                                 damping * (origin * sum->contact + advance * sum->contact_t1)),
+        .contact = gmi_varying_of(pair, side, sum->contact, touching_by[GMI_BY_ORIGIN],
+                                  touching_by[GMI_BY_DELTA], 0.0),
+        .force_t1 = gmi_varying_of(pair, side, load->by_t1, load->by_t1_by[GMI_BY_ORIGIN],
+                                   load->by_t1_by[GMI_BY_DELTA], damping * sum->contact_t1)};
+    return result;
+}
+
+/* A function of the roll beyond a tip, at one that moves. */
+static gmi_varying follow(double value, double by_roll, const gmi_varying *roll) {
+    gmi_varying result = {.value = value};
+    for (int k = 0; k < GMI_MOTIONS; ++k) {
+        result.by[k] = by_roll * roll->by[k];
+    }
+    return result;
+}
+
+/* Where the middle of the load of a part is off the line of action: as in add_tip_load(), with derivatives. */
+static gmi_tip_place tip_place_of(const view *v, const gmi_beyond *beyond, int role,
+                                  const parabola *gap, const gmi_part_force *part) {
+    const gmi_engagement *at = &v->mesh->engagement;
+    const double base[2] = {v->mesh->pair->pinion.base_radius, at->wheel_base_radius};
+    const double base_sum = base[GM_PINION] + base[GM_WHEEL];
+    const double length = at->line_of_action;
+
+    /* The roll there. */
+    const double t1 = part->force_t1.value / part->force.value;
+    gmi_varying roll = gmi_varying_of(v->mesh->pair, v->side, roll_at(beyond, t1),
+                                      beyond->by_origin, beyond->by_delta, 0.0);
+    for (int k = 0; k < GMI_MOTIONS; ++k) {
+        roll.by[k] +=
+            beyond->per_t1 * (part->force_t1.by[k] - t1 * part->force.by[k]) / part->force.value;
+    }
+
+    /* Straight from joint to joint; of spur gears it is known there. */
+    const joint *a = &gap->begins, *b = &gap->ends;
+    const double pair_length = gap->pair_to - gap->pair_from;
+    const int is_point = !(pair_length > 0.0);
+    const double gone = roll.value - gap->pair_from;
+    const double versine_by =
+        is_point ? a->versine_by_roll : (b->versine - a->versine) / pair_length;
+    const double gain_by = is_point ? a->gain_by_roll : (b->gain - a->gain) / pair_length;
+    const double versine = a->versine + gone * versine_by;
+    const double gain = a->gain + gone * gain_by;
+
+    /* The turn by the slope of the gap, T sin(Delta) = r_g gap' - (r_bp + r_bw) (1 - cos(Delta)), and the arms by both. */
+    const double slope = gap->slope + gap->curvature * (roll.value - gap->from);
+    const double sine = (base[role] * slope - base_sum * versine) / length;
+    const double sine_by = (base[role] * gap->curvature - base_sum * versine_by) / length;
+    const double longer = base_sum * sine - length * versine;
+    const double longer_by = base_sum * sine_by - length * versine_by;
+    const int is_pinion = role == GM_PINION;
+    const gmi_tip_place place = {
+        follow(is_pinion ? longer - gain : gain, is_pinion ? longer_by - gain_by : gain_by, &roll),
+        follow(longer, longer_by, &roll), follow(versine, versine_by, &roll),
+        follow(sine, sine_by, &roll)};
+    return place;
+}
+
+/* Friction of a part, on the line of action or at a tip. */
+static OWN_STACK void add_friction(view *v, const whole_line *whole, const gmi_line_sum *sum,
+                                   const int is_beyond[2], double middle) {
+    gmi_corner_sums *sums = v->sums;
+    const part_force load = force_of(v, sum);
+    const gmi_part_force part = force_with_moments(v, whole, &load, sum);
+    if (!(load.whole > 0.0 && (is_beyond[GM_PINION] || is_beyond[GM_WHEEL]))) {
+        gmi_friction_add(v->sliding, &part, &sums->friction);
+        return;
+    }
+    const int role = is_beyond[GM_PINION] ? GM_PINION : GM_WHEEL;
+    const gmi_beyond *beyond = &whole->beyond[role];
+    const gmi_tip_place place =
+        tip_place_of(v, beyond, role, gap_at(v, beyond, role, middle), &part);
+    gmi_friction_add_tip(v->sliding, &part, &place, &sums->friction, &sums->tip_friction);
+}
+
+/* The end of a part that moves, and takes the overlap and the touching part along. */
+static void add_end(gmi_line_tangent *tangent, double sign, double t1, double f,
+                    const double end_by[2]) {
     if (!(f > 0.0)) {
         return;
     }
@@ -359,7 +473,7 @@ static void add_face_end(gmi_line_tangent *tangent, double sign, double t1, doub
 /* What a part adds to the side and to the tips that it is beyond of. */
 static OWN_STACK void add_sums(view *v, const whole_line *whole, const gmi_line_sum *sum,
                                const int is_beyond[2], double middle) {
-    gmi_side_sum *side = v->total;
+    gmi_side_sum *side = &v->sums->side;
     const double advance = v->lines.advance;
     side->sum += sum->sum;
     side->contact += sum->contact;
@@ -378,19 +492,35 @@ static OWN_STACK void add_sums(view *v, const whole_line *whole, const gmi_line_
     for (int role = GM_PINION; role <= GM_WHEEL; ++role) {
         if (is_beyond[role]) {
             const gmi_beyond *beyond = &whole->beyond[role];
-            add_tip_load(v, beyond, gap_at(v, beyond, role, middle), sum, &v->tips[role]);
+            add_tip_load(v, beyond, gap_at(v, beyond, role, middle), sum, &v->sums->tips[role]);
         }
     }
 }
 
+/*
+ * How the ends of a part move: those of the faces under tilted axes. Other cuts stay with the flank while the line moves:
+ * what one part loses there the next one gains, so that only friction, another one on each part, is to know.
+ */
+static void add_ends(view *v, const whole_line *whole, const cut *from, const cut *to,
+                     const gmi_line_sum *sum) {
+    const int is_tilted = v->mesh->engagement.is_tilted, slides = v->sliding != NULL;
+    const int begins = from->t1 == whole->line.from, ends = to->t1 == whole->line.to;
+    if (begins ? is_tilted : slides) {
+        add_end(&v->tangent, -1.0, from->t1, sum->at_from, begins ? whole->from_by : from->by);
+    }
+    if (ends ? is_tilted : slides) {
+        add_end(&v->tangent, 1.0, to->t1, sum->at_to, ends ? whole->to_by : to->by);
+    }
+}
+
 /* One part between two cuts; whether it touches. */
-static int add_part(view *v, const whole_line *whole, double from, double to) {
+static int add_part(view *v, const whole_line *whole, const cut *from, const cut *to) {
     const gm_mesh *mesh = v->mesh;
-    const double middle = 0.5 * (from + to);
-    gmi_line part = gmi_line_between(&whole->line, from, to);
+    const double middle = 0.5 * (from->t1 + to->t1);
+    gmi_line part = gmi_line_between(&whole->line, from->t1, to->t1);
     int held[2], is_beyond[2];
     hold_flanks(v, middle, &part, held);
-    int mask = v->wanted & GMI_MOMENTS;
+    int mask = v->sliding != NULL ? GMI_MOMENTS : v->wanted & GMI_MOMENTS;
     if (v->wanted & GMI_DERIVATIVES) {
         mask = GMI_TANGENT | GMI_MOMENTS;
         begin_tangent(v, whole, held);
@@ -412,15 +542,13 @@ static int add_part(view *v, const whole_line *whole, double from, double to) {
     gmi_flanks_integrate(
         &mesh->side[v->side], held[GM_PINION] ? &v->held[GM_PINION] : v->running[GM_PINION],
         held[GM_WHEEL] ? &v->held[GM_WHEEL] : v->running[GM_WHEEL], &part, mask, &sum);
-    if (v->wanted & GMI_DERIVATIVES && mesh->engagement.is_tilted) {
-        if (from == whole->line.from) {
-            add_face_end(&v->tangent, -1.0, from, sum.at_from, whole->from_by);
-        }
-        if (to == whole->line.to) {
-            add_face_end(&v->tangent, 1.0, to, sum.at_to, whole->to_by);
-        }
+    if (v->wanted & GMI_DERIVATIVES) {
+        add_ends(v, whole, from, to, &sum);
     }
     add_sums(v, whole, &sum, is_beyond, middle);
+    if (v->sliding != NULL) {
+        add_friction(v, whole, &sum, is_beyond, middle);
+    }
     return sum.contact > 0.0;
 }
 
@@ -496,29 +624,41 @@ static void add_line(view *v, const gmi_flank *pinion, const gmi_flank *wheel, i
     if (at->is_tilted) {
         tilt_line(v, &whole);
     }
-    double from = whole.line.from, last = whole.line.to;
+    cut from = {whole.line.from, {0.0, 0.0}};
+    double last = whole.line.to;
     for (int role = GM_PINION; role <= GM_WHEEL; ++role) {
         gmi_tilt_beyond(pair, at, v->side, whole.origin, delta, role, &whole.beyond[role]);
-        end_at_stop(&whole.beyond[role], v->stop[role], &from, &last);
+        end_at_stop(&whole.beyond[role], v->stop[role], &from.t1, &last);
     }
 
     /* From cut to cut. */
     int touches = 0;
-    double to;
-    for (; from < last; from = to) {
-        to = next_cut(v, &whole, from, last);
-        touches |= add_part(v, &whole, from, to);
+    cut to;
+    for (; from.t1 < last; from = to) {
+        to = next_cut(v, &whole, from.t1, last);
+        touches |= add_part(v, &whole, &from, &to);
     }
-    v->total->pairs += touches;
+    v->sums->side.pairs += touches;
+}
+
+/* What of the coefficient is the same all over the side. */
+static OWN_STACK void finish_friction(const view *v) {
+    enum { MASK = GMI_DERIVATIVES | GMI_CONTACT_DERIVATIVES };
+    gmi_side_force force;
+    gmi_law_force(&v->mesh->law, &v->sums->side, v->approach_speed,
+                  v->wanted & GMI_DERIVATIVES ? MASK : GMI_SUM, &force);
+    const gmi_varying all = gmi_varying_of(v->mesh->pair, v->side, force.force, force.by_origin,
+                                           force.by_delta, force.by_speed);
+    gmi_friction_finish(v->sliding, &all, &v->sums->friction, &v->sums->tip_friction);
 }
 
 void gmi_side_sum_corners(const gm_mesh *mesh, int side, const gm_position *position, int wanted,
-                          double approach_speed, gmi_side_sum *total, gmi_tip_load tips[2]) {
+                          double approach_speed, const gmi_sliding *sliding,
+                          gmi_corner_sums *sums) {
     const gm_pair *pair = mesh->pair;
     const gmi_engagement *at = &mesh->engagement;
     const gmi_side *prepared = &mesh->side[side];
-    *total = gmi_no_contact();
-    memset(tips, 0, 2 * sizeof *tips);
+    memset(sums, 0, sizeof *sums);
     if (gmi_side_is_clear(at, prepared, side, position->offset)) {
         return;
     }
@@ -526,9 +666,10 @@ void gmi_side_sum_corners(const gm_mesh *mesh, int side, const gm_position *posi
     v.mesh = mesh;
     v.side = side;
     v.wanted = wanted;
-    v.total = total;
-    v.tips = tips;
+    v.sums = sums;
+    v.sliding = sliding;
     v.last_role = -1;
+    v.approach_speed = approach_speed;
     v.viscous = mesh->law.damping * approach_speed;
 
     /* The tables as lines run through them, and as they are held beyond their ends. */
@@ -560,5 +701,8 @@ void gmi_side_sum_corners(const gm_mesh *mesh, int side, const gm_position *posi
         }
         teeth.pinion = gmi_next_tooth(teeth.pinion, teeth.step, pair->pinion.teeth);
         teeth.wheel = gmi_next_tooth(teeth.wheel, teeth.step, pair->wheel.teeth);
+    }
+    if (sliding != NULL) {
+        finish_friction(&v);
     }
 }

@@ -148,5 +148,5 @@ void gmi_elastic_friction(const gm_mesh *mesh, int side, double approach_speed,
     gmi_varying_add_product(&arm, &all, &friction->moment);
     friction->force_t1 = with_damping * sums.force_t1;
     friction->loss = with_damping * sums.loss;
-    gmi_friction_finish(sliding, &all, friction);
+    gmi_friction_finish(sliding, &all, friction, NULL);
 }

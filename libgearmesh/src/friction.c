@@ -96,6 +96,7 @@ gmi_sliding gmi_sliding_find(const gmi_friction *friction, const gm_pair *pair,
     s.line_of_action = at->line_of_action;
     for (int k = 0; k < 2 && rates != NULL; ++k) {
         s.sideways[k] = rates->sideways[k];
+        s.forward[k] = rates->forward[k];
     }
 
     /* In the pitch point; v0 keeps the coefficients finite at rest. */
@@ -128,6 +129,31 @@ static gmi_varying sliding_speed(const gmi_sliding *s, const gmi_part_force *par
     }
     speed.by[GMI_PINION_SPEED] += rho_p;
     speed.by[GMI_WHEEL_SPEED] -= s->wheel_sign * rho_w;
+    return speed;
+}
+
+/*
+ * The same at a tip, where both arms are longer, the flanks slide along the turned tangent, and the wheel's axis moves
+ * across that.
+ */
+static gmi_varying tip_sliding_speed(const gmi_sliding *s, const gmi_part_force *part,
+                                     const gmi_tip_place *place) {
+    const double t1 = part->force_t1.value / part->force.value;
+    const double sideways = s->sideways[0] + s->sideways[1] * t1;
+    const double forward = s->forward[0] + s->forward[1] * t1;
+    gmi_varying speed = sliding_speed(s, part);
+    const double both = s->pinion_speed + s->wheel_speed;
+    speed.value += both * place->lead.value - s->wheel_speed * place->longer.value +
+                   sideways * place->versine.value - forward * place->sine.value;
+    for (int k = 0; k < GMI_MOTIONS; ++k) {
+        const double t1_by = (part->force_t1.by[k] - t1 * part->force.by[k]) / part->force.value;
+        speed.by[k] +=
+            both * place->lead.by[k] - s->wheel_speed * place->longer.by[k] +
+            sideways * place->versine.by[k] - forward * place->sine.by[k] +
+            (s->sideways[1] * place->versine.value - s->forward[1] * place->sine.value) * t1_by;
+    }
+    speed.by[GMI_PINION_SPEED] += place->lead.value;
+    speed.by[GMI_WHEEL_SPEED] -= s->wheel_sign * (place->longer.value - place->lead.value);
     return speed;
 }
 
@@ -201,25 +227,50 @@ static gmi_varying share_of(const gmi_sliding *sliding, const gmi_varying *load,
     return share;
 }
 
-void gmi_friction_add(const gmi_sliding *sliding, const gmi_part_force *part,
-                      gmi_friction_sum *total) {
-    if (!(part->force.value > 0.0)) {
-        return;
-    }
-
-    /* By the load of the part over its touching length. */
+/* By the load of the part over its touching length; what it adds at the place of the line of action. */
+static gmi_varying add_part(const gmi_sliding *sliding, const gmi_part_force *part,
+                            const gmi_varying *speed, gmi_friction_sum *total) {
     const double contact = part->contact.value;
     gmi_varying load = {.value = part->force.value / contact};
     for (int k = 0; k < GMI_MOTIONS; ++k) {
         load.by[k] = (part->force.by[k] - load.value * part->contact.by[k]) / contact;
     }
 
-    const gmi_varying speed = sliding_speed(sliding, part);
-    const gmi_varying share = share_of(sliding, &load, &speed);
+    const gmi_varying share = share_of(sliding, &load, speed);
     gmi_varying_add_product(&share, &part->force, &total->force);
     gmi_varying_add_product(&share, &part->moment, &total->moment);
     total->force_t1 += share.value * part->force_t1.value;
-    total->loss += share.value * part->force.value * speed.value;
+    total->loss += share.value * part->force.value * speed->value;
+    return share;
+}
+
+void gmi_friction_add(const gmi_sliding *sliding, const gmi_part_force *part,
+                      gmi_friction_sum *total) {
+    if (part->force.value > 0.0) {
+        const gmi_varying speed = sliding_speed(sliding, part);
+        (void)add_part(sliding, part, &speed, total);
+    }
+}
+
+void gmi_friction_add_tip(const gmi_sliding *sliding, const gmi_part_force *part,
+                          const gmi_tip_place *place, gmi_friction_sum *total,
+                          gmi_tip_friction *tip) {
+    if (!(part->force.value > 0.0)) {
+        return;
+    }
+    const gmi_varying speed = tip_sliding_speed(sliding, part, place);
+    const gmi_varying share = add_part(sliding, part, &speed, total);
+
+    /* From the line of action to the corner. */
+    gmi_varying force = {.value = 0.0};
+    gmi_varying_add_product(&share, &part->force, &force);
+    gmi_varying_add_product(&force, &place->lead, &total->moment);
+    gmi_varying_add_product(&force, &place->longer, &tip->longer);
+    const double force_t1 = share.value * part->force_t1.value;
+    tip->versine += place->versine.value * force.value;
+    tip->versine_t1 += place->versine.value * force_t1;
+    tip->sine += place->sine.value * force.value;
+    tip->sine_t1 += place->sine.value * force_t1;
 }
 
 gmi_point_friction gmi_friction_at(const gmi_sliding *sliding, double rho_p, double t1,
@@ -247,16 +298,33 @@ gmi_point_friction gmi_friction_at(const gmi_sliding *sliding, double rho_p, dou
     return result;
 }
 
+/* Times the common part of mu. */
+static void finish_tip(const gmi_varying *mu, gmi_tip_friction *tip) {
+    const gmi_tip_friction parts = *tip;
+    const gmi_varying none = {.value = 0.0};
+    tip->longer = none;
+    gmi_varying_add_product(mu, &parts.longer, &tip->longer);
+    tip->versine *= mu->value;
+    tip->versine_t1 *= mu->value;
+    tip->sine *= mu->value;
+    tip->sine_t1 *= mu->value;
+}
+
 void gmi_friction_finish(const gmi_sliding *sliding, const gmi_varying *force,
-                         gmi_friction_sum *total) {
+                         gmi_friction_sum *total, gmi_tip_friction *tip) {
     const gmi_friction_sum parts = *total;
     const gmi_friction_sum none = {.loss = 0.0};
+    gmi_varying mu = {.value = 0.0};
     *total = none;
-    if (!(force->value > 0.0)) { /* damping has taken the force of the side away */
+    if (force->value > 0.0) { /* else damping has taken the force of the side away */
+        mu = common_coefficient(sliding, force);
+    }
+    if (tip != NULL) {
+        finish_tip(&mu, tip);
+    }
+    if (!(force->value > 0.0)) {
         return;
     }
-
-    const gmi_varying mu = common_coefficient(sliding, force);
     gmi_varying_add_product(&mu, &parts.force, &total->force);
     gmi_varying_add_product(&mu, &parts.moment, &total->moment);
     total->force_t1 = mu.value * parts.force_t1;

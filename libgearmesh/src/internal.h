@@ -195,8 +195,8 @@ typedef struct gmi_rates {
     double delta;         /* of parallel axes (m/s) */
     double along, across; /* d gmi_engagement.along / dt, d across / dt (rad/s) */
 
-    /* Of the wheel's body across the line of action, as friction has it, at t1 = 0 and more of it per t1 (m/s). */
-    double sideways[2];
+    /* Of the wheel's body across the line of action, as friction has it, and along it, at t1 = 0 and more per t1 (m/s). */
+    double sideways[2], forward[2];
 } gmi_rates;
 
 /* Line of action of a side in the transverse section: e along it, t across, clockwise from e on the drive side. */
@@ -840,8 +840,8 @@ typedef struct gmi_sliding {
     double pinion_speed, wheel_speed; /* in the signs of ISO 21771 (rad/s) */
     double wheel_sign;
     double line_of_action; /* T (m) */
-    double sideways
-        [2]; /* of gmi_rates: where the wheel's axis moves, the flanks slide by less (m/s) */
+    double sideways[2],
+        forward[2]; /* of gmi_rates: where the wheel's axis moves, the flanks slide by less (m/s) */
     gmi_varying rolling; /* sum of both speeds of rolling in the pitch point, v0 included (m/s) */
 } gmi_sliding;
 
@@ -866,6 +866,20 @@ typedef struct gmi_friction_sum {
     double loss;        /* (W) */
 } gmi_friction_sum;
 
+/* Where a part is that a tip corner bears: off the line of action, whose place has the roll lengths rho_p and T - rho_p. */
+typedef struct gmi_tip_place {
+    gmi_varying lead;   /* what the arm of friction about the pinion's axis is longer by (m) */
+    gmi_varying longer; /* and that of both together (m) */
+    gmi_varying versine, sine; /* 1 - cos and sin of the turn of the normal */
+} gmi_tip_place;
+
+/* What friction at tips adds to gmi_friction_sum. */
+typedef struct gmi_tip_friction {
+    gmi_varying longer;         /* times what both arms together are longer by (N m) */
+    double versine, versine_t1; /* times that of the turn; and times t1 (N) */
+    double sine, sine_t1;       /* likewise */
+} gmi_tip_friction;
+
 /* Friction at one point: over the transverse force there, less what is the same all over a side. */
 typedef struct gmi_point_friction {
     double share; /* mu_r / cos(beta_b) */
@@ -883,9 +897,14 @@ gmi_point_friction gmi_friction_at(const gmi_sliding *sliding, double rho_p, dou
 void gmi_friction_add(const gmi_sliding *sliding, const gmi_part_force *part,
                       gmi_friction_sum *total);
 
-/* What of the law is the same all over a side, by the side's force. */
+/* Adds that of one part at a tip. */
+void gmi_friction_add_tip(const gmi_sliding *sliding, const gmi_part_force *part,
+                          const gmi_tip_place *place, gmi_friction_sum *total,
+                          gmi_tip_friction *tip);
+
+/* What of the law is the same all over a side, by the side's force; tip: NULL = without. */
 void gmi_friction_finish(const gmi_sliding *sliding, const gmi_varying *force,
-                         gmi_friction_sum *total);
+                         gmi_friction_sum *total, gmi_tip_friction *tip);
 
 /* penetration.c: the sum of a side, with its friction; with_derivatives: of both. */
 void gmi_side_sum_sliding(const gm_pair *pair, const gmi_engagement *at, const gmi_side *prepared,

@@ -75,11 +75,6 @@ static const char *corner_at_fault(const gm_mesh_params *params, const char **wa
         *wanted = "GM_CORNER_OFF with GM_MODEL_SIMPLE";
         return "corner_contact";
     }
-    if (params->law != GM_LAW_ELASTIC &&
-        (params->friction_law != GM_FRICTION_CONSTANT || params->friction_coefficient > 0.0)) {
-        *wanted = "GM_CORNER_OFF with friction";
-        return "corner_contact";
-    }
     return NULL;
 }
 
@@ -665,54 +660,145 @@ static void add_tip(const gm_mesh *mesh, const gmi_tip_load *force, int role, in
         by->pinion_speed -= arm * r_bp * force->arm_by_speed;
         by->wheel_speed += arm * r_bw * force->arm_by_speed;
     }
+}
 
-    /* The force along the normal of the flank that the corner touches, in the frame of the drawing. */
+/* Friction of a side with corners: what is plain friction, and what both arms together are longer by at tips. */
+static void add_corner_friction(const gm_mesh *mesh, const gmi_corner_sums *sums, int wanted,
+                                gm_mesh_result *result) {
+    const double sign = mesh->pair->wheel.sign;
+    const gmi_varying *longer = &sums->tip_friction.longer;
+    add_friction(mesh, &sums->friction, wanted, result);
+    result->wheel_torque += sign * longer->value;
+    if (wanted & GM_WANT_DERIVATIVES) {
+        add_to_gradient(longer->by, sign, &result->wheel_torque_by);
+    }
+}
+
+static void add_wrench(const gm_wrench *more, gm_wrench *wrench) {
+    for (int k = 0; k < 3; ++k) {
+        wrench->pinion_force[k] += more->pinion_force[k];
+        wrench->pinion_moment[k] += more->pinion_moment[k];
+        wrench->wheel_force[k] += more->wheel_force[k];
+        wrench->wheel_moment[k] += more->wheel_moment[k];
+    }
+}
+
+/* All that a side with corners adds to the wrench of the normal force on the line of action, in the frame of the drawing. */
+static OWN_STACK void add_corner_wrench(const gm_mesh *mesh, const gmi_corner_sums *sums, int side,
+                                        gm_wrench *wrench) {
+    const gm_pair *pair = mesh->pair;
+    const gmi_engagement *at = &mesh->engagement;
+    gm_wrench more;
+    gmi_wrench_set(&more, 0.0);
+
+    /* The force is along the normal of the flank that the corner touches, friction across it. */
+    gmi_wrench_add_tip(pair, at, &sums->tips[GM_PINION], GM_PINION, side, &more);
+    gmi_wrench_add_tip(pair, at, &sums->tips[GM_WHEEL], GM_WHEEL, side, &more);
+    if (mesh->friction.is_on) {
+        gmi_wrench_add_friction(pair, at, &sums->friction, side, &more);
+        gmi_wrench_add_tip_friction(pair, at, &sums->tip_friction, side, &more);
+    }
+    gmi_wrench_turn(&more, at->axis);
+    add_wrench(&more, wrench);
+}
+
+/* What the sums of one side are for the user, as if the other one did not touch. */
+static void set_corner_result(const gm_mesh *mesh, const gmi_corner_sums *sums, int side,
+                              const double approach[2], int wanted, gm_mesh_result *result) {
+    const gmi_side_sum *sides[2] = {&no_contact, &no_contact};
+    sides[side] = &sums->side;
+    set_result(mesh, sides[GM_DRIVE], sides[GM_COAST], NULL, approach, wanted, result);
+    if (!(result->drive_force + result->coast_force > 0.0)) {
+        return;
+    }
+
+    /* It presses: so do its tips, and the flanks rub. */
+    for (int role = GM_PINION; role <= GM_WHEEL; ++role) {
+        add_tip(mesh, &sums->tips[role], role, side, wanted, result);
+    }
+    if (mesh->friction.is_on) {
+        add_corner_friction(mesh, sums, wanted, result);
+    }
     if (wanted & GM_WANT_WRENCH) {
-        gm_wrench of_tip;
-        gmi_wrench_set(&of_tip, 0.0);
-        gmi_wrench_add_tip(pair, &mesh->engagement, force, role, side, &of_tip);
-        gmi_wrench_turn(&of_tip, mesh->engagement.axis);
-        for (int k = 0; k < 3; ++k) {
-            result->wrench.pinion_force[k] += of_tip.pinion_force[k];
-            result->wrench.pinion_moment[k] += of_tip.pinion_moment[k];
-            result->wrench.wheel_force[k] += of_tip.wheel_force[k];
-            result->wrench.wheel_moment[k] += of_tip.wheel_moment[k];
-        }
+        add_corner_wrench(mesh, sums, side, &result->wrench);
     }
 }
 
-/* What the sums of both sides and of their tips, [side][enum gm_role], are for the user. */
-static OWN_STACK void set_corner_result(const gm_mesh *mesh, const gmi_side_sum sums[2],
-                                        gmi_tip_load tips[2][2], const double approach[2],
-                                        int wanted, gm_mesh_result *result) {
-    set_result(mesh, &sums[GM_DRIVE], &sums[GM_COAST], NULL, approach, wanted, result);
-
-    /* Both tips of each side that presses. */
-    const double force[2] = {result->drive_force, result->coast_force};
-    for (int side = GM_DRIVE; side <= GM_COAST; ++side) {
-        for (int role = GM_PINION; role <= GM_WHEEL && force[side] > 0.0; ++role) {
-            add_tip(mesh, &tips[side][role], role, side, wanted, result);
-        }
-    }
+static void add_gradient(const gm_gradient *more, gm_gradient *gradient) {
+    const double by[GMI_MOTIONS] = {[GMI_PINION_ANGLE] = more->pinion_angle,
+                                    [GMI_WHEEL_ANGLE] = more->wheel_angle,
+                                    [GMI_PINION_SPEED] = more->pinion_speed,
+                                    [GMI_WHEEL_SPEED] = more->wheel_speed};
+    add_to_gradient(by, 1.0, gradient);
 }
 
-/* Lines that go on beyond the path of contact; rates: [side], NULL where the axes are at rest. */
+/* The coast side on top of the drive side: flanks without backlash touch on both. */
+static OWN_STACK void add_coast(const gm_mesh *mesh, const gmi_corner_sums *sums,
+                                const double approach[2], int wanted, gm_mesh_result *result) {
+    gm_mesh_result more;
+    set_corner_result(mesh, sums, GM_COAST, approach, wanted, &more);
+    result->force += more.force;
+    result->coast_force = more.coast_force;
+    result->pinion_torque += more.pinion_torque;
+    result->wheel_torque += more.wheel_torque;
+    result->loss += more.loss;
+    add_gradient(&more.force_by, &result->force_by);
+    add_gradient(&more.pinion_torque_by, &result->pinion_torque_by);
+    add_gradient(&more.wheel_torque_by, &result->wheel_torque_by);
+    add_wrench(&more.wrench, &result->wrench);
+
+    /* The overlap, and what of it is of this side alone. */
+    gm_penetration *contact = &result->contact;
+    contact->penetration += more.contact.penetration;
+    contact->rate += more.contact.rate;
+    contact->coast = more.contact.coast;
+    contact->coast_rate = more.contact.coast_rate;
+    contact->coast_contact = more.contact.coast_contact;
+    contact->d_pinion_angle += more.contact.d_pinion_angle;
+    contact->d_wheel_angle += more.contact.d_wheel_angle;
+    contact->coast_pairs = more.contact.coast_pairs;
+}
+
+static OWN_STACK void set_drive(const gm_mesh *mesh, const gmi_corner_sums *sums,
+                                const double approach[2], int wanted, gm_mesh_result *result) {
+    set_corner_result(mesh, sums, GM_DRIVE, approach, wanted, result);
+}
+
+/* Its value is copied in a frame of its own. */
+static OWN_STACK void find_sliding(const gm_mesh *mesh, const gm_position *position,
+                                   const gmi_rates *rates, gmi_sliding *sliding) {
+    *sliding = gmi_sliding_find(&mesh->friction, mesh->pair, &mesh->engagement, position, rates);
+}
+
+/*
+ * Lines that go on beyond the path of contact; rates: [side], NULL where the axes are at rest. One side at a time: the sums
+ * of both would be twice the stack.
+ */
 static OWN_STACK void evaluate_corners(const gm_mesh *mesh, const gm_position *position,
                                        const gmi_rates *rates, int wanted, gm_mesh_result *result) {
     const int moments = (wanted & GM_WANT_WRENCH) || rates != NULL ? GMI_MOMENTS : GMI_SUM;
     const int mask = moments | (wanted & GM_WANT_DERIVATIVES ? GMI_DERIVATIVES : GMI_SUM);
-    gmi_side_sum sums[2];
-    gmi_tip_load tips[2][2];
+    const int slides = mesh->friction.is_on;
+    gmi_corner_sums sums;
+    gmi_sliding sliding;
     double approach[2] = {position->offset_rate, -position->offset_rate};
     for (int side = GM_DRIVE; side <= GM_COAST; ++side) {
         approach[side] = rates != NULL ? rates[side].delta : approach[side];
-        gmi_side_sum_corners(mesh, side, position, mask, approach[side], &sums[side], tips[side]);
+        if (slides) {
+            find_sliding(mesh, position, rates == NULL ? NULL : &rates[side], &sliding);
+        }
+        gmi_side_sum_corners(mesh, side, position, mask, approach[side], slides ? &sliding : NULL,
+                             &sums);
         if (rates != NULL) {
             approach[side] = gmi_rates_mean_approach(&rates[side], mesh->pair, &mesh->engagement,
-                                                     side, &sums[side]);
+                                                     side, &sums.side);
+        }
+        if (side == GM_DRIVE) {
+            set_drive(mesh, &sums, approach, wanted, result);
+        } else if (sums.side.contact > 0.0) {
+            add_coast(mesh, &sums, approach, wanted, result);
         }
     }
-    set_corner_result(mesh, sums, tips, approach, wanted, result);
 }
 
 int gmi_mesh_evaluate_exact(const gm_mesh *mesh, const gm_position *position, int wanted,

@@ -366,5 +366,13 @@ void gmi_rates_find(const gm_pair *pair, const gmi_engagement *at, double offset
         const double moving = t[0] * pose_rate->center_distance_change + t[1] * pose_rate->offset;
         rates[side].sideways[0] = -sign * (moving + turning * (pair->face_start - at->face_center));
         rates[side].sideways[1] = -sign * turning * pair->face_width;
+
+        /* And along it, towards +e on either side's own way round: across is -sign t, turned on it is -sign e. */
+        const double swinging = e[0] * pose_rate->inclination - e[1] * pose_rate->skew;
+        const double advancing =
+            e[0] * pose_rate->center_distance_change + e[1] * pose_rate->offset;
+        rates[side].forward[0] =
+            sign * (advancing + swinging * (pair->face_start - at->face_center));
+        rates[side].forward[1] = sign * swinging * pair->face_width;
     }
 }

@@ -563,7 +563,7 @@ static OWN_STACK void finish_friction(const side_view *view, int wanted,
     gmi_law_force(view->law, total, view->approach_speed, law_mask(wanted), &force);
     const gmi_varying all = gmi_varying_of(view->pair, view->side, force.force, force.by_origin,
                                            force.by_delta, force.by_speed);
-    gmi_friction_finish(view->sliding, &all, view->friction);
+    gmi_friction_finish(view->sliding, &all, view->friction, NULL);
 }
 
 /*

@@ -148,6 +148,34 @@ void gmi_wrench_add_friction(const gm_pair *pair, const gmi_engagement *at,
     wrench->wheel_moment[2] += about_wheel;
 }
 
+/*
+ * At a tip corner it acts across the turned normal: on the wheel -sign (cos(Delta) n - sin(Delta) e), with n, e and Delta as
+ * above, where across the line of action is -sign n. Both arms together are the part of the centre distance along the
+ * normal.
+ */
+void gmi_wrench_add_tip_friction(const gm_pair *pair, const gmi_engagement *at,
+                                 const gmi_tip_friction *friction, int side_of_teeth,
+                                 gm_wrench *wrench) {
+    const double sign = gmi_side_sign(side_of_teeth);
+    const double sine = at->sin_pressure_angle, cosine = at->cos_pressure_angle;
+    const double e[2] = {sine, sign * cosine}, n[2] = {cosine, -sign * sine};
+    double force[2], z_force[2];
+    for (int k = 0; k < 2; ++k) {
+        force[k] = sign * (friction->versine * n[k] + friction->sine * e[k]);
+        const double force_t1 = sign * (friction->versine_t1 * n[k] + friction->sine_t1 * e[k]);
+        z_force[k] = pair->face_start * force[k] + pair->face_width * force_t1;
+    }
+
+    const double tilting[2] = {-z_force[1], z_force[0]};
+    for (int k = 0; k < 2; ++k) {
+        wrench->wheel_force[k] += force[k];
+        wrench->wheel_moment[k] += tilting[k];
+        wrench->pinion_force[k] -= force[k];
+        wrench->pinion_moment[k] -= tilting[k];
+    }
+    wrench->wheel_moment[2] -= friction->longer.value;
+}
+
 /* The same vector, seen from axes that are turned back by the angle. */
 static void turn(double vector[3], double cosine, double sine) {
     const double x = vector[0];

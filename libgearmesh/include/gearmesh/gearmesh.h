@@ -823,8 +823,8 @@ typedef struct gm_mesh_params {
 
     int stations; /**< along the face, 2 .. 97; docs/elastic.md has the error of each number [17] */
 
-    /** enum gm_corner_contact [GM_CORNER_BY_LAW]. GM_CORNER_ON: 3D model, no tip that reaches to the mate's base circle; no
-     *  friction with constant stiffness or that of ISO 6336-1. Start radii then end no line. */
+    /** enum gm_corner_contact [GM_CORNER_BY_LAW]. GM_CORNER_ON: 3D model, no tip that reaches to the mate's base
+     *  circle. Start radii then end no line. */
     int corner_contact;
 
     /** radius of the tip edges of elastic teeth in modules, 0.001 .. 1 [0.05] */
