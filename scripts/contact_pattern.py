@@ -15,6 +15,8 @@ COLUMNS = ("pinion_angle_rad", "load_torque_Nm", "pair", "z_mm", "pinion_roll_le
            "line_load_N_per_mm", "pressure_N_per_mm2", "gap_um")
 QUANTITIES = (("line load", "line_load_N_per_mm", "N/mm"), ("pressure", "pressure_N_per_mm2", "N/mm²"))
 NODES = 300  # of a map, along each edge
+EDGE = 0.02  # of the active flank, at either end: where tip edges press
+STANDS_OUT = 1.5  # times what the flank carries elsewhere: the colours are those of elsewhere
 SHOWN_POSITIONS = 6
 
 
@@ -167,6 +169,9 @@ class Pattern:
             places = ", ".join(f"{flank.gear} diameter {flank.diameter_mm(rho_mm):.5g} mm" for flank in self.flanks)
             yield (f"  largest {name:9} {columns[column][row]:8.5g} {unit.replace('²', '2')} at z = "
                    f"{columns['z_mm'][row]:.4g} mm, {places}")
+            elsewhere, at_edges = largest_by_place(self.maps, self.flanks, name)
+            if at_edges > STANDS_OUT * elsewhere:
+                yield f"                    {elsewhere:8.5g} {unit.replace('²', '2')} away from the tip edges"
         share = np.mean(self.maps["pinion", "overlap"] > 0)
         weight = columns["line_load_N_per_mm"].copy()
         weight[np.isin(columns["z_mm"], loads.stations_mm[[0, -1]])] /= 2  # stations at the ends stand for half as much
@@ -199,13 +204,24 @@ def whole_steps(top, step):
     return step * math.ceil(top / step - 1e-9)
 
 
+def largest_by_place(maps, flanks, name):
+    """The largest value away from the ends of the active flank, and that at them, where tip edges press."""
+    rows = round(EDGE * NODES)
+    drawn = [maps[flank.gear, name] for flank in flanks]
+    return max(part[rows:-rows].max() for part in drawn), max(max(part[:rows].max(), part[-rows:].max()) for part in drawn)
+
+
 def pattern_values(loads, flanks, maps, folder):
     """Maps of both gears, without colour where nothing touches; its edge is where the overlap of the flanks ends."""
     values = {"nodes": NODES}
     for k, (name, _, unit) in enumerate(QUANTITIES):
-        top = max(maps[flank.gear, name].max() for flank in flanks)
+        # Tip edges that press harder by far would leave one colour for the rest: they have the last one, and are told.
+        elsewhere, at_edges = largest_by_place(maps, flanks, name)
+        stands_out = at_edges > STANDS_OUT * elsewhere > 0
+        top = elsewhere if stands_out else max(elsewhere, at_edges)
         step = loaded_te.round_step(top, 8)
-        values |= {f"name_{k}": name, f"unit_{k}": unit, f"step_{k}": step, f"top_{k}": whole_steps(top, step)}
+        values |= {f"name_{k}": name, f"unit_{k}": unit, f"step_{k}": step, f"top_{k}": whole_steps(top, step),
+                   f"note_{k}": f"tip edges: up to {at_edges:.4g}" if stands_out else ""}
         for i, flank in enumerate(flanks):
             drawn = maps[flank.gear, name]
             drawn.astype("<f4").tofile(f"{folder}/values_{i}_{k}.bin")

@@ -12,6 +12,7 @@ root(i) = value(sprintf('root_%d', i))
 tip(i) = value(sprintf('tip_%d', i))
 name(k) = value(sprintf('name_%d', k))
 unit(k) = value(sprintf('unit_%d', k))
+note(k) = value(sprintf('note_%d', k))
 step(k) = value(sprintf('step_%d', k))
 top(k) = value(sprintf('top_%d', k))
 file(kind, i, k) = sprintf('%s_%d_%d', kind, i, k)
@@ -66,6 +67,7 @@ do for [format in formats] {
             set xlabel (i == 1 ? 'z / mm, from face I (left) to face II' : '') offset 0,0.3
             set ylabel 'diameter / mm, from root to tip' offset 0,0
             set label 3 gear(i) . ', ' . name(k) at graph 0, graph 1.045 left font ',13'
+            set label 4 note(k) at graph 1, graph 1.045 right font ',11' textcolor rgb grey noenhanced
             set arrow 1 from z_low, low(i) to z_high, low(i) nohead front dt (8,5) lw 1 lc rgb grey
             set arrow 2 from z_low, high(i) to z_high, high(i) nohead front dt (8,5) lw 1 lc rgb grey
             plot file('colours', i, k) . '.bin' binary array=(nodes, nodes) format='%float32' endian=little \

@@ -234,7 +234,7 @@ def _of_pulses(path, name, values, time_s, options):
     odd = [i for i in odd if 0 < i < len(steps_s) - 1]
     if odd:
         raise RunError(f"{path}: {name}: a pulse is missing or one is too many near {edge_s[odd[0]]:.6g} s "
-                       "(--pulse-level)")
+                       "(--pulse-level), or the shaft stands or turns back there, which pulses do not tell")
 
     turn = np.arange(len(edge_s)) / options.pulses_per_turn * options.ratio
     row_s = (time_s[-1] - time_s[0]) / (len(time_s) - 1)

@@ -367,6 +367,14 @@ class Files(Case):
         self.assertEqual(result.returncode, 2)
         self.assertIn("a pulse is missing", result.stderr)
 
+    def test_pulses_of_a_shaft_that_turns_back_are_told(self):
+        angle_rad = 2 * np.pi * 30 * self.time_s * (1 - self.time_s / self.time_s[-1])
+        pulses = (np.remainder(4 * angle_rad / (2 * np.pi), 1.0) < 0.3).astype(float)
+        self.write_text("a.csv", "time,tacho,p\n", (self.time_s, pulses, self.values))
+        result = self.orders("a.csv", "--pulses", "tacho", "--signal", "p")
+        self.assertEqual((result.returncode, result.stdout), (2, ""))
+        self.assertIn("turns back there, which pulses do not tell", result.stderr)
+
     def test_bad_input_is_said_in_a_line(self):
         self.write_text("a.csv", "time,n,p\n", (self.time_s, self.speed_rpm, self.values))
         self.write_text("still.csv", "time,n,p\n", (self.time_s, 0 * self.speed_rpm, self.values))
