@@ -172,6 +172,60 @@ class Misaligned(Case):
         self.assertLess(self.te(1.25 * clear, 0)[2], parallel[2] - 5)
 
 
+class Tips(Case):
+    NAME = "tips"
+    OFF = "mesh.corner_contact=off"
+    STATIC = ("analysis.positions=1000",)
+
+    def static(self, *settings):
+        """Mean number of pairs, error from peak to peak, its largest step to the next position."""
+        c = self.run_columns([*self.STATIC, *settings])
+        te = c["te_um"]
+        return sum(c["contact_length_mm"]) / len(te) / 14, max(te) - min(te), max(abs(b - a) for a, b in zip(te, te[1:]))
+
+    def test_what_its_page_says(self):
+        g, page = self.geometry(), self.page()
+        pitch, ratio = g["transverse_base_pitch_mm"], g["transverse_contact_ratio"]
+
+        # A pair alone deflects by F / (c' b); two that share by half of it.
+        alone = 801.7 / g["wheel_base_radius_mm"] / (g["iso_single_stiffness_N_per_mm_um"] * 14) * 1e3
+        self.assertIn(f"A pair alone deflects by {alone:.1f} um", page)
+        pairs, peak, jump = self.static(self.OFF)
+        self.assertAlmostEqual(peak, alone / 2, delta=1e-4 * alone)
+        self.assertAlmostEqual(jump, alone / 2, delta=1e-4 * alone)
+        # The path is shorter by the overlap: by that of two pairs where one ends, by that of one where one begins.
+        self.assertAlmostEqual(pairs, ratio - alone / 2e3 / pitch, delta=1e-3)
+        self.assertIn(f"| {pairs:.3f} | {peak:.1f} um | {jump:.1f} um |", page)
+
+        # Corners touch for longer by u of both tips: alone = kappa u^2 / 2, which is 1 to 9 % above the exact gap.
+        pairs, peak, jump = self.static()
+        longer = 0
+        for gear in ("wheel", "pinion"):
+            base, tip = g[f"{gear}_base_radius_mm"], g[f"{gear}_tip_radius_mm"]
+            rho, length = math.sqrt(tip**2 - base**2), g["line_of_action_mm"]
+            longer += base * math.sqrt(2e-3 * alone * (length - rho) / (rho * length)) / pitch
+        self.assertTrue(0.96 * longer < pairs - ratio < longer, (pairs - ratio, longer))
+        self.assertIn(f"{longer:.3f} base pitches longer together, {ratio:.3f} + {longer:.3f} = {ratio + longer:.3f}", page)
+        self.assertAlmostEqual(peak, alone / 2, delta=1e-4 * alone)
+        self.assertLess(jump, 0.02 * alone)
+        self.assertIn(f"| {pairs:.3f} | {peak:.1f} um | none |", page)
+
+        # As much relief keeps the edges clear.
+        relief = [f"modifications.{gear}_tip_relief_{key}" for gear in ("pinion", "wheel") for key in ("um=92", "share=0.3")]
+        kept, without = self.static(*relief), self.static(*relief, self.OFF)
+        self.assertEqual(kept, without)
+        self.assertLess(kept[1], 0.25)
+
+    def test_steps_that_corners_save(self):
+        for law in ("iso6336", "elastic"):
+            steps = []
+            for corners in ("off", "on"):
+                told = self.call([f"mesh.law={law}", f"mesh.corner_contact={corners}", "analysis.type=dynamic"],
+                                 "--output", "run.csv").stderr
+                steps.append(int(re.search(r": (\d+) steps", told)[1]))
+            self.assertLess(steps[1], {"iso6336": 0.6, "elastic": 0.95}[law] * steps[0])
+
+
 class Cracked(Case):
     NAME = "cracked"
     WHOLE = "flanks.pinion_tooth_stiffness="
@@ -314,6 +368,18 @@ class Script(unittest.TestCase):
             self.assertAlmostEqual(rigid[1], centre, delta=0.5)
             self.assertGreater(elastic[0], 1.1 * rigid[0])
 
+    def test_forces_of_tip_corners(self):
+        result = self.cases("tips", "--no-pictures")
+        self.assertEqual((result.returncode, result.stderr), (0, ""))
+        with open(os.path.join(ROOT, "data", "tips", "README.md"), encoding="utf-8") as file:
+            page = file.read()
+        found = re.findall(r"(?m)^  (.*): ([\d.]+) pairs, error ([\d.]+) um .* at speed (\d+) N at once", result.stdout)
+        self.assertEqual(len(found), 4)
+        for name, pairs, error, force in found:
+            row = re.search(rf"\| {name.replace('constant', 'constant stiffness').replace('elastic', 'elastic teeth')} \| "
+                            rf"{pairs} \| {error} um \| .* \| (\d+ N|none) \|", page)[1]
+            self.assertEqual(row, "none" if int(force) < 300 else f"{force} N")
+
     def test_pictures_show_the_curves(self):
         with tempfile.TemporaryDirectory() as folder:
             result = self.cases("clunk", "nrel5mw", "--output", "made", folder=folder)
@@ -350,7 +416,7 @@ class Script(unittest.TestCase):
     def test_wrong_use_is_refused(self):
         result = self.cases("clank")
         self.assertEqual(result.returncode, 2)
-        self.assertIn("clank: there is no such case, but rattle, clunk, nrel5mw, misaligned, elastic, cracked", result.stderr)
+        self.assertIn("clank: there is no such case, but rattle, clunk, nrel5mw, misaligned, elastic, tips, cracked", result.stderr)
         self.assertEqual(self.cases("--help").returncode, 0)
 
 
