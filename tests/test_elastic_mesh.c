@@ -917,6 +917,35 @@ static void doubtful_loads_are_told(void) {
     }
 }
 
+/* A path so short that no position of the mean stiffness is on it: there is none to go by. */
+static void teeth_that_hardly_reach_each_other_are_refused(void) {
+    gm_pair_params params;
+    gm_pair_params_default(&params);
+    params.pinion_teeth = params.wheel_teeth = 30;
+    params.normal_module = 2e-3;
+    params.normal_pressure_angle = 0.3490658503988659;
+    params.center_distance = 60e-3;
+    params.face_width = 10e-3;
+    gm_pair pair;
+    double tip_alteration = -0.5;
+    do {
+        params.pinion_tip_alteration = params.wheel_tip_alteration = tip_alteration;
+        GM_ASSERT_INT(gm_pair_init(&pair, &params), GM_OK);
+        tip_alteration -= 1e-3;
+    } while (pair.transverse_contact_ratio > 0.01);
+    GM_ASSERT(pair.transverse_contact_ratio > 0.0);
+
+    gm_mesh_params law = elastic_law();
+    law.corner_contact = GM_CORNER_OFF;
+    const size_t size = gm_mesh_size(&law, &pair);
+    void *memory = malloc(size);
+    gm_mesh *mesh = NULL;
+    GM_ASSERT(size > 0);
+    GM_ASSERT_INT(gm_mesh_init(&mesh, &law, &pair, NULL, NULL, memory, size), GM_ERR_GEOMETRY);
+    GM_ASSERT(mesh == NULL);
+    free(memory);
+}
+
 static void bad_input_is_refused(void) {
     const gm_pair_params gears = spur62();
     gm_mesh_params law = elastic_law();
@@ -1075,6 +1104,7 @@ int main(int argc, char **argv) {
         GM_TEST(wrench_acts_where_the_load_is),
         GM_TEST(line_loads_are_the_force),
         GM_TEST(doubtful_loads_are_told),
+        GM_TEST(teeth_that_hardly_reach_each_other_are_refused),
         GM_TEST(bad_input_is_refused),
     };
     return gm_test_main("unit.elastic_mesh", tests, GM_TEST_COUNT(tests), argc, argv);

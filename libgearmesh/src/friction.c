@@ -255,9 +255,6 @@ void gmi_friction_add(const gmi_sliding *sliding, const gmi_part_force *part,
 void gmi_friction_add_tip(const gmi_sliding *sliding, const gmi_part_force *part,
                           const gmi_tip_place *place, gmi_friction_sum *total,
                           gmi_tip_friction *tip) {
-    if (!(part->force.value > 0.0)) {
-        return;
-    }
     const gmi_varying speed = tip_sliding_speed(sliding, part, place);
     const gmi_varying share = add_part(sliding, part, &speed, total);
 

@@ -897,7 +897,7 @@ gmi_point_friction gmi_friction_at(const gmi_sliding *sliding, double rho_p, dou
 void gmi_friction_add(const gmi_sliding *sliding, const gmi_part_force *part,
                       gmi_friction_sum *total);
 
-/* Adds that of one part at a tip. */
+/* Adds that of one part at a tip, whose force is above 0. */
 void gmi_friction_add_tip(const gmi_sliding *sliding, const gmi_part_force *part,
                           const gmi_tip_place *place, gmi_friction_sum *total,
                           gmi_tip_friction *tip);

@@ -199,11 +199,13 @@ size_t gm_mesh_size(const gm_mesh_params *params, const gm_pair *pair) {
 
 /* Elastic teeth behind the pair; what follows from them as parameters of the force law. */
 static int make_elastic(gm_mesh *mesh, gmi_elastic_mesh *elastic, gm_mesh_params *params) {
-    const int status =
-        gmi_elastic_mesh_init(elastic, params, mesh->pair, &mesh->engagement, NULL, NULL);
+    int status = gmi_elastic_mesh_init(elastic, params, mesh->pair, &mesh->engagement, NULL, NULL);
     if (status == GM_OK) {
         mesh->elastic = elastic;
         params->stiffness = elastic->stiffness.mesh_mean / mesh->pair->transverse_contact_ratio;
+
+        /* Of gears that hardly reach each other none of its positions may be in contact. */
+        status = is_stiffness(params->stiffness) ? GM_OK : GM_ERR_GEOMETRY;
     }
     return status;
 }

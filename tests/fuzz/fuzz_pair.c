@@ -286,6 +286,42 @@ static void claim_elastic(fuzz_bytes *bytes, int how, const gm_pair *pair, const
     free(memory);
 }
 
+/* Tip corners of constant stiffness, with friction of any law: refused, or every answer is a number or has a status. */
+static void claim_corners(fuzz_bytes *bytes, int how, const gm_pair *pair, const gm_flanks *pinion,
+                          const gm_flanks *wheel, const gm_state *state, const gm_pose *pose) {
+    gm_mesh_params law;
+    gm_mesh_params_default(&law);
+    law.stiffness = 1e8;
+    law.damping = 1e3;
+    law.pose = *pose;
+    law.corner_contact = GM_CORNER_ON;
+    law.friction_law = fuzz_byte(bytes) % 3;
+    law.friction_coefficient = fuzz_between(bytes, 0.0, 1.0);
+    law.oil_viscosity = 0.02;
+    law.roughness = 1e-6;
+    if (how & RAW_STATE) {
+        law.friction_speed = fuzz_any(bytes);
+        law.oil_viscosity = fuzz_any(bytes);
+        law.roughness = fuzz_any(bytes);
+    }
+    const size_t size = gm_mesh_size(&law, pair);
+    void *memory = malloc(size + 1);
+    gm_mesh *mesh = NULL;
+    const int made = gm_mesh_init(&mesh, &law, pair, pinion, wheel, memory, size);
+    FUZZ_CLAIM((made == GM_OK) == (mesh != NULL));
+    if (made == GM_OK) {
+        gm_mesh_result whole, alone;
+        const int all = GM_WANT_DERIVATIVES | GM_WANT_WRENCH | GM_WANT_PAIRS;
+        const int evaluated = gm_mesh_evaluate(mesh, state, all, NULL, &whole);
+        claim_result(evaluated, &whole);
+        claim_numbers(evaluated, &whole.loss, 1);
+        FUZZ_CLAIM(evaluated != GM_OK || whole.loss >= 0.0);
+        FUZZ_CLAIM(evaluated == gm_mesh_evaluate(mesh, state, GM_WANT_FORCE, NULL, &alone));
+        FUZZ_CLAIM(evaluated != GM_OK || (alone.loss >= 0.0 && isfinite(alone.wheel_torque)));
+    }
+    free(memory);
+}
+
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size) {
     fuzz_bytes bytes = {data, size};
     const int how = fuzz_byte(&bytes);
@@ -382,6 +418,7 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size) {
         if (how & ELASTIC) {
             claim_elastic(&bytes, how, &pair, pinion, wheel, &state);
         }
+        claim_corners(&bytes, how, &pair, pinion, wheel, &state, &law.pose);
     }
     free(pinion); /* they begin at their memory */
     free(wheel);
