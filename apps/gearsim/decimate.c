@@ -52,13 +52,14 @@ static double gain_of_mean(enum sample_kind kind, double frequency) {
     return kind == SAMPLE_HAT ? box * box : kind == SAMPLE_BOX ? box : 1.0;
 }
 
+enum { INTERVALS = 256 }; /* of Simpson's rule */
+
 /*
  * Weight i of the ideal low-pass at half the row's rate over the gain of the mean: its inverse transform, the integral
  * of cos(2 pi f i) / gain(f) from -1/(2 factor) to 1/(2 factor), by Simpson's rule. At most 7.5 periods of the
  * cosine fall into half of it: 256 intervals leave an error of 1e-7.
  */
-static double ideal_weight(enum sample_kind kind, int i, int factor) {
-    enum { INTERVALS = 256 };
+static double ideal_weight(enum sample_kind kind, const double gains[], int i, int factor) {
     const double step = 0.5 / factor / INTERVALS;
     double sum = 0.0;
 
@@ -68,20 +69,26 @@ static double ideal_weight(enum sample_kind kind, int i, int factor) {
     for (int k = 0; k <= INTERVALS; ++k) {
         const double f = k * step;
         const double share = k == 0 || k == INTERVALS ? 1.0 : k % 2 == 1 ? 4.0 : 2.0;
-        sum += share * cos(2.0 * pi * f * i) / gain_of_mean(kind, f);
+        sum += share * cos(2.0 * pi * f * i) / gains[k];
     }
     return 2.0 * factor * sum * step / 3.0;
 }
 
 /* The ideal low-pass under a Kaiser window, scaled to the sum 1. */
 static void design(double weights[], enum sample_kind kind, int half, int factor) {
+    double gains[INTERVALS + 1];
     double sum = 0.0;
+
+    /* The gains are the same for every weight. */
+    for (int k = 0; k <= INTERVALS; ++k) {
+        gains[k] = gain_of_mean(kind, k * (0.5 / factor / INTERVALS));
+    }
 
     for (int i = 0; i <= half; ++i) {
         const double reach = half > 0 ? (double)i / (half + 1) : 0.0;
         const double window = bessel_i0(kaiser_beta * sqrt(1.0 - reach * reach));
 
-        weights[half + i] = weights[half - i] = window * ideal_weight(kind, i, factor);
+        weights[half + i] = weights[half - i] = window * ideal_weight(kind, gains, i, factor);
         sum += (i > 0 ? 2.0 : 1.0) * weights[half + i];
     }
     for (int i = 0; i <= 2 * half; ++i) {
@@ -113,9 +120,15 @@ decimator *decimator_create(int factor, int channels, const enum sample_kind kin
     }
 
     memcpy(created->kinds, kinds, count * sizeof *kinds);
-    for (int kind = SAMPLE_VALUES; kind < SAMPLE_KINDS; ++kind) {
-        design(weights_of(created, (enum sample_kind)kind), (enum sample_kind)kind, created->half,
-               factor);
+
+    /* Only the filters that a channel takes: each costs a sum of cosines per weight. */
+    int is_designed[SAMPLE_KINDS] = {0};
+    for (int channel = 0; channel < channels; ++channel) {
+        const enum sample_kind kind = kinds[channel];
+        if (kind != SAMPLE_PLAIN && !is_designed[kind]) {
+            design(weights_of(created, kind), kind, created->half, factor);
+            is_designed[kind] = 1;
+        }
     }
     return created;
 }

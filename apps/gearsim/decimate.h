@@ -43,7 +43,7 @@ void decimator_push(decimator *filter, const double values[]);
 /* Values at the sample that was pushed decimator_delay() samples before the last one. */
 void decimator_values(const decimator *filter, double values[]);
 
-/* Weights for a kind but the plain one, decimator_delay() on each side of the middle; their sum is 1. */
+/* Weights for a kind that a channel has, but the plain one, decimator_delay() on each side of the middle; their sum is 1. */
 const double *decimator_weights(const decimator *filter, enum sample_kind kind);
 
 #endif
