@@ -459,6 +459,9 @@ void gmi_elastic_gather(gmi_elastic_work *work, const double *force, double *row
 /* work->matrix from the stiffness at the points. */
 void gmi_elastic_stiffen(gmi_elastic_work *work);
 
+/* Adds what gmi_elastic_gather() does for work->stiffness as forces: the sums of the tooth's and the rim's rows by the rim. */
+void gmi_elastic_gather_stiffness(gmi_elastic_work *work, double *rows);
+
 /* What is left of a functional's factor after the adjoint: work->pull, work->tooth_adjoint. factor NULL: 1. */
 void gmi_elastic_pull(gmi_elastic_work *work, const double *factor, const double *rows);
 

@@ -272,6 +272,11 @@ void gmi_elastic_differentiate_functional(const gmi_elastic *law, gmi_elastic_wo
     }
     gmi_elastic_gather(work, work->scratch, work->other);
     gmi_elastic_substitute(work, work->other);
+
+    /* Beside that of the force, which stays for the next call: in arrays that are free after the last step. */
+    double *pull = work->pull, *tooth_adjoint = work->tooth_adjoint;
+    work->pull = work->change_at;
+    work->tooth_adjoint = work->expected;
     gmi_elastic_pull(work, functional->factor, work->other);
 
     move_points(law, work, gradient);
@@ -279,11 +284,13 @@ void gmi_elastic_differentiate_functional(const gmi_elastic *law, gmi_elastic_wo
     add_ends(law, work, functional, work->other, gradient, NULL);
     for (int p = 0; p < count; ++p) {
         by_deviation[p] = work->stiffness[p] * work->pull[p];
-        gradient->value += optional(functional->factor, p, 1.0) * work->force[p];
-        gradient->by_approach += by_deviation[p];
-        gradient->by_roll += optional(functional->factor_by_roll, p, 0.0) * work->force[p];
+        work->scratch[p] = optional(functional->factor, p, 1.0) * work->force[p];
     }
-
-    /* Those of the force again, for the next call. */
-    gmi_elastic_pull(work, NULL, work->adjoint);
+    gradient->by_approach = gmi_elastic_sum(count, by_deviation);
+    gradient->value = gmi_elastic_sum(count, work->scratch);
+    for (int p = 0; p < count && functional->factor_by_roll != NULL; ++p) {
+        gradient->by_roll += functional->factor_by_roll[p] * work->force[p];
+    }
+    work->pull = pull;
+    work->tooth_adjoint = tooth_adjoint;
 }

@@ -500,15 +500,6 @@ static int solve(const gmi_elastic_mesh *elastic, gmi_elastic_work *work, double
     return status;
 }
 
-/* Whether the loads of a line are more than nothing. */
-static int is_loaded(const gmi_elastic_work *work, const gmi_elastic_line *line) {
-    double load = 0.0;
-    for (int p = line->slot; p < line->slot + line->elements; ++p) {
-        load += work->load[p] + work->load[p + work->slots];
-    }
-    return load > 0.0;
-}
-
 /*
  * d2F/dx2. The balance is a minimum of the energy, and only the contact law is not quadratic in it: so the third derivative
  * of the energy is the sum of W q'' (d gamma / dx)^3, with q'' = q'^3 B / q of the law q (L - ln q) = delta / B.
@@ -640,7 +631,7 @@ static int elastic_sum(const gm_mesh *mesh, int side, const gm_position *positio
     total->by_origin = force.by_origin * per_stiffness;
     total->roll = energy.by_roll * per_stiffness;
     for (int row = 0; row < work->count; ++row) {
-        total->pairs += is_loaded(work, &work->line[row]);
+        total->pairs += result.line_force[row] > 0.0;
     }
     if (wanted & GMI_CONTACT_DERIVATIVES) {
         total->contact_by_delta = view.gain * view.gain * share * share * share *

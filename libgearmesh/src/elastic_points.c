@@ -137,8 +137,12 @@ APART void pull_line(int count, int other, const double *restrict place,
 }
 
 void gmi_elastic_pull(gmi_elastic_work *work, const double *factor, const double *rows) {
-    for (int p = 0; p < 2 * work->slots; ++p) {
-        work->pull[p] = factor != NULL ? factor[p] : 1.0;
+    const int count = 2 * work->slots;
+    if (factor != NULL) {
+        memcpy(work->pull, factor, sizeof(double) * (size_t)count);
+    }
+    for (int p = 0; p < count && factor == NULL; ++p) {
+        work->pull[p] = 1.0;
     }
     const double *rim = rows + work->lines_max * work->stations;
     for (int k = 0; k < work->count; ++k) {
@@ -195,6 +199,29 @@ void gmi_elastic_gather(gmi_elastic_work *work, const double *force, double *row
         add_rows(line->elements, work->parts[0] + s, work->parts[1] + s, work->parts[2] + s,
                  work->parts[3] + s, rows + k * work->stations + line->element,
                  rim + line->element);
+    }
+}
+
+/* Sums of the rows of a matrix, from those of its elements: a force of all points is divided by shares whose sum is 1. */
+APART void add_sums(int count, const double *restrict left, const double *restrict cross,
+                    const double *restrict right, double *restrict row) {
+    row[0] += left[0] + cross[0];
+    for (int k = 1; k < count; ++k) {
+        row[k] += (cross[k - 1] + right[k - 1]) + (left[k] + cross[k]);
+    }
+    row[count] += cross[count - 1] + right[count - 1];
+}
+
+void gmi_elastic_gather_stiffness(gmi_elastic_work *work, double *rows) {
+    const int slots = work->slots;
+    double *rim = rows + work->lines_max * work->stations;
+    for (int k = 0; k < work->count; ++k) {
+        const gmi_elastic_line *line = &work->line[k];
+        const double *matrix = work->matrix + line->slot;
+        add_sums(line->elements, matrix + GMI_MIXED_LEFT * slots, matrix + GMI_MIXED_CROSS * slots,
+                 matrix + GMI_MIXED_RIGHT * slots, rows + k * work->stations + line->element);
+        add_sums(line->elements, matrix + GMI_RIM_LEFT * slots, matrix + GMI_RIM_CROSS * slots,
+                 matrix + GMI_RIM_RIGHT * slots, rim + line->element);
     }
 }
 

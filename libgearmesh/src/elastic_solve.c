@@ -133,7 +133,7 @@ static double find_step(const gmi_elastic *law, gmi_elastic_work *work) {
 /* The adjoint of the force. */
 static void find_adjoint(gmi_elastic_work *work) {
     clear_rows(work, work->adjoint);
-    gmi_elastic_gather(work, work->stiffness, work->adjoint);
+    gmi_elastic_gather_stiffness(work, work->adjoint);
     gmi_elastic_substitute(work, work->adjoint);
 }
 
