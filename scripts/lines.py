@@ -80,7 +80,8 @@ def gears_of(path, provenance, options, needed=True):
             known, other = ("pinion", "wheel") if pinion else ("wheel", "pinion")
             raise program.InputError(f"{path}: has the teeth of the {known} only; please give --{other}-teeth as well")
         return None
-    return runup.Gears(pinion, wheel, options.eigenfrequency or eigenfrequency_of(provenance))
+    is_ring = options.wheel_teeth is None and provenance["gears.wheel_teeth"].startswith("-")
+    return runup.Gears(pinion, wheel, options.eigenfrequency or eigenfrequency_of(provenance), is_ring)
 
 
 def orders_asked(text, option="--orders"):

@@ -247,7 +247,7 @@ def write_eigenfrequency(path, frequency_Hz, frames, map_):
 
 def subtitle(signal, gears, frames, edge):
     run = signal.run
-    gears_text = f"gears {gears.pinion_teeth}/{gears.wheel_teeth} teeth, " if gears else ""
+    gears_text = f"{gears.teeth_text}, " if gears else ""
     white = "" if frames.trusted([edge]).all() else "; white: above 0.4 of the rate"
     return f"{gears_text}{runup.speed_text(run)}; frames of {frames.turns:g} turns{white}"
 
@@ -278,7 +278,7 @@ def speed_map_picture(analysis, folder):
     is_straight = not map_.over_time or run.is_constant
     rim = lines.speed_rim([float(one) for one in analysis.tracked] if is_straight else [], grid["frequency_high"],
                           *map_.row_range, run.speed_rpm.mean() if map_.over_time else None)
-    gears_text = f"gears {gears.pinion_teeth}/{gears.wheel_teeth} teeth, " if gears else ""
+    gears_text = f"{gears.teeth_text}, " if gears else ""
     return {
         "_speedmap": ("speed_map.gp", {
             "data": "speeds.bin",

@@ -37,7 +37,7 @@ class Result:
 
     @property
     def gears_text(self):
-        return f"gears {self.gears.pinion_teeth}/{self.gears.wheel_teeth} teeth"
+        return self.gears.teeth_text
 
     def tracks(self, name="contact_force_N"):
         """Tooth orders of a column; raises RunError if it has none."""

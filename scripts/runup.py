@@ -44,10 +44,20 @@ FLOOR_NEAR, FLOOR_FAR = 4, 24
 class Gears:
     """What the analysis has to know of the gears: the lines that a map can show."""
 
-    def __init__(self, pinion_teeth, wheel_teeth, eigenfrequency_Hz):
+    def __init__(self, pinion_teeth, wheel_teeth, eigenfrequency_Hz, is_ring=False):
         self.pinion_teeth = pinion_teeth
-        self.wheel_teeth = wheel_teeth
+        self.wheel_teeth = wheel_teeth  # > 0, of a ring too
         self.eigenfrequency_Hz = eigenfrequency_Hz
+        self.is_ring = is_ring
+
+    @property
+    def teeth_text(self):
+        """As in a parameter file, where a ring has teeth < 0."""
+        return f"gears {self.pinion_teeth}/{self.signed_wheel_teeth} teeth"
+
+    @property
+    def signed_wheel_teeth(self):
+        return -self.wheel_teeth if self.is_ring else self.wheel_teeth
 
     @property
     def wheel_order(self):

@@ -71,7 +71,7 @@ def of_columns(path, columns, provenance, incomplete):
     """The same of a run that has been read."""
     found = {"file": path, "gearsim": provenance.get("gearsim", ""), "warnings": warnings_of(provenance, incomplete)}
     gears = lines.gears_of(path, provenance, Options)
-    found["gears"] = {"pinion_teeth": gears.pinion_teeth, "wheel_teeth": gears.wheel_teeth,
+    found["gears"] = {"pinion_teeth": gears.pinion_teeth, "wheel_teeth": gears.signed_wheel_teeth,
                       "eigenfrequency": number(gears.eigenfrequency_Hz, "Hz", "the head of the run does not say it")}
     if all(name in columns for name in STATIC_COLUMNS) and "time_s" not in columns:
         return {**found, "kind": "static", "loads": static_loads(columns, provenance, gears)}
