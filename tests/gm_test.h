@@ -110,6 +110,19 @@ GM_TEST_UNUSED static int gm_test_string(const char *got, const char *expected, 
     gm_test_report(isnan(got) ? 1 : 0, __FILE__, __LINE__, "%s: got %.17g, expected NaN", #got,    \
                    (double)(got))
 
+/**
+ * Opens a file of the sources for reading. Without it the test fails and ends there: paths begin at the folder tests/,
+ * in which ctest starts the programs.
+ */
+GM_TEST_UNUSED static FILE *gm_test_open(const char *path) {
+    FILE *file = fopen(path, "r");
+    if (!gm_test_report(file != NULL, __FILE__, __LINE__,
+                        "%s: cannot be read: start the program in the folder tests/", path)) {
+        CU_FAIL_FATAL("without its file a test has nothing to say");
+    }
+    return file;
+}
+
 /* ---------------------------------------------------------------------------------------------
  * Random numbers: the same sequence from the same seed on every machine.
  * ------------------------------------------------------------------------------------------- */

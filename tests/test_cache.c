@@ -31,6 +31,9 @@ static void read_flanks(fixture *f, int gear, const char *deviation_file, const 
     gm_flanks_options options;
     gm_flanks_options_default(&options);
     options.normal_factor = f->pair.normal_to_transverse;
+
+    fclose(gm_test_open(deviation_file));
+    fclose(gm_test_open(pitch_file));
     GM_ASSERT_INT(gm_deviations_read(&deviations, deviation_file, teeth, NULL), GM_IO_OK);
     GM_ASSERT_INT(gm_pitch_read(&pitch, pitch_file, teeth, NULL), GM_IO_OK);
     GM_ASSERT_INT(

@@ -27,11 +27,7 @@ typedef struct reader {
 
 static void open_cases(reader *r) {
     memset(r, 0, sizeof *r);
-    r->file = fopen(file_name, "r");
-    if (r->file == NULL) {
-        fprintf(stderr, "cannot read %s\n", file_name);
-        exit(1);
-    }
+    r->file = gm_test_open(file_name);
 }
 
 static double next_number(reader *r) {

@@ -430,6 +430,8 @@ static void the_flanks_of_the_paper_are_one_call(void) {
         gm_pitch read_pitch;
         GM_ASSERT_INT(generate(wheel), GM_IO_OK);
         const int teeth = pitch.teeth;
+        fclose(gm_test_open(files[wheel][0]));
+        fclose(gm_test_open(files[wheel][1]));
         GM_ASSERT_INT(gm_deviations_read(&read_deviations, files[wheel][0], teeth, &error),
                       GM_IO_OK);
         GM_ASSERT_INT(gm_pitch_read(&read_pitch, files[wheel][1], teeth, &error), GM_IO_OK);

@@ -63,10 +63,7 @@ static int read_gears(gm_pair_params *params) {
 }
 
 static void transmission_error_is_that_of_displaced_helicoids(void) {
-    case_file = fopen("reference/pose.txt", "r");
-    if (!GM_ASSERT(case_file != NULL)) {
-        return;
-    }
+    case_file = gm_test_open("reference/pose.txt");
     int cases = 0, points = 0;
     while (read_key("case")) {
         char name[120];
