@@ -321,6 +321,9 @@ class Elastic(unittest.TestCase):
 
     def test_load_distribution_must_be_a_file_of_its_own(self):
         self.refused(SPUR62 | {"output": {"load_distribution": "run.csv"}}, "output.load_distribution: must be another file")
+        for name, message in (("-", "must be a file (got -)"), ("load.h5", "must be a CSV file, HDF5 is for output.file"),
+                              ("load.hdf5", "must be a CSV file")):
+            self.refused(SPUR62 | {"output": {"load_distribution": name}}, "output.load_distribution: " + message)
         self.refused(SPUR62 | {"output": {"load_distribution": "missing/load.csv"}}, "output.load_distribution: ",
                      arguments=("--check",))
 

@@ -421,6 +421,24 @@ class Limits(Case):
                 self.assertIn(f"out{ending}.part: File too large", result.stderr)
                 self.assert_old("out" + ending)
 
+    def test_result_and_load_distribution_are_of_one_run(self):
+        """Both or none is replaced, also where one of them just fits."""
+        static = ("--set", "analysis.type=static", "--set", "analysis.positions=1", "--set", "mesh.law=elastic",
+                  "--set", "mesh.stiffness_N_per_m=", "--set", "output.load_distribution=load.csv")
+        self.accepted(self.sim("out.csv", *static))
+        sizes = sorted(os.path.getsize(self.path(name)) for name in ("out.csv", "load.csv"))
+        self.assertGreater(sizes[1], sizes[0])
+        for size in (0, sizes[0] - 1, sizes[0], sizes[1] - 1):
+            for name in ("out.csv", "load.csv"):
+                self.write(name, OLD)
+            result = self.limited(self.sim("out.csv", *static), size)
+            self.assertEqual(result.returncode, 1, f"{size}: {result.stderr}")
+            self.assertIn("load.csv.part: File too large", result.stderr)
+            self.assert_old("out.csv")
+            self.assert_old("load.csv")
+        self.assertEqual(self.limited(self.sim("out.csv", *static), sizes[1]).returncode, 0)
+        self.assertEqual(sorted(os.path.getsize(self.path(name)) for name in ("out.csv", "load.csv")), sizes)
+
 
 class Places(Case):
     def test_places_that_take_no_file_are_refused(self):

@@ -275,18 +275,18 @@ static int sync_folder(result_file *file) {
 }
 
 /* Runs a step over the files until one fails; *done counts those that did not. */
-static int each(int (*step)(result_file *file), result_file files[], int count, int *done,
+static int each(int (*step)(result_file *file), result_file *const files[], int count, int *done,
                 const result_file **wrong) {
     for (*done = 0; *done < count; ++*done) {
-        if (step(&files[*done]) != EXIT_DONE) {
-            *wrong = &files[*done];
+        if (step(files[*done]) != EXIT_DONE) {
+            *wrong = files[*done];
             return EXIT_RUN_FAILED;
         }
     }
     return EXIT_DONE;
 }
 
-int result_files_replace(result_file files[], int count, const result_file **wrong) {
+int result_files_replace(result_file *const files[], int count, const result_file **wrong) {
     int done;
 
     /* What can fail comes before the first name changes. The last file needs no way back. */
@@ -303,9 +303,9 @@ int result_files_replace(result_file files[], int count, const result_file **wro
     /* All or none. */
     for (int i = 0; i < count; ++i) {
         if (exit_code == EXIT_DONE) {
-            forget_old(&files[i]);
+            forget_old(files[i]);
         } else {
-            restore(&files[i], i < renamed);
+            restore(files[i], i < renamed);
         }
     }
     return exit_code == EXIT_DONE ? each(sync_folder, files, count, &done, wrong) : exit_code;

@@ -44,7 +44,7 @@ int result_file_open(result_file *file);
  * Brings the files to the disk and gives them their names: all of them, or none where one fails. Nothing may be
  * buffered any more. Returns EXIT_DONE or EXIT_RUN_FAILED; *wrong is the file that has the reason.
  */
-int result_files_replace(result_file files[], int count, const result_file **wrong);
+int result_files_replace(result_file *const files[], int count, const result_file **wrong);
 
 /* Removes FILE.part, if it is still the one that was opened. */
 void result_file_remove(result_file *file);

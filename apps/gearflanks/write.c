@@ -70,6 +70,7 @@ static int interrupted(message_sink *messages) {
 /* Flanks and pitch of a gear belong together: no file is touched before all are whole. */
 int write_files(const written files[], int count, message_sink *messages) {
     result_file results[WRITTEN_MAX];
+    result_file *all[WRITTEN_MAX];
     const result_file *wrong = NULL;
     int status = EXIT_DONE;
     int begun = 0;
@@ -77,13 +78,14 @@ int write_files(const written files[], int count, message_sink *messages) {
     /* A signal waits until the files are in order. */
     interrupt_watch(SECOND_WAITS);
     for (; begun < count && status == EXIT_DONE; ++begun) {
+        all[begun] = &results[begun];
         status = write_part(messages, &files[begun], &results[begun]);
         if (status == EXIT_DONE && interrupt_requested()) {
             status = interrupted(messages);
         }
     }
     if (status == EXIT_DONE) {
-        status = result_files_replace(results, count, &wrong);
+        status = result_files_replace(all, count, &wrong);
         complain(messages, wrong, status);
     }
 

@@ -20,8 +20,23 @@ struct load_file {
     message_sink *messages;
 };
 
-/* The result by that name must be another file. */
+static int ends_with(const char *text, const char *suffix) {
+    const size_t length = strlen(text), suffix_length = strlen(suffix);
+
+    return length >= suffix_length && strcmp(text + length - suffix_length, suffix) == 0;
+}
+
+/* It is CSV, in a file of its own. */
 static int check_names(const config *conf) {
+    if (strcmp(conf->load_distribution, "-") == 0) {
+        config_complain(conf, key, "must be a file (got -): standard output is for output.file");
+        return EXIT_BAD_INPUT;
+    }
+    if (ends_with(conf->load_distribution, ".h5") || ends_with(conf->load_distribution, ".hdf5")) {
+        config_complain(conf, key, "must be a CSV file, HDF5 is for output.file (got %s)",
+                        conf->load_distribution);
+        return EXIT_BAD_INPUT;
+    }
     if (!result_file_would_replace(conf->load_distribution, conf->output_file)) {
         return 0;
     }
@@ -144,21 +159,21 @@ int load_file_rows(load_file *file, double pinion_angle, double load,
     return ferror(file->stream) ? fail(file) : 0;
 }
 
-int load_file_close(load_file *file, const char *incomplete) {
+int load_file_flush(load_file *file) {
+    return file == NULL || fflush(file->stream) == 0 ? EXIT_DONE : fail(file);
+}
+
+result_file *load_file_result(load_file *file) {
+    return file != NULL ? &file->result : NULL;
+}
+
+void load_file_close(load_file *file, const char *incomplete) {
     if (file == NULL) {
-        return 0;
+        return;
     }
     if (incomplete != NULL) {
         fprintf(file->stream, "# incomplete: %s\n", incomplete);
-    }
-    int status = fflush(file->stream) == 0 ? EXIT_DONE : fail(file);
-    if (status == EXIT_DONE && incomplete == NULL) {
-        const result_file *wrong;
-        status = result_files_replace(&file->result, 1, &wrong);
-        if (status != EXIT_DONE) {
-            message_of_program(file->messages, "'%s' %s", wrong->wrong_path, wrong->reason);
-        }
+        (void)load_file_flush(file);
     }
     free_file(file);
-    return status;
 }

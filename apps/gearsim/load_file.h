@@ -9,6 +9,7 @@
 #define GEARSIM_LOAD_FILE_H
 
 #include "config.h"
+#include "result_file.h"
 
 typedef struct load_file load_file;
 
@@ -22,8 +23,13 @@ int load_file_open(load_file **file, const config *conf);
 int load_file_rows(load_file *file, double pinion_angle, double load,
                    const gm_line_load_point *points, int count);
 
-/* Ends the file and frees it: `incomplete` NULL = whole; else keep FILE.part and say why. `file` may be NULL. Returns 0, or
- * EXIT_RUN_FAILED after a message. */
-int load_file_close(load_file *file, const char *incomplete);
+/* Writes what is buffered still. 0, or EXIT_RUN_FAILED after a message. `file` may be NULL. */
+int load_file_flush(load_file *file);
+
+/* What gets its name together with the result of the run, after load_file_flush(). NULL without a file. */
+result_file *load_file_result(load_file *file);
+
+/* Frees the file. `incomplete`: FILE.part stays and says why; NULL: it says nothing. `file` may be NULL. */
+void load_file_close(load_file *file, const char *incomplete);
 
 #endif

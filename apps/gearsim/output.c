@@ -207,12 +207,23 @@ static void tell_result(const output_file *output, const char *path, const char 
                  incomplete != NULL ? ", incomplete," : "", wall_clock() - output->started);
 }
 
-int output_close(output_file *output, const char *incomplete) {
+static int close_together(output_file *output, const char *incomplete, result_file *other) {
     int exit_code = settle(output, output->format->end(output, incomplete));
-    const result_file *wrong;
 
-    if (exit_code == EXIT_DONE && incomplete == NULL && !output->is_stream) {
-        exit_code = result_files_replace(&output->result, 1, &wrong);
+    /* Whole results get their names. */
+    if (exit_code == EXIT_DONE && incomplete == NULL) {
+        result_file *files[2];
+        const result_file *wrong;
+        int count = 0;
+        if (!output->is_stream) {
+            files[count] = &output->result;
+            ++count;
+        }
+        if (other != NULL) {
+            files[count] = other;
+            ++count;
+        }
+        exit_code = result_files_replace(files, count, &wrong);
         if (exit_code != EXIT_DONE) {
             message_of_program(output->messages, "%s: %s", wrong->wrong_path, wrong->reason);
         }
@@ -223,4 +234,12 @@ int output_close(output_file *output, const char *incomplete) {
     }
     output_free(output);
     return exit_code;
+}
+
+int output_close(output_file *output, const char *incomplete) {
+    return close_together(output, incomplete, NULL);
+}
+
+int output_close_with(output_file *output, result_file *other) {
+    return close_together(output, NULL, other);
 }

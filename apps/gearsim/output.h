@@ -10,6 +10,7 @@
 #define GEARSIM_OUTPUT_H
 
 #include "config.h"
+#include "result_file.h"
 
 typedef struct output_file output_file;
 
@@ -31,5 +32,9 @@ int output_row(output_file *output, const double values[]);
 /* Ends the file and frees it: `incomplete` NULL = whole, rename; otherwise keep .part and say why. Notes file, rows and time.
  * Returns 0, or EXIT_RUN_FAILED after a message. */
 int output_close(output_file *output, const char *incomplete);
+
+/* As output_close() of a whole result, together with another one that is on its way to the disk: both get their names,
+ * or none does. NULL = there is no other. */
+int output_close_with(output_file *output, result_file *other);
 
 #endif

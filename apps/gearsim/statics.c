@@ -228,9 +228,18 @@ static int write_all(const config *conf, const gear_mesh *gears, static_results 
             return exit_code;
         }
     }
-    const int exit_code = output_close(results->output, NULL);
-    const int other = load_file_close(results->distribution, NULL);
-    return exit_code != 0 ? exit_code : other;
+
+    /* Both files get their names, or none: nothing may be left to write when the first name changes. */
+    if (load_file_flush(results->distribution) != EXIT_DONE) {
+        output_close(results->output, "the load distribution could not be written");
+        load_file_close(results->distribution, NULL);
+        return EXIT_RUN_FAILED;
+    }
+    const int exit_code =
+        output_close_with(results->output, load_file_result(results->distribution));
+    load_file_close(results->distribution,
+                    exit_code != EXIT_DONE ? "the result could not be written" : NULL);
+    return exit_code;
 }
 
 double statics_rows(const config *conf) {
@@ -257,7 +266,7 @@ int statics_run(const config *conf, const gear_mesh *gears) {
         exit_code = results.points != NULL ? 0 : message_no_memory(conf->messages);
     }
     if (exit_code != 0) {
-        (void)load_file_close(results.distribution, "no rows");
+        load_file_close(results.distribution, "no rows");
         return exit_code;
     }
 
@@ -268,7 +277,7 @@ int statics_run(const config *conf, const gear_mesh *gears) {
         exit_code = write_all(conf, gears, &results);
         gear_contact_warn(conf, &results.worst);
     } else {
-        (void)load_file_close(results.distribution, "there is no result");
+        load_file_close(results.distribution, "there is no result");
     }
     interrupt_unwatch();
     free(results.points);

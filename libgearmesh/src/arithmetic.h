@@ -2,8 +2,8 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 
 /*
- * What the core needs of the compiler: IEEE 754 double arithmetic, each operation rounded once, with NaN and
- * infinity. Other settings are refused when the core is compiled, as nothing would show them afterwards.
+ * What both libraries need of the compiler: IEEE 754 double arithmetic, each operation rounded once, with NaN and
+ * infinity. Other settings are refused when they are compiled, as nothing would show them afterwards.
  */
 #ifndef GEARMESH_ARITHMETIC_H
 #define GEARMESH_ARITHMETIC_H

@@ -11,6 +11,7 @@
 #include <math.h>
 #include <stdint.h>
 
+#include "arithmetic.h"
 #include "gearmesh/gearmesh.h"
 
 #define GMI_PI 3.14159265358979323846

@@ -4,6 +4,7 @@
 /* A list of rows that grows block by block. */
 
 #include "deviation_rows.h"
+#include "shared.h"
 
 #include <stdlib.h>
 

@@ -11,6 +11,7 @@
 #define GEARMESH_IO_ERROR_H
 
 #include "gearmesh/gearmesh_io.h"
+#include "shared.h"
 
 /** Room for a quoted piece of a file, see gmi_quote(). */
 #define GMI_QUOTE_SIZE 64

@@ -7,6 +7,7 @@
  */
 
 #include "number_text.h"
+#include "shared.h"
 
 #include <float.h>
 #include <math.h>

@@ -2,6 +2,7 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 
 #include "spaces.h"
+#include "shared.h"
 
 #include "random.h"
 

@@ -4,6 +4,7 @@
 /* Median and median distance. */
 
 #include "robust.h"
+#include "shared.h"
 
 #include <math.h>
 #include <stdlib.h>

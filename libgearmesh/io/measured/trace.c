@@ -4,6 +4,7 @@
 /* One measured trace: its polygon, its place in the file, its name in messages. */
 
 #include "trace.h"
+#include "shared.h"
 
 #include <stdio.h>
 

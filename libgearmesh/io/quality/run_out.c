@@ -4,6 +4,7 @@
 /* The ball in a tooth space. */
 
 #include "run_out.h"
+#include "shared.h"
 
 #include <math.h>
 
