@@ -1188,6 +1188,14 @@ class Corners(Case):
         self.run_columns([*self.ON, "analysis.duration_s=0.01"])
         self.assertIn("# sampling = low-pass filtered, load_torque_Nm from means", self.text("run.csv"))
 
+        # Values fold lines into the rows, which is told where the force jumps and samples are few.
+        note = "output.oversampling: note: the force of spur gears with friction or corner contact is sampled"
+        friction = [*self.SPUR, "mesh.friction_coefficient=0.05"]
+        for settings, told in ((self.ON, True), (friction, True), ([*self.ON, "output.oversampling=16"], False),
+                               ([*friction, *PLAIN], False), (self.SPUR, False)):
+            stderr = self.gearsim([*settings, "analysis.duration_s=0.001"]).stderr
+            self.assertEqual(note in stderr, told, stderr)
+
 
 class Ends(Case):
     ENDLESS = ["analysis.duration_s=30000", "load.noise_amplitude_Nm=10"]

@@ -648,6 +648,14 @@ int dynamics_note(const gear_mesh *gears, config *conf) {
                  mean_kind(conf, gears) == SAMPLE_HAT ? "triangle, each side" : "box",
                  1.0 / (conf->output_rate * conf->oversampling));
     }
+
+    /* Values of a force whose lines reach far beyond the samples' rate: told, not hidden. */
+    const int jumps = mean_kind(conf, gears) == SAMPLE_HAT;
+    if (jumps && !is_force_of_momentum(conf) && conf->oversampling > 1 && conf->oversampling < 16) {
+        config_remark(conf, "output.oversampling",
+                      "the force of spur gears with friction or corner contact is sampled, and "
+                      "lines beyond the samples' rate fold into its rows; 16 fold less, 64 least");
+    }
     return config_note_text(conf, "sampling", text) == 0 ? 0 : message_no_memory(conf->messages);
 }
 
