@@ -152,6 +152,75 @@ static void roots_are_where_pairs_change(void) {
     }
 }
 
+static void indicators_at(const gm_mesh *mesh, double x, double indicators[GM_EVENTS]) {
+    gm_motion motion = {.position = {.offset = 0.0}};
+    GM_ASSERT_INT(gm_position_from_pinion_angle(gm_mesh_pair(mesh), 0.37, x, 0.0, &motion.position),
+                  GM_OK);
+    GM_ASSERT_INT(gm_mesh_event_indicators(mesh, &motion, indicators), GM_OK);
+}
+
+/* Tip edges reach as far beyond the path as the highest flanks overlap: pitch on all teeth counts as so much overlap. */
+static void corners_reach_as_far_as_the_highest_flanks(void) {
+    const gm_pair pair = reference_pair(REFERENCE_FACE_WIDTH);
+    const double pitch = 7e-6, x = 0.5 * pair.backlash + 3e-6;
+    const gm_flanks_params sizes = {.teeth = pair.pinion.teeth};
+    static double memory[4096];
+    gm_flanks *flanks;
+    GM_ASSERT_INT(gm_flanks_init(&flanks, &sizes, memory, sizeof memory), GM_OK);
+    for (int tooth = 0; tooth < pair.pinion.teeth; ++tooth) {
+        GM_ASSERT_INT(gm_flanks_set_pitch(flanks, GM_DRIVE, tooth, pitch), GM_OK);
+    }
+    gm_mesh_params params;
+    gm_mesh_params_default(&params);
+    params.stiffness = 1e8;
+    params.corner_contact = GM_CORNER_ON;
+    room places[2];
+    gm_mesh *high, *ideal;
+    GM_ASSERT_INT(gm_mesh_init(&high, &params, &pair, flanks, NULL, places[0].memory,
+                               sizeof places[0].memory),
+                  GM_OK);
+    GM_ASSERT_INT(
+        gm_mesh_init(&ideal, &params, &pair, NULL, NULL, places[1].memory, sizeof places[1].memory),
+        GM_OK);
+
+    double with_pitch[GM_EVENTS], deeper[GM_EVENTS], as_deep[GM_EVENTS];
+    indicators_at(high, x, with_pitch);
+    indicators_at(ideal, x + pitch, deeper);
+    indicators_at(ideal, x, as_deep);
+    GM_ASSERT_ABS(with_pitch[GM_EVENT_DRIVE_UPPER], deeper[GM_EVENT_DRIVE_UPPER], 1e-9);
+    GM_ASSERT(fabs(as_deep[GM_EVENT_DRIVE_UPPER] - deeper[GM_EVENT_DRIVE_UPPER]) > 1e-3);
+}
+
+/* Elastic teeth have the lines of gears that just touch, however deep they are pressed. */
+static void lines_of_elastic_teeth_are_those_without_load(void) {
+    const gm_pair pair = reference_pair(REFERENCE_FACE_WIDTH);
+    gm_mesh_params params;
+    gm_mesh_params_default(&params);
+    params.stiffness = 1e8;
+    params.corner_contact = GM_CORNER_OFF;
+    room where;
+    gm_mesh *stiff, *elastic;
+    GM_ASSERT_INT(
+        gm_mesh_init(&stiff, &params, &pair, NULL, NULL, where.memory, sizeof where.memory), GM_OK);
+    params.law = GM_LAW_ELASTIC;
+    const size_t size = gm_mesh_size(&params, &pair);
+    void *memory = malloc(size);
+    GM_ASSERT_INT(gm_mesh_init(&elastic, &params, &pair, NULL, NULL, memory, size), GM_OK);
+
+    double pressed[GM_EVENTS], touching[GM_EVENTS];
+    for (int side = GM_DRIVE; side <= GM_COAST; ++side) {
+        const double sign = side == GM_DRIVE ? 1.0 : -1.0;
+        const int first = side == GM_DRIVE ? GM_EVENT_DRIVE_CONTACT : GM_EVENT_COAST_CONTACT;
+        indicators_at(elastic, sign * (0.5 * pair.backlash + 40e-6), pressed);
+        indicators_at(stiff, sign * 0.5 * pair.backlash, touching);
+        for (int k = first + 1; k <= first + 2; ++k) {
+            gm_test_context("indicator %d", k);
+            GM_ASSERT_ABS(pressed[k], touching[k], 1e-9);
+        }
+    }
+    free(memory);
+}
+
 /* Without contact the indicator of a side is how far its flanks are apart, with deviations the highest. */
 static void contact_is_told_by_the_clearance(void) {
     const gm_pair pair = reference_pair(REFERENCE_FACE_WIDTH);
@@ -188,6 +257,8 @@ static void contact_is_told_by_the_clearance(void) {
 int main(int argc, char **argv) {
     static const gm_test tests[] = {
         GM_TEST(roots_are_where_pairs_change),
+        GM_TEST(corners_reach_as_far_as_the_highest_flanks),
+        GM_TEST(lines_of_elastic_teeth_are_those_without_load),
         GM_TEST(contact_is_told_by_the_clearance),
     };
     return gm_test_main("unit.events", tests, GM_TEST_COUNT(tests), argc, argv);
