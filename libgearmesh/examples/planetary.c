@@ -174,11 +174,36 @@ static double kinetic(const double *y) {
     return energy;
 }
 
+/* Steady speeds of the set, from its numbers of teeth. */
+static void set_speeds(double *y) {
+    const double carrier = speed * SUN / (SUN + RING);
+    y[TURNS] = speed;
+    y[TURNS + 1] = carrier;
+    for (int k = 0; k < PLANETS; ++k) {
+        y[TURNS + 2 + k] = carrier * (1.0 - (double)RING / PLANET);
+    }
+}
+
+/*
+ * Share of the load that planet 0 carries: springs of both meshes in a row; 5 um along the way are 5 um cos(alpha_wt)
+ * along each line of action.
+ */
+static double share_by_springs(const gearbox *box) {
+    const gm_pair *sun = gm_mesh_pair(box->at_sun), *ring = gm_mesh_pair(box->at_ring);
+    const double spring =
+        stiffness / (1.0 / sun->transverse_contact_ratio + 1.0 / ring->transverse_contact_ratio);
+    const double force = sun_torque / (PLANETS * sun->pinion.base_radius);
+    const double less = spring * 2.0 * displaced * cos(sun->working_pressure_angle) / force;
+    return (1.0 - less * (PLANETS - 1) / PLANETS) / PLANETS;
+}
+
 int main(int argc, char **argv) {
     enum { ROWS = 1500 };
     const double settled = 0.02, end = 0.05;
     SUNContext context;
     double distance, y[STATES] = {0.0}, before[STATES] = {0.0}, mean[PLANETS] = {0.0};
+
+    /* Two meshes, which all planets share, and the gears put together at their steady speeds. */
     gearbox box = {.arm = 0.0};
     box.at_sun = mesh_of(SUN, PLANET, pi / 18.0, &box.arm);
     box.at_ring = mesh_of(PLANET, -RING, -pi / 18.0, &distance);
@@ -186,20 +211,14 @@ int main(int argc, char **argv) {
     if (box.at_sun == NULL || box.at_ring == NULL || !assemble(&box, y)) {
         return 1;
     }
+    set_speeds(y);
+
+    /* The solver: implicit, as meshes are stiff. */
 #if SUNDIALS_VERSION_MAJOR < 7
     SUNContext_Create(NULL, &context);
 #else
     SUNContext_Create(SUN_COMM_NULL, &context);
 #endif
-
-    /* Steady speeds of the set, from its numbers of teeth. */
-    const double carrier = speed * SUN / (SUN + RING);
-    y[TURNS] = speed;
-    y[TURNS + 1] = carrier;
-    for (int k = 0; k < PLANETS; ++k) {
-        y[TURNS + 2 + k] = carrier * (1.0 - (double)RING / PLANET);
-    }
-
     N_Vector state = N_VMake_Serial(STATES, y, context);
     SUNMatrix matrix = SUNDenseMatrix(STATES, STATES, context);
     SUNLinearSolver solver = SUNLinSol_Dense(state, matrix, context);
@@ -227,13 +246,9 @@ int main(int argc, char **argv) {
             fprintf(file, "%.6f %.3f %.3f %.3f\n", time, box.push[0], box.push[1], box.push[2]);
         }
     }
-    /* Springs of both meshes in a row; 5 um along the way are 5 um cos(alpha_wt) along each line of action. */
-    const gm_pair *sun = gm_mesh_pair(box.at_sun), *ring = gm_mesh_pair(box.at_ring);
-    const double spring =
-        stiffness / (1.0 / sun->transverse_contact_ratio + 1.0 / ring->transverse_contact_ratio);
-    const double force = sun_torque / (PLANETS * sun->pinion.base_radius);
-    const double less = spring * 2.0 * displaced * cos(sun->working_pressure_angle) / force;
-    const double expected = (1.0 - less * (PLANETS - 1) / PLANETS) / PLANETS;
+
+    /* What was found, beside what is known. */
+    const double expected = share_by_springs(&box);
     const double share = mean[0] / (mean[0] + mean[1] + mean[2]);
     printf("planet 0 carries %.1f %% of the load, by springs %.1f %%\n", 100.0 * share,
            100.0 * expected);
