@@ -433,9 +433,14 @@ class Limits(Case):
                 self.write(name, OLD)
             result = self.limited(self.sim("out.csv", *static), size)
             self.assertEqual(result.returncode, 1, f"{size}: {result.stderr}")
-            self.assertIn("load.csv.part: File too large", result.stderr)
+            self.assertIn(".csv.part: File too large", result.stderr)
             self.assert_old("out.csv")
             self.assert_old("load.csv")
+            if size >= sizes[0]:  # there is room for the head
+                with open(self.path("load.csv.part"), encoding="ascii") as file:
+                    lines = file.read().splitlines(keepends=True)
+                self.assertTrue(lines[-1].startswith("# incomplete: ") and lines[-1].endswith("\n"), lines[-1])
+                self.assertEqual({line.count(",") for line in lines if not line.startswith("#")}, {9})
         self.assertEqual(self.limited(self.sim("out.csv", *static), sizes[1]).returncode, 0)
         self.assertEqual(sorted(os.path.getsize(self.path(name)) for name in ("out.csv", "load.csv")), sizes)
 

@@ -167,13 +167,39 @@ result_file *load_file_result(load_file *file) {
     return file != NULL ? &file->result : NULL;
 }
 
+/* What a full disk has cut goes back to the end of a line, with room for `line` behind it. */
+static void end_with_line(const load_file *file, const char *line) {
+    char end[2048];
+    const int data = file->result.data;
+    const off_t size = lseek(data, 0, SEEK_END), room = (off_t)strlen(line);
+    const off_t from = size > (off_t)sizeof end ? size - (off_t)sizeof end : 0;
+
+    ssize_t kept = lseek(data, from, SEEK_SET) == from ? read(data, end, sizeof end) : -1;
+    while (kept > 0 && (end[kept - 1] != '\n' || from + kept + room > size)) {
+        --kept;
+    }
+    if (kept > 0 && ftruncate(data, from + kept) == 0 &&
+        lseek(data, from + kept, SEEK_SET) == from + kept) {
+        (void)!write(data, line, (size_t)room);
+    }
+}
+
 void load_file_close(load_file *file, const char *incomplete) {
     if (file == NULL) {
         return;
     }
     if (incomplete != NULL) {
-        fprintf(file->stream, "# incomplete: %s\n", incomplete);
-        (void)load_file_flush(file);
+        char line[640];
+        snprintf(line, sizeof line, "# incomplete: %.600s\n", incomplete);
+        fputs(line, file->stream);
+        const int is_cut = fflush(file->stream) != 0 || ferror(file->stream);
+
+        /* The stream goes first, with what it has not written. */
+        fclose(file->stream);
+        file->stream = NULL;
+        if (is_cut) {
+            end_with_line(file, line);
+        }
     }
     free_file(file);
 }

@@ -232,7 +232,7 @@ static int write_all(const config *conf, const gear_mesh *gears, static_results 
     /* Both files get their names, or none: nothing may be left to write when the first name changes. */
     if (load_file_flush(results->distribution) != EXIT_DONE) {
         output_close(results->output, "the load distribution could not be written");
-        load_file_close(results->distribution, NULL);
+        load_file_close(results->distribution, "the disk took no more");
         return EXIT_RUN_FAILED;
     }
     const int exit_code =
