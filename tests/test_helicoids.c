@@ -179,10 +179,11 @@ static void compare_line(const gm_pair *p, const gm_pose *pose, const gmi_engage
                           mirror * (p->pinion.base_radius * phi_p + at->phase_shift) +
                           i * p->transverse_base_pitch;
     gmi_tilted_line tilted;
+    gmi_tilt_cuts cuts;
     gmi_line_part part;
     gmi_tilt_line(p, at, side, origin, &tilted);
-    gmi_tilt_clip(p, at, side, origin, delta, 0, 0, &part);
-    if (!(part.from < part.to)) {
+    gmi_tilt_cuts_find(p, at, side, delta, 0, &cuts);
+    if (!gmi_tilt_cut_line(&cuts, origin, &part)) {
         return;
     }
 
@@ -235,18 +236,20 @@ static void check_reach(const gm_pair *p, const gmi_engagement *at, int side, do
     double reach;
     gmi_lines_find(p, at, side, &position, &lines);
     (void)gmi_tilt_bound(p, at, side, &reach);
+    gmi_tilt_cuts cuts;
+    gmi_tilt_cuts_find(p, at, side, lines.delta, 0, &cuts);
 
     /* Just as far from the path as that, before it and behind it. */
     const double origins[2] = {lines.lower - lines.rise - reach, lines.upper - lines.fall + reach};
     for (int k = 0; k < 2; ++k) {
         gmi_line_part part;
-        gmi_tilt_clip(p, at, side, origins[k], lines.delta, 0, 0, &part);
+        (void)gmi_tilt_cut_line(&cuts, origins[k], &part);
         const int is_outside = !(part.to - part.from > 1e-9);
         GM_ASSERT(is_outside);
 
         /* And some of it is needed. */
-        gmi_tilt_clip(p, at, side, k == 0 ? lines.lower - lines.rise : lines.upper - lines.fall,
-                      lines.delta, 0, 0, &part);
+        (void)gmi_tilt_cut_line(&cuts, k == 0 ? lines.lower - lines.rise : lines.upper - lines.fall,
+                                &part);
         all->reaching += part.to - part.from > 1e-6;
     }
 }

@@ -575,9 +575,12 @@ static OWN_STACK void tilt_line(const view *v, whole_line *whole) {
     enum { FACES_ALONE = 4 };
     const gm_pair *pair = v->mesh->pair;
     const gmi_engagement *at = &v->mesh->engagement;
+    gmi_tilt_cuts cuts;
     gmi_line_part part;
     gmi_tilted_line tilted;
-    gmi_tilt_clip(pair, at, v->side, whole->origin, v->lines.delta, FACES_ALONE, 1, &part);
+    gmi_tilt_cuts_find(pair, at, v->side, v->lines.delta, FACES_ALONE, &cuts);
+    (void)gmi_tilt_cut_line(&cuts, whole->origin, &part);
+    gmi_tilt_move_ends(pair, at, v->side, whole->origin, v->lines.delta, &part);
     gmi_tilt_line(pair, at, v->side, whole->origin, &tilted);
 
     /* How overlap and ends move. */

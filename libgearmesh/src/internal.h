@@ -572,18 +572,35 @@ void gmi_ramps_integrate(const gmi_line *line, const gmi_grid *pinion, const gmi
 
 /* tilt.c: lines of contact between tilted axes. */
 
-/* The part of a line on both flanks, none where not from < to, and how its ends move. */
+/* The part of a line on both flanks, none where not from < to, what ends it, and how its ends move. */
 typedef struct gmi_line_part {
     double from, to; /* t1 */
+    int from_place, to_place;
     double from_by[GMI_COORDINATES], to_by[GMI_COORDINATES];
 } gmi_line_part;
 
-/*
- * tables: a sum of 1 = the pinion's, 2 = the wheel's ends the line too, 4 = tips and starts do not. from_by and to_by only
- * with_gradients, and where there is a part.
- */
-void gmi_tilt_clip(const gm_pair *pair, const gmi_engagement *at, int side, double rho_origin,
-                   double delta, int tables, int with_gradients, gmi_line_part *part);
+/* One end of the lines of a side: a place is within its limits from enter to leave (t1), less by_origin rho_origin. */
+typedef struct gmi_tilt_cut {
+    double enter, leave, by_origin;
+} gmi_tilt_cut;
+
+/* All that ends the lines of a side, and the pinion's face. */
+enum { GMI_TILT_CUTS_MAX = 5 };
+typedef struct gmi_tilt_cuts {
+    gmi_interval face;
+    gmi_tilt_cut cut[GMI_TILT_CUTS_MAX];
+    unsigned char place[GMI_TILT_CUTS_MAX]; /* of each cut */
+    unsigned char count;
+} gmi_tilt_cuts;
+
+/* tables: a sum of 1 = the pinion's, 2 = the wheel's ends the lines too, 4 = tips and starts do not. */
+void gmi_tilt_cuts_find(const gm_pair *pair, const gmi_engagement *at, int side, double delta,
+                        int tables, gmi_tilt_cuts *cuts);
+
+/* The part of one line; 0 where there is none. Not from_by and to_by, which gmi_tilt_move_ends() sets. */
+int gmi_tilt_cut_line(const gmi_tilt_cuts *cuts, double rho_origin, gmi_line_part *part);
+void gmi_tilt_move_ends(const gm_pair *pair, const gmi_engagement *at, int side, double rho_origin,
+                        double delta, gmi_line_part *part);
 
 /* How far a line is beyond the tip of a gear: at_zero + per_t1 t1 (m), and how it moves. */
 typedef struct gmi_beyond {
@@ -605,13 +622,29 @@ typedef struct gmi_tilted_line {
     double by_origin[2]; /* (1) */
 } gmi_tilted_line;
 
+/* The same for all lines of a side: polynomials in rho_p at t1 = 0 too. */
+typedef struct gmi_tilt {
+    double gain;           /* (1) */
+    double shift[3];       /* (m) */
+    double by_rho[2];      /* of the first two (1) */
+    double by_rho_squared; /* of the first (1/m) */
+} gmi_tilt;
+
+void gmi_tilt_find(const gm_pair *pair, const gmi_engagement *at, int side, gmi_tilt *tilt);
+
+static inline gmi_tilted_line gmi_tilt_of_line(const gmi_tilt *tilt, double rho_origin) {
+    const double by_square = tilt->by_rho_squared * rho_origin;
+    const gmi_tilted_line line = {
+        tilt->gain,
+        {tilt->shift[0] + rho_origin * (tilt->by_rho[0] + by_square),
+         tilt->shift[1] + rho_origin * tilt->by_rho[1], tilt->shift[2]},
+        {tilt->by_rho[0] + 2.0 * by_square, tilt->by_rho[1]},
+    };
+    return line;
+}
+
 void gmi_tilt_line(const gm_pair *pair, const gmi_engagement *at, int side, double rho_origin,
                    gmi_tilted_line *line);
-
-/* Both at once; 0 where there is no part. */
-int gmi_tilt_follow(const gm_pair *pair, const gmi_engagement *at, int side, double rho_origin,
-                    double delta, int tables, int with_gradients, gmi_line_part *part,
-                    gmi_tilted_line *line);
 
 /* What the polynomials of a tangent are. */
 void gmi_tilt_tangent(const gm_pair *pair, const gmi_engagement *at, int side, double rho_origin,

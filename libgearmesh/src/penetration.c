@@ -80,8 +80,12 @@ typedef struct side_view {
     const gmi_side *prepared;
     gmi_lines lines;
     gmi_line_ends ends;
-    gmi_line_part tilted_part; /* of the line at hand, if the axes are tilted */
-    gmi_tilted_line tilted;
+
+    /* Where the axes are tilted, or for a tangent: */
+    gmi_tilt_cuts cuts;
+    gmi_tilt tilt;
+    gmi_line_part tilted_part; /* of the line at hand */
+
     double wheel_reach;        /* rho_w - start of the wheel's flank = wheel_reach - rho_p (m) */
     gmi_side_tangent *tangent; /* GMI_TANGENT */
 
@@ -181,25 +185,44 @@ static inline void add_moments(const gmi_lines *lines, double rho_origin, const 
 }
 
 /*
+ * Where lines end between tilted axes. Tables are read where parallel axes would have them touch: a line ends where that
+ * leaves one of them.
+ */
+static void find_cuts(side_view *view) {
+    const gmi_side *prepared = view->prepared;
+    const int has_ends = prepared->is_tilted && view->lines.advance != 0.0;
+    const int tables = has_ends ? (prepared->pinion != NULL) + 2 * (prepared->wheel != NULL) : 0;
+    gmi_tilt_cuts_find(view->pair, view->at, view->side, view->lines.delta, tables, &view->cuts);
+    if (prepared->is_tilted) {
+        gmi_tilt_find(view->pair, view->at, view->side, &view->tilt);
+    }
+}
+
+/* How the ends of the line at hand move with all coordinates of the side. */
+static void move_ends(side_view *view, double rho_origin) {
+    gmi_tilt_move_ends(view->pair, view->at, view->side, rho_origin, view->lines.delta,
+                       &view->tilted_part);
+}
+
+/*
  * Between tilted axes the line has ends of its own, and the overlap is a parabola along it. False where none of it is on
- * both flanks. Tables are read where parallel axes would have them touch: a line ends where that leaves one of them.
+ * both flanks.
  */
 static int tilt_line(side_view *view, double rho_origin, int wanted, gmi_line *line) {
-    const gmi_side *prepared = view->prepared;
-    const int is_helical = view->lines.advance != 0.0;
-    const int tables = is_helical ? (prepared->pinion != NULL) + 2 * (prepared->wheel != NULL) : 0;
     gmi_line_part *part = &view->tilted_part;
-    gmi_tilted_line *tilted = &view->tilted;
-    if (!gmi_tilt_follow(view->pair, view->at, view->side, rho_origin, view->lines.delta, tables,
-                         (wanted & ~GMI_MOMENTS) != 0, part, tilted)) {
+    if (!gmi_tilt_cut_line(&view->cuts, rho_origin, part)) {
         return 0;
+    }
+    if ((wanted & ~GMI_MOMENTS) != 0) {
+        move_ends(view, rho_origin);
     }
 
     /* The parabola as seen from the line's beginning. */
-    const double *shift = tilted->shift;
+    const gmi_tilted_line tilted = gmi_tilt_of_line(&view->tilt, rho_origin);
+    const double *shift = tilted.shift;
     line->from = part->from;
     line->to = part->to;
-    line->overlap += (tilted->gain - 1.0) * view->lines.delta + shift[0] +
+    line->overlap += (tilted.gain - 1.0) * view->lines.delta + shift[0] +
                      part->from * (shift[1] + part->from * shift[2]);
     line->half_slope = 0.5 * shift[1] + part->from * shift[2];
     line->curvature = shift[2];
@@ -390,8 +413,8 @@ static void add_line_in_parts(side_view *view, const gmi_line *line, double rho_
     int touches = 0;
     double to;
     if (wanted & GMI_TANGENT && !prepared->is_tilted) {
-        gmi_tilt_clip(view->pair, view->at, view->side, rho_origin, view->lines.delta, 0, 1,
-                      &view->tilted_part);
+        (void)gmi_tilt_cut_line(&view->cuts, rho_origin, &view->tilted_part);
+        move_ends(view, rho_origin);
     }
     for (double from = line->from; from < line->to; from = to) {
         to = next_cut(view, rho_origin, from, line->to);
@@ -493,16 +516,18 @@ SPECIALIZED void add_line(side_view *view, const gmi_flank *pinion, const gmi_fl
 
     /* And what is different between tilted axes. */
     if (is_tilted && wanted & GMI_DERIVATIVES) {
-        add_tilt_derivatives(&view->tilted, &view->tilted_part, &sum, side);
+        const gmi_tilted_line tilted = gmi_tilt_of_line(&view->tilt, rho_origin);
+        add_tilt_derivatives(&tilted, &view->tilted_part, &sum, side);
     }
     if (is_tilted && wanted & GMI_CONTACT_DERIVATIVES) {
-        add_tilt_contact_derivatives(&view->tilted, &view->tilted_part, &sum, side);
+        const gmi_tilted_line tilted = gmi_tilt_of_line(&view->tilt, rho_origin);
+        add_tilt_contact_derivatives(&tilted, &view->tilted_part, &sum, side);
     }
     if (wanted & GMI_TANGENT) {
         const gmi_interval whole = {line.from, line.to};
         if (!is_tilted) {
-            gmi_tilt_clip(pair, view->at, view->side, rho_origin, view->lines.delta, 0, 1,
-                          &view->tilted_part);
+            (void)gmi_tilt_cut_line(&view->cuts, rho_origin, &view->tilted_part);
+            move_ends(view, rho_origin);
         }
         add_tangent(view, rho_origin, &whole, &sum);
     }
@@ -529,6 +554,9 @@ SPECIALIZED void follow_lines(const gm_pair *pair, const gmi_engagement *at,
         view->lines.last += behind < lines->upper + reach;
         view->ends.face_from = HUGE_VAL;
         view->ends.face_to = -HUGE_VAL;
+    }
+    if (prepared->is_tilted || wanted & GMI_TANGENT) {
+        find_cuts(view);
     }
     view->wheel_reach = at->line_of_action + view->lines.delta - at->wheel_profile_start;
 

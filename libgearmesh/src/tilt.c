@@ -78,6 +78,9 @@ SPECIALIZED tilted tilted_of(const gm_pair *pair, const gmi_engagement *at, int 
  * The ends of a line
  * ------------------------------------------------------------------------------------------- */
 
+/* In place of how much a place climbs that stays the same along the line: then it is far off on one side or the other. */
+#define SMALLEST_CLIMB 1e-200
+
 /* What ends a line: a place on either gear, between two limits. Tables are read where parallel axes would touch. */
 enum { ROLL_PINION, ROLL_WHEEL, FACE_PINION, FACE_WHEEL, TABLE_PINION, TABLE_WHEEL };
 
@@ -166,8 +169,9 @@ static void place_gradient(const tilted *line, double t1, int place, double by[G
 
 /* The t1 at which a place meets its limit: d t1 = (d limit - d place) / (d place / d t1). */
 static void set_end(const gm_pair *pair, const gmi_engagement *at, const tilted *line, double delta,
-                    double t1, int place, int is_lower, double by[GMI_COORDINATES]) {
+                    double t1, int place, int is_beginning, double by[GMI_COORDINATES]) {
     const double per_t1 = place_of(pair, line, delta, place).per_t1;
+    const int is_lower = is_beginning == (per_t1 > 0.0);
     place_gradient(line, t1, place, by);
     if (is_lower && (place == ROLL_PINION || place == ROLL_WHEEL)) {
         by[GMI_BY_LENGTH] -= at->start_follows[place == ROLL_PINION ? GM_PINION : GM_WHEEL];
@@ -177,74 +181,72 @@ static void set_end(const gm_pair *pair, const gmi_engagement *at, const tilted 
     }
 }
 
-/* What ends the part so far. */
-typedef struct clip {
-    double from, to;
-    int from_place, to_place, from_is_lower, to_is_lower;
-} clip;
-
-/* Cuts off what is beyond the limits of a place, a constant at each call. */
-SPECIALIZED void cut(const gm_pair *pair, const gmi_engagement *at, const tilted *line,
-                     double delta, int place, clip *part) {
+/* Where a place enters its limits on the line with rho_p = 0 at t1 = 0, where it leaves them, and how both move. */
+static void set_cut(const gm_pair *pair, const gmi_engagement *at, const tilted *line, double delta,
+                    int place, double by_origin, gmi_tilt_cuts *cuts) {
     const straight own = place_of(pair, line, delta, place);
     const gmi_interval limits = limits_of(pair, at, place);
-    if (own.per_t1 == 0.0) { /* all along, or not at all */
-        if (!(own.at_zero >= limits.from && own.at_zero <= limits.to)) {
-            part->to = part->from;
-        }
-        return;
-    }
 
-    /* A place that climbs enters at its lower limit, one that falls at the upper one. */
-    const double per_place = 1.0 / own.per_t1;
+    /* A place that climbs enters at its lower limit, one that falls at the upper one; one that stays, always or never. */
+    const double per_place = 1.0 / (own.per_t1 != 0.0 ? own.per_t1 : SMALLEST_CLIMB);
     const double at_lower = (limits.from - own.at_zero) * per_place;
     const double at_upper = (limits.to - own.at_zero) * per_place;
-    const int climbs = at_lower < at_upper;
-    const double enter = smaller(at_lower, at_upper);
-    const double leave = larger(at_lower, at_upper);
-    if (enter > part->from) {
-        part->from_place = place;
-        part->from_is_lower = climbs;
-    }
-    if (leave < part->to) {
-        part->to_place = place;
-        part->to_is_lower = !climbs;
-    }
-    part->from = larger(enter, part->from);
-    part->to = smaller(leave, part->to);
+    gmi_tilt_cut *cut = &cuts->cut[cuts->count];
+    cuts->place[cuts->count] = (unsigned char)place;
+    cut->enter = smaller(at_lower, at_upper);
+    cut->leave = larger(at_lower, at_upper);
+    cut->by_origin = by_origin * per_place;
+    ++cuts->count;
 }
 
-/* with_gradients: a constant at each call. */
-SPECIALIZED void find_part(const gm_pair *pair, const gmi_engagement *at, const tilted *line,
-                           double delta, int tables, int with_gradients, gmi_line_part *part) {
-    clip found = {-HUGE_VAL, HUGE_VAL, FACE_PINION, FACE_PINION, 1, 0};
+OWN_STACK void gmi_tilt_cuts_find(const gm_pair *pair, const gmi_engagement *at, int side,
+                                  double delta, int tables, gmi_tilt_cuts *cuts) {
+    const tilted line = tilted_of(pair, at, side, 0.0);
+    const double a_tau = line.a * line.tau / line.length;
+    cuts->count = 0;
+    cuts->face = limits_of(pair, at, FACE_PINION);
+    cuts->face.from = (cuts->face.from - pair->face_start) / pair->face_width;
+    cuts->face.to = (cuts->face.to - pair->face_start) / pair->face_width;
     if (!(tables & 4)) {
-        cut(pair, at, line, delta, ROLL_PINION, &found);
-        cut(pair, at, line, delta, ROLL_WHEEL, &found);
+        const double with_wheel = line.tau * line.g + a_tau * line.r_bw;
+        set_cut(pair, at, &line, delta, ROLL_PINION, 1.0 - a_tau * line.r_bp, cuts);
+        set_cut(pair, at, &line, delta, ROLL_WHEEL, -1.0 - with_wheel, cuts);
     }
-    cut(pair, at, line, delta, FACE_PINION, &found);
-    cut(pair, at, line, delta, FACE_WHEEL, &found);
+    set_cut(pair, at, &line, delta, FACE_WHEEL, line.g, cuts);
     if (tables & 1) {
-        cut(pair, at, line, delta, TABLE_PINION, &found);
+        set_cut(pair, at, &line, delta, TABLE_PINION, 1.0, cuts);
     }
     if (tables & 2) {
-        cut(pair, at, line, delta, TABLE_WHEEL, &found);
-    }
-
-    part->from = found.from;
-    part->to = found.to;
-    if (with_gradients && part->from < part->to) {
-        set_end(pair, at, line, delta, part->from, found.from_place, found.from_is_lower,
-                part->from_by);
-        set_end(pair, at, line, delta, part->to, found.to_place, found.to_is_lower, part->to_by);
+        set_cut(pair, at, &line, delta, TABLE_WHEEL, -1.0, cuts);
     }
 }
 
-OWN_STACK void gmi_tilt_clip(const gm_pair *pair, const gmi_engagement *at, int side,
-                             double rho_origin, double delta, int tables, int with_gradients,
-                             gmi_line_part *part) {
+int gmi_tilt_cut_line(const gmi_tilt_cuts *cuts, double rho_origin, gmi_line_part *part) {
+    part->from = cuts->face.from;
+    part->to = cuts->face.to;
+    part->from_place = part->to_place = FACE_PINION;
+    for (int k = 0; k < cuts->count; ++k) {
+        const gmi_tilt_cut *cut = &cuts->cut[k];
+        const double moved = cut->by_origin * rho_origin;
+        const double enter = cut->enter - moved;
+        const double leave = cut->leave - moved;
+        if (enter > part->from) {
+            part->from = enter;
+            part->from_place = cuts->place[k];
+        }
+        if (leave < part->to) {
+            part->to = leave;
+            part->to_place = cuts->place[k];
+        }
+    }
+    return part->from < part->to;
+}
+
+OWN_STACK void gmi_tilt_move_ends(const gm_pair *pair, const gmi_engagement *at, int side,
+                                  double rho_origin, double delta, gmi_line_part *part) {
     const tilted line = tilted_of(pair, at, side, rho_origin);
-    find_part(pair, at, &line, delta, tables, with_gradients, part);
+    set_end(pair, at, &line, delta, part->from, part->from_place, 1, part->from_by);
+    set_end(pair, at, &line, delta, part->to, part->to_place, 0, part->to_by);
 }
 
 void gmi_tilt_beyond(const gm_pair *pair, const gmi_engagement *at, int side, double rho_origin,
@@ -268,46 +270,33 @@ double gmi_tilt_gain(const gm_pair *pair, const gmi_engagement *at, int side) {
     return 1.0 + gmi_side_sign(side) * (pair->face_advance / pair->face_width) * at->across[side];
 }
 
-SPECIALIZED void find_overlap(const tilted *line, gmi_tilted_line *result) {
-    const double a = line->a, g = line->g, tau = line->tau;
+void gmi_tilt_find(const gm_pair *pair, const gmi_engagement *at, int side, gmi_tilt *result) {
+    const tilted line = tilted_of(pair, at, side, 0.0);
+    const double a = line.a, g = line.g, tau = line.tau;
     const double gain = 1.0 + tau * g;
-    const straight u = line->u;
-    const straight second = combined(line->rho_w, tau, line->zeta, 0.0);
+    const straight u = line.u;
+    const straight second = combined(line.rho_w, tau, line.zeta, 0.0);
 
-    /* As a polynomial in t1. */
-    const double square = -0.5 * a * a / line->length; /* of u */
+    /* As a polynomial in t1 on the line with rho_p = 0 at t1 = 0. */
+    const double square = -0.5 * a * a / line.length; /* of u */
     const double linear = -gain * g - 0.5 * a * a * tau;
     result->gain = gain;
-    result->shift[0] = -gain * tau * a * line->r_bw - 0.5 * a * g * line->r_bw +
+    result->shift[0] = -gain * tau * a * line.r_bw - 0.5 * a * g * line.r_bw +
                        u.at_zero * (linear + square * u.at_zero) + 0.5 * g * g * second.at_zero;
     result->shift[1] = u.per_t1 * (linear + 2.0 * square * u.at_zero) + 0.5 * g * g * second.per_t1;
     result->shift[2] = square * u.per_t1 * u.per_t1;
 
     /* With the line's origin rho_w falls, and u grows by tau. */
-    result->by_origin[0] = tau * (linear + 2.0 * square * u.at_zero) - 0.5 * g * g;
-    result->by_origin[1] = tau * 2.0 * square * u.per_t1;
+    result->by_rho[0] = tau * (linear + 2.0 * square * u.at_zero) - 0.5 * g * g;
+    result->by_rho[1] = tau * 2.0 * square * u.per_t1;
+    result->by_rho_squared = tau * tau * square;
 }
 
 void gmi_tilt_line(const gm_pair *pair, const gmi_engagement *at, int side, double rho_origin,
-                   gmi_tilted_line *result) {
-    const tilted line = tilted_of(pair, at, side, rho_origin);
-    find_overlap(&line, result);
-}
-
-int gmi_tilt_follow(const gm_pair *pair, const gmi_engagement *at, int side, double rho_origin,
-                    double delta, int tables, int with_gradients, gmi_line_part *part,
-                    gmi_tilted_line *result) {
-    const tilted line = tilted_of(pair, at, side, rho_origin);
-    if (with_gradients) {
-        gmi_tilt_clip(pair, at, side, rho_origin, delta, tables, 1, part);
-    } else {
-        find_part(pair, at, &line, delta, tables, 0, part);
-    }
-    if (!(part->from < part->to)) {
-        return 0;
-    }
-    find_overlap(&line, result);
-    return 1;
+                   gmi_tilted_line *line) {
+    gmi_tilt tilt;
+    gmi_tilt_find(pair, at, side, &tilt);
+    *line = gmi_tilt_of_line(&tilt, rho_origin);
 }
 
 void gmi_tilt_tangent(const gm_pair *pair, const gmi_engagement *at, int side, double rho_origin,
