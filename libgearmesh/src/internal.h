@@ -65,6 +65,15 @@ static inline int gmi_is_finite(double value) {
     return isfinite(value);
 }
 
+/* One instruction each, where fmin() and fmax() are calls; b if one of both is no number. */
+static inline double gmi_smaller(double a, double b) {
+    return a < b ? a : b;
+}
+
+static inline double gmi_larger(double a, double b) {
+    return a > b ? a : b;
+}
+
 /*
  * Cell of a table that holds v, from 0 to last, as a number: adding 2^52 rounds to a whole one as a conversion would, but
  * two at once. Between two cells it is either.

@@ -48,18 +48,10 @@ typedef struct quadratic {
     double value, half_slope, curvature;
 } quadratic;
 
-static inline double smaller(double a, double b) {
-    return a < b ? a : b;
-}
-
-static inline double larger(double a, double b) {
-    return a > b ? a : b;
-}
-
 /* face_ratio: d v1 / d s. */
 static void set_rates(gmi_grid *grid, double face_ratio) {
     grid->face_ratio = face_ratio;
-    grid->rate = larger(grid->climb * face_ratio / grid->face_rate, LEAST_RATE);
+    grid->rate = gmi_larger(grid->climb * face_ratio / grid->face_rate, LEAST_RATE);
     grid->profile_spacing = 1.0 / grid->rate;
     grid->face_kick = 0.5 * face_ratio;
     grid->profile_kick = 0.5 * grid->rate;
@@ -145,8 +137,8 @@ SPECIALIZED double begin(trace *path, const gmi_grid *grid, const double *table,
     f->curvature += grid->bend * mixed;
 
     /* The profile line ahead, and the place where the table ends. */
-    path->next_profile = s + larger(1.0 - q, LEAST_DISTANCE) * grid->profile_spacing;
-    return s + larger(grid->profile_cells - u, LEAST_DISTANCE) * grid->profile_spacing;
+    path->next_profile = s + gmi_larger(1.0 - q, LEAST_DISTANCE) * grid->profile_spacing;
+    return s + gmi_larger(grid->profile_cells - u, LEAST_DISTANCE) * grid->profile_spacing;
 }
 
 /* The slope across the face and its rate, from where begin() has left the trace. */
@@ -328,7 +320,7 @@ static inline void add_touching(const piece *part, double begin, double end, int
     const double middle = 0.5 * (begin + end);
     const double integral = integral_of(&part->f, length, middle);
 
-    total->sum += larger(integral, 0.0); /* below 0 by rounding where f is next to nothing */
+    total->sum += gmi_larger(integral, 0.0); /* below 0 by rounding where f is next to nothing */
     total->contact += length;
     if (wanted & GMI_DERIVATIVES) {
         total->pinion += length * (part->first_slope + middle * part->first_rate);
@@ -366,10 +358,10 @@ SPECIALIZED void split_piece(const piece *part, int wanted, int has_tangent, gmi
         const double half_slope_at_root =
             sqrt(discriminant); /* the same at both, but for its sign */
         const double q = -(f.half_slope + copysign(half_slope_at_root, f.half_slope));
-        const double root_1 = smaller(larger(q / f.curvature, 0.0), part->length);
-        const double root_2 = smaller(larger(f.value / q, 0.0), part->length);
-        cuts[1] = smaller(root_1, root_2);
-        cuts[2] = larger(root_1, root_2);
+        const double root_1 = gmi_smaller(gmi_larger(q / f.curvature, 0.0), part->length);
+        const double root_2 = gmi_smaller(gmi_larger(f.value / q, 0.0), part->length);
+        cuts[1] = gmi_smaller(root_1, root_2);
+        cuts[2] = gmi_larger(root_1, root_2);
         if (wanted & GMI_CONTACT_DERIVATIVES) {
             const double per_slope = 0.5 / half_slope_at_root;
             add_root(part, cuts[1], per_slope, total);
@@ -441,29 +433,29 @@ typedef struct hull {
 } hull;
 
 static inline double lowest_of(const hull *points, double shift) {
-    return smaller(smaller(points->value[0] + shift * points->grows[0],
-                           points->value[1] + shift * points->grows[1]),
-                   points->value[2] + shift * points->grows[2]);
+    return gmi_smaller(gmi_smaller(points->value[0] + shift * points->grows[0],
+                                   points->value[1] + shift * points->grows[1]),
+                       points->value[2] + shift * points->grows[2]);
 }
 
 static inline double highest_of(const hull *points, double shift) {
-    return larger(larger(points->value[0] + shift * points->grows[0],
-                         points->value[1] + shift * points->grows[1]),
-                  points->value[2] + shift * points->grows[2]);
+    return gmi_larger(gmi_larger(points->value[0] + shift * points->grows[0],
+                                 points->value[1] + shift * points->grows[1]),
+                      points->value[2] + shift * points->grows[2]);
 }
 
 /* The least shift at which the piece touches: at an end, or at the top of a hump. */
 static double touch_of(const piece *part, const hull *points) {
     const quadratic *f = &part->f;
     const double touch =
-        smaller(-points->value[0] / points->grows[0], -points->value[2] / points->grows[2]);
+        gmi_smaller(-points->value[0] / points->grows[0], -points->value[2] / points->grows[2]);
     const double top = -f->half_slope / f->curvature;
     if (!(f->curvature < 0.0 && top > 0.0 && top < part->length)) {
         return touch;
     }
     const double share = top / part->length;
     const double grows = points->grows[0] + share * (points->grows[2] - points->grows[0]);
-    return smaller(touch, -(f->value + top * f->half_slope) / grows);
+    return gmi_smaller(touch, -(f->value + top * f->half_slope) / grows);
 }
 
 /* A part of the piece touches at depth n. */
@@ -494,8 +486,8 @@ static OWN_STACK int add_part_depths(const piece *part, const hull *points, gmi_
     double some = HUGE_VAL, all = -HUGE_VAL;
     for (int k = 0; k < 3; ++k) {
         const double touch = -points->value[k] / points->grows[k];
-        some = smaller(some, touch);
-        all = larger(all, touch);
+        some = gmi_smaller(some, touch);
+        all = gmi_larger(all, touch);
     }
 
     const double per_step = 1.0 / depths->step;
@@ -524,7 +516,7 @@ SPECIALIZED void add_depths(const piece *part, gmi_depths *depths) {
     const hull points = {{f->value, control, end},
                          {grows, grows + 0.5 * grows_by, grows + grows_by}};
     if (highest_of(&points, depths->touch) > 0.0) {
-        depths->touch = smaller(depths->touch, touch_of(part, &points));
+        depths->touch = gmi_smaller(depths->touch, touch_of(part, &points));
     }
     if (!(highest_of(&points, depths->last) > 0.0)) {
         return;
@@ -578,7 +570,7 @@ SPECIALIZED void advance(walk_state *at, double end, int wanted, tangent_walk *w
     if (wanted & GMI_DEPTHS) {
         const piece part = piece_ahead(at, length, wanted);
         add_depths(&part, split->depths);
-    } else if (smaller(smaller(value, control), end_value) > 0.0) {
+    } else if (gmi_smaller(gmi_smaller(value, control), end_value) > 0.0) {
         const double three = length * (value + control + end_value);
         at->three_sums += three;
         at->contact += length;
@@ -604,7 +596,7 @@ SPECIALIZED void advance(walk_state *at, double end, int wanted, tangent_walk *w
         if (wanted & GMI_TANGENT) {
             end_stretch(walked, at->faces + at->s, split->tangent);
         }
-        if (larger(larger(value, control), end_value) > 0.0) {
+        if (gmi_larger(gmi_larger(value, control), end_value) > 0.0) {
             const piece part = piece_ahead(at, length, wanted);
             if (wanted & GMI_TANGENT) {
                 split->tangent->face[0] = walked->face[0];
@@ -644,7 +636,7 @@ SPECIALIZED void walk_cell(walk_state *at, const gmi_grid *first, const gmi_grid
                            gmi_line_sum *split) {
     for (;;) {
         const double face_line =
-            same_faces || at->second.faces <= 0 ? end : smaller(end, at->second.next_face);
+            same_faces || at->second.faces <= 0 ? end : gmi_smaller(end, at->second.next_face);
 
         /* Profile lines of both tables in their order, up to the face line. */
         for (;;) {
@@ -845,15 +837,15 @@ SPECIALIZED void walk_tables(const gmi_line *line, const gmi_grid *first, const 
 
     /* Into both tables. Face lines are shared, or those of the second one are counted in cells of the first. */
     at.first.faces = cell_of(to, first->last_face) - face;
-    double end = smaller(to - (double)face, begin(&at.first, first, first_table, first_profile,
-                                                  line->from, face, s, s, &at.f));
+    double end = gmi_smaller(to - (double)face, begin(&at.first, first, first_table, first_profile,
+                                                      line->from, face, s, s, &at.f));
     if (second_table == NULL) {
         begin_ideal(&at.second);
         second = &ideal_grid;
     } else if (second->shares_faces) {
         at.second.faces = 0;
-        end = smaller(end, begin(&at.second, second, second_table, second_profile, line->from, face,
-                                 s, s, &at.f));
+        end = gmi_smaller(end, begin(&at.second, second, second_table, second_profile, line->from,
+                                     face, s, s, &at.f));
     } else {
         same_faces = 0;
         scaled = *second;
@@ -866,8 +858,8 @@ SPECIALIZED void walk_tables(const gmi_line *line, const gmi_grid *first, const 
             cell_of(line->to * second->face_rate + second->face_base, second->last_face) -
             second_face;
         at.second.next_face = s + (1.0 - p) / second->face_ratio;
-        end = smaller(end, begin(&at.second, second, second_table, second_profile, line->from,
-                                 second_face, p, s, &at.f));
+        end = gmi_smaller(end, begin(&at.second, second, second_table, second_profile, line->from,
+                                     second_face, p, s, &at.f));
     }
 
     result->at_from = at.f.value;

@@ -36,7 +36,7 @@ double gmi_start_roll_length(const gm_gear *gear, const gm_gear *mate, double li
         return gear->start_roll_length;
     }
     const double of_mate = mate->sign * mate->tip_roll_length;
-    return fmax(gear->sign * (line_of_action - of_mate), 0.0);
+    return gmi_larger(gear->sign * (line_of_action - of_mate), 0.0);
 }
 
 int gmi_meshing_find(const gm_pair *pair, double center_distance, gmi_meshing *meshing) {
@@ -62,8 +62,8 @@ int gmi_meshing_find(const gm_pair *pair, double center_distance, gmi_meshing *m
     const double wheel_start = gmi_start_roll_length(wheel, pinion, length);
     meshing->start_roll_length[GM_PINION] = pinion_start;
     meshing->start_roll_length[GM_WHEEL] = wheel_start;
-    meshing->path_start = fmax(pinion_start, length - sign * wheel->tip_roll_length);
-    meshing->path_end = fmin(pinion->tip_roll_length, length - sign * wheel_start);
+    meshing->path_start = gmi_larger(pinion_start, length - sign * wheel->tip_roll_length);
+    meshing->path_end = gmi_smaller(pinion->tip_roll_length, length - sign * wheel_start);
     meshing->transverse_contact_ratio =
         (meshing->path_end - meshing->path_start) / pair->transverse_base_pitch;
 
@@ -255,8 +255,8 @@ static int move_axes(const gm_pair *pair, double along_x, double along_y, gmi_en
  */
 static int move_face(const gm_pair *pair, double shift, gmi_engagement *at) {
     const double wheel_start = pair->wheel.face_start + shift;
-    const double from = fmax(0.0, wheel_start);
-    const double to = fmin(pair->pinion.face_width, wheel_start + pair->wheel.face_width);
+    const double from = gmi_larger(wheel_start, 0.0);
+    const double to = gmi_smaller(wheel_start + pair->wheel.face_width, pair->pinion.face_width);
     if (!(from < to)) {
         return GM_POSE_OUT_OF_MESH;
     }

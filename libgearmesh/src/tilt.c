@@ -31,14 +31,6 @@ typedef struct straight {
     double at_zero, per_t1;
 } straight;
 
-static inline double larger(double a, double b) {
-    return a > b ? a : b;
-}
-
-static inline double smaller(double a, double b) {
-    return a < b ? a : b;
-}
-
 static inline double value_at(straight line, double t1) {
     return line.at_zero + line.per_t1 * t1;
 }
@@ -193,8 +185,8 @@ static void set_cut(const gm_pair *pair, const gmi_engagement *at, const tilted 
     const double at_upper = (limits.to - own.at_zero) * per_place;
     gmi_tilt_cut *cut = &cuts->cut[cuts->count];
     cuts->place[cuts->count] = (unsigned char)place;
-    cut->enter = smaller(at_lower, at_upper);
-    cut->leave = larger(at_lower, at_upper);
+    cut->enter = gmi_smaller(at_lower, at_upper);
+    cut->leave = gmi_larger(at_lower, at_upper);
     cut->by_origin = by_origin * per_place;
     ++cuts->count;
 }
@@ -348,9 +340,10 @@ double gmi_tilt_bound(const gm_pair *pair, const gmi_engagement *at, int side, d
 
     /* rho_w runs from 0 to the wheel's tip, or a little beyond; on a ring from the tip to the start. */
     const double tip_or_start =
-        larger(fabs(at->tip_roll_length[GM_WHEEL]), fabs(at->start_roll_length[GM_WHEEL]));
-    const double rho_w = larger(tip_or_start, length);
-    const double zeta = larger(fabs(line.zeta.at_zero), fabs(line.zeta.at_zero + line.zeta.per_t1));
+        gmi_larger(fabs(at->tip_roll_length[GM_WHEEL]), fabs(at->start_roll_length[GM_WHEEL]));
+    const double rho_w = gmi_larger(tip_or_start, length);
+    const double zeta =
+        gmi_larger(fabs(line.zeta.at_zero), fabs(line.zeta.at_zero + line.zeta.per_t1));
     const double u = zeta + tau * rho_w;
     const double first_order = fabs(gain) * g * u - gain * line.tau * line.a * line.r_bw;
     const double second_order =
