@@ -141,6 +141,7 @@ int load_file_rows(load_file *file, double pinion_angle, double load,
         return 0;
     }
     for (int i = 0; i < count; ++i) {
+        /* Where: the position and its load, then tooth and flank. */
         const gm_line_load_point *point = &points[i];
         char angle[NUMBER_TEXT_SIZE];
         number_format(angle, pinion_angle, file->digits);
@@ -148,6 +149,8 @@ int load_file_rows(load_file *file, double pinion_angle, double load,
         put_number(file, ',', load);
         fprintf(file->stream, ",%d,%s", point->pinion_tooth,
                 point->side == GM_DRIVE ? "drive" : "coast");
+
+        /* The place on it, and what it carries, in the units of the column names. */
         put_number(file, ',', 1e3 * point->z);
         put_number(file, ',', 1e3 * point->pinion_roll_length);
         put_number(file, ',', 1e3 * point->wheel_roll_length);

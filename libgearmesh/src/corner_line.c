@@ -369,11 +369,15 @@ static gmi_part_force force_with_moments(const view *v, const whole_line *whole,
     const int side = v->side;
     const double damping = v->mesh->law.damping, advance = v->lines.advance;
     const double origin = whole->origin;
+
+    /* rho_p = origin + advance t1: the moment grows by the force as the origin moves. */
     double moment_by[2] = {load->whole, 0.0}, touching_by[2] = {0.0, 0.0};
     for (int k = GMI_BY_ORIGIN; k <= GMI_BY_DELTA && v->wanted & GMI_DERIVATIVES; ++k) {
         moment_by[k] += origin * load->whole_by[k] + advance * load->by_t1_by[k];
         touching_by[k] = v->tangent.flow_by[k][0];
     }
+
+    /* By angles and speeds. */
     const gmi_part_force result = {
         .force = gmi_varying_of(pair, side, load->whole, load->whole_by[GMI_BY_ORIGIN],
                                 load->whole_by[GMI_BY_DELTA], damping * sum->contact),

@@ -84,6 +84,7 @@ APART void follow_line(int count, int other, const double *restrict place,
                        const double *restrict rim_row, double *restrict deflection,
                        double *restrict approach, double *restrict change,
                        double *restrict expected) {
+    /* The first points of all slots: tooth and rim bend by phi and psi, the approach falls by both. */
     for (int k = 0; k < count; ++k) {
         const double phi = tooth_row[k] + place[k] * (tooth_row[k + 1] - tooth_row[k]);
         const double psi = rim_row[k] + place[k] * (rim_row[k + 1] - rim_row[k]);
@@ -93,6 +94,8 @@ APART void follow_line(int count, int other, const double *restrict place,
         change[k] = -moved;
         expected[k] = force[k] - stiffness[k] * moved;
     }
+
+    /* And the second ones. */
     for (int k = 0; k < count; ++k) {
         const int p = k + other;
         const double phi = tooth_row[k] + place[p] * (tooth_row[k + 1] - tooth_row[k]);

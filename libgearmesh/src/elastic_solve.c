@@ -186,6 +186,7 @@ static void learn(gmi_elastic_work *work, double x) {
     const double place = place_of(work);
     const double rolled = place - work->warm_place;
     if (work->warm > 0 && fabs(rolled) >= LEAST_CHANGE * work->at.pitch) {
+        /* The state has changed by the approach, which the adjoint tells, and by the roll: the rest. */
         const double per_roll = 1.0 / rolled, change = x - work->approach;
         for (int row = 0; row <= work->count; ++row) {
             const gmi_elastic_span span = gmi_elastic_span_of(work, row);
@@ -202,6 +203,8 @@ static void learn(gmi_elastic_work *work, double x) {
     } else if (work->warm == 0) {
         work->warm = 1;
     }
+
+    /* From here to the next solution. */
     work->warm_place = place;
     work->approach = x;
 }

@@ -740,6 +740,8 @@ static void integrate_ideal(const gmi_line *line, int wanted, gmi_line_sum *resu
     const double length = line->to - line->from;
     result->at_from = line->overlap;
     result->at_to = line->overlap + length * (2.0 * line->half_slope + length * line->curvature);
+
+    /* A parabola is one piece, split at its roots; a constant touches as a whole, or not at all. */
     if (line->half_slope != 0.0 || line->curvature != 0.0) {
         const quadratic f = {line->overlap, line->half_slope, line->curvature};
         const piece part = {line->from, length, f, 0.0, 0.0, 0.0, 0.0};

@@ -619,6 +619,8 @@ static OWN_STACK void evaluate_sliding(const gm_mesh *mesh, const gm_position *p
     gmi_side_sum memory[2];
     gmi_friction_sum friction[2];
     const gmi_side_sum *sums[2];
+
+    /* A side that is clear of its mate has no force, and nothing rubs. */
     for (int side = GM_DRIVE; side <= GM_COAST; ++side) {
         const gmi_side *prepared = &mesh->side[side];
         sums[side] = &no_contact;
@@ -785,6 +787,7 @@ static OWN_STACK void evaluate_corners(const gm_mesh *mesh, const gm_position *p
     gmi_sliding sliding;
     double approach[2] = {position->offset_rate, -position->offset_rate};
     for (int side = GM_DRIVE; side <= GM_COAST; ++side) {
+        /* All lines of the side, with what rubs on them. */
         approach[side] = rates != NULL ? rates[side].delta : approach[side];
         if (slides) {
             find_sliding(mesh, position, rates == NULL ? NULL : &rates[side], &sliding);
@@ -795,6 +798,8 @@ static OWN_STACK void evaluate_corners(const gm_mesh *mesh, const gm_position *p
             approach[side] = gmi_rates_mean_approach(&rates[side], mesh->pair, &mesh->engagement,
                                                      side, &sums.side);
         }
+
+        /* What it is for the user. */
         if (side == GM_DRIVE) {
             set_drive(mesh, &sums, approach, wanted, result);
         } else if (sums.side.contact > 0.0) {
