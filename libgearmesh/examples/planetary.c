@@ -144,6 +144,7 @@ static int derivatives(sunrealtype t, N_Vector state, N_Vector rates, void *data
  * then fit, as z_s + z_r is divisible by their number. */
 static int assemble(gearbox *box, double *y) {
     for (int k = 0; k < PLANETS; ++k) {
+        /* Turn the planet by its distance from the middle of the sun's backlash. */
         gm_motion motion;
         const gm_body sun = body_at(0.0, 0.0, 0.0, 0.0, 0.0);
         const gm_body ring = body_at(0.0, 0.0, 0.0, box->ring_angle, 0.0);
@@ -152,6 +153,8 @@ static int assemble(gearbox *box, double *y) {
             return 0;
         }
         y[2 + k] -= motion.position.offset / gm_mesh_pair(box->at_sun)->wheel.base_radius;
+
+        /* Then the first planet's ring; the others have to fit into it by themselves. */
         planet = planet_of(box, k, y);
         if (gm_motion_of_bodies(box->at_ring, &planet, &ring, &motion, NULL) != GM_OK) {
             return 0;

@@ -167,12 +167,16 @@ enum gmi_interference gmi_meshing_interference(const gm_pair *pair, const gmi_me
 static void set_drawn(const gm_pair *pair, gmi_engagement *at) {
     const gm_gear *gears[2] = {&pair->pinion, &pair->wheel};
     memset(at, 0, sizeof *at);
+
+    /* The axes, with the wheel's on +x, and what follows from their distance. */
     at->center_distance = pair->center_distance;
     at->working_pressure_angle = pair->working_pressure_angle;
     at->axis[0] = 1.0;
     at->line_of_action = pair->line_of_action;
     at->wheel_base_radius = pair->wheel.base_radius;
     at->backlash = pair->backlash;
+
+    /* What each gear has, and how the common face lies on its own. */
     for (int k = 0; k < 2; ++k) {
         const gm_gear *gear = gears[k];
         at->phase_origin[k] = pair->phase_origin[k];
