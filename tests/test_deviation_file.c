@@ -9,6 +9,7 @@
 
 #include "io_test.h"
 
+#include <locale.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
@@ -518,6 +519,48 @@ static void a_stream_gets_what_a_file_would_hold(void) {
     }
 }
 
+/* A locale with a decimal comma, made here. Returns 0 where the system cannot make one. */
+static int use_decimal_comma(void) {
+    static const char folder[] = IO_TEST_PATH("locales");
+    static const char source[] = IO_TEST_PATH("comma");
+    static const char make[] = "rm -rf \"$LOCPATH\" && mkdir \"$LOCPATH\" && "
+                               "localedef -c -i \"$COMMA\" \"$LOCPATH/xx_XX\" >/dev/null 2>&1";
+
+    FILE *file = fopen(source, "w");
+    if (!GM_ASSERT(file != NULL)) {
+        return 0;
+    }
+    fputs("LC_NUMERIC\ndecimal_point \",\"\nthousands_sep \".\"\ngrouping 3;3\nEND LC_NUMERIC\n",
+          file);
+    fclose(file);
+
+    /* It warns of the categories that are missing, with a status of its own. */
+    setenv("LOCPATH", folder, 1);
+    setenv("COMMA", source, 1);
+    (void)!system(make);
+    return setlocale(LC_NUMERIC, "xx_XX") != NULL && *localeconv()->decimal_point == ',';
+}
+
+/* Whatever the program around the library has chosen: 17 digits go through strtod() and printf(). */
+static void numbers_have_a_point_in_every_locale(void) {
+    if (!use_decimal_comma()) {
+        printf(" skipped: localedef makes no locale with a decimal comma ");
+        return;
+    }
+    a_written_file_is_what_a_user_would_write();
+    a_written_file_reads_back_to_the_same_bits();
+    values_of_any_size_read_back_to_the_same_bits();
+
+    const char *text = HEADER "*,*,0,0,-1.2345678901234567e-1\n*,*,0,1,0.10000000000000000555\n"
+                              "*,*,1,0,3\n*,*,1,1,4\n";
+    if (GM_ASSERT_INT(read_deviations(text), GM_IO_OK)) {
+        GM_ASSERT(same_bits(deviations.sets[0].values[0], -0.12345678901234567e-6));
+        GM_ASSERT(same_bits(deviations.sets[0].values[1], 0.10000000000000000555e-6));
+    }
+    gm_deviations_free(&deviations);
+    setlocale(LC_NUMERIC, "C");
+}
+
 static void a_file_that_cannot_be_written_is_an_error(void) {
     make_own(0);
     GM_ASSERT_INT(gm_deviations_write(&own, GM_TEST_FOLDER, &error), GM_IO_ERR_FILE);
@@ -659,6 +702,7 @@ int main(int argc, char **argv) {
         GM_TEST(values_of_any_size_read_back_to_the_same_bits),
         GM_TEST(a_stream_gets_what_a_file_would_hold),
         GM_TEST(a_written_file_is_what_a_user_would_write),
+        GM_TEST(numbers_have_a_point_in_every_locale),
         GM_TEST(a_file_that_cannot_be_written_is_an_error),
         GM_TEST(what_could_not_be_read_back_is_not_written),
         GM_TEST(a_call_without_a_required_pointer_is_refused),

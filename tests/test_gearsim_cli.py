@@ -622,13 +622,6 @@ class Values(Case):
                     text = with_key(text, "gears", key, value)
                 self.refused(*fragments, params=text, arguments=["--check"])
 
-    def test_locale_does_not_matter(self):
-        self.write("run.ini", PARAMS)
-        environment = dict(os.environ, LC_ALL="de_DE.UTF-8", LC_NUMERIC="de_DE.UTF-8")
-        result = subprocess.run([GEARSIM, "run.ini", "--geometry"], cwd=self.folder, env=environment, capture_output=True,
-                                text=True)
-        self.assertIn("transverse_module_mm = 1.967399433179", result.stdout)
-
     def test_ranges(self):
         for section, key, values, requirement in [
                 ("gears", "pinion_teeth", ["0", "-45", "2", "100001"], "from 3 to 100000"),

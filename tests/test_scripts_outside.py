@@ -184,17 +184,35 @@ class ForeignNames(Case):
 
 
 class Locales(Case):
+    def setUp(self):
+        """A locale with a decimal comma, made here, beside those that the system may have."""
+        super().setUp()
+        self.write("comma", 'LC_NUMERIC\ndecimal_point ","\nthousands_sep "."\ngrouping 3;3\nEND LC_NUMERIC\n')
+        self.environment = {key: value for key, value in os.environ.items() if not key.startswith(("LC_", "LANG"))}
+        self.environment["LOCPATH"] = self.folder
+        try:
+            subprocess.run(["localedef", "-c", "-i", "./comma", os.path.join(self.folder, "xx_XX")],
+                           capture_output=True, check=False)
+        except FileNotFoundError:
+            pass
+        ask = "import locale; locale.setlocale(locale.LC_ALL, ''); print(locale.localeconv()['decimal_point'])"
+        result = self.with_comma([sys.executable, "-c", ask])
+        if result.stdout != b",\n":
+            self.skipTest("localedef makes no locale with a decimal comma")
+
+    def with_comma(self, command):
+        return subprocess.run(command, env={**self.environment, "LC_ALL": "xx_XX"}, capture_output=True)
+
     def test_pictures_are_the_same_in_every_locale(self):
         self.write("flanks.csv", FLANKS)
         self.write("pitch.csv", PITCH)
         self.write("run.csv", run_text())
         shown = {}
-        for locale in ("C", "C.UTF-8", "de_DE.UTF-8", "de_DE.ISO-8859-1"):
-            environment = {key: value for key, value in os.environ.items() if not key.startswith(("LC_", "LANG"))}
+        for locale in ("C", "C.UTF-8", "xx_XX"):
             for script, names in (("flanks", ["flanks.csv", "pitch.csv"]), ("campbell", ["run.csv"])):
                 result = subprocess.run(
                     [sys.executable, os.path.join(SCRIPTS, script), *names, "--title", "x"],
-                    env={**environment, "LC_ALL": locale}, capture_output=True)
+                    env={**self.environment, "LC_ALL": locale}, capture_output=True)
                 self.assertEqual((result.returncode, result.stderr), (0, b""), locale)
                 for name in sorted(os.listdir(".")):
                     if name.endswith(".svg"):
@@ -204,6 +222,27 @@ class Locales(Case):
                             self.assertEqual(file.read(), shown[name], (locale, name))
         self.assertIn("µm".encode(), shown["flanks_topography.svg"])
         self.assertIn("α".encode(), shown["flanks_pitch.svg"])
+
+    def test_numbers_have_a_point_in_every_locale(self):
+        """Those of a run, and what the scripts say of it."""
+        shutil.copy(SPUR, "run.ini")
+        run = [GEARSIM, "run.ini", "--quiet", "--set", "analysis.positions=7", "--set", "load.mean_Nm=40.5"]
+        plain = subprocess.run(run, env=self.environment, capture_output=True)
+        self.assertEqual((plain.returncode, plain.stderr), (0, b""))
+        summary = [sys.executable, os.path.join(SCRIPTS, "summary"), "--json", "run.csv"]
+        with open("run.csv", "rb") as file:
+            rows = file.read()
+        said = subprocess.run(summary, env=self.environment, capture_output=True)
+        self.assertRegex(rows, rb"\n0\.[0-9]+,")
+        self.assertRegex(said.stdout, rb"[0-9]\.[0-9]")
+
+        self.assertEqual(self.with_comma(run).returncode, 0)
+        with open("run.csv", "rb") as file:
+            self.assertEqual(file.read(), rows)
+        self.assertEqual(self.with_comma(summary).stdout, said.stdout)
+        geometry = self.with_comma([GEARSIM, "run.ini", "--geometry"]).stdout
+        self.assertEqual(geometry, subprocess.run([GEARSIM, "run.ini", "--geometry"], capture_output=True).stdout)
+        self.assertIn(b"transverse_contact_ratio = 1.", geometry)
 
 
 class Packages(Case):
