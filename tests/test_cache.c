@@ -622,6 +622,87 @@ static void make_pitch(small_flanks *own, int teeth, int different) {
     }
 }
 
+/* Columns begin where contact does, within 1 / 4096 of the depth as cache.c says, and are as exact behind it. */
+static void assert_columns_begin_at(fixture *f, double touch) {
+    const double depth = f->cache->depth, fine = depth / 4096.0;
+    GM_ASSERT_INT(gm_cache_fill(f->cache, 0, f->cache->passes, NULL), GM_OK);
+    for (int column = 0; column < f->cache->columns; ++column) {
+        GM_ASSERT_ABS(f->cache->starts[column], touch - 0.5 * fine, 0.5000001 * fine);
+    }
+
+    /*
+     * Kinks as in ideal_flanks_need_one_pass(), and the way from the first node to where contact begins. Kinks have
+     * columns of their own up to twice the depth; the others are in the middle of a cell.
+     */
+    const double cell = f->pair.transverse_base_pitch / 16.0;
+    const double kink =
+        touch > depth ? 4.0 / 27.0 * cell * depth / fabs(f->pair.face_advance) : 0.0;
+    uint64_t seed = UINT64_C(89);
+    for (int i = 0; i < 500; ++i) {
+        gm_position position = random_position(f, &seed);
+        position.offset = offset_of(f, touch + gm_test_uniform(&seed, fine, 18e-6));
+        const gm_penetration exact = exact_at(f, &position);
+        const gm_penetration r = looked_up_at(f, &position);
+        GM_ASSERT(was_looked_up(f, &r));
+        GM_ASSERT_NEAR(r.penetration, exact.penetration, 5e-4, 2.0 * fine + kink);
+    }
+}
+
+/*
+ * All that is missing of both flanks, or added to them, moves the first touch by as much, however far that is beyond the
+ * depth: a relief that takes the same off everywhere (evaluated node by node), a pitch deviation (by walks).
+ */
+static void columns_begin_where_contact_does(void) {
+    static small_flanks own;
+    for (int side = GM_DRIVE; side <= GM_COAST; ++side) {
+        for (int i = 0; i < 4; ++i) {
+            static const double missing[] = {3.3e-6, 50e-6, 70e-6, -2e-6};
+            gm_test_context("side %d, %g m missing", side, missing[i]);
+            fixture f;
+            memset(&f, 0, sizeof f);
+            f.pair = reference_pair(REFERENCE_FACE_WIDTH);
+            make_pitch(&own, 45, 0);
+            if (missing[i] > 0.0) {
+                const gm_flanks_params sizes = {.teeth = 45};
+                const gm_flank_ramp even = {.offset = missing[i]};
+                GM_ASSERT_INT(gm_flanks_init(&own.flanks, &sizes, own.memory, sizeof own.memory),
+                              GM_OK);
+                GM_ASSERT_INT(gm_flanks_set_ramps(own.flanks, side, &even, 1, 1.0), GM_OK);
+            } else if (side == GM_COAST) {
+                for (int tooth = 0; tooth < 45; ++tooth) {
+                    GM_ASSERT_INT(gm_flanks_set_pitch(own.flanks, side, tooth, -missing[i]), GM_OK);
+                }
+            }
+            f.flanks[0] = own.flanks;
+            gm_cache_params params = default_params();
+            params.side = side;
+            make_cache(&f, &params);
+            GM_ASSERT_INT(f.cache->side, side);
+            assert_columns_begin_at(&f, missing[i]);
+            free(f.cache);
+            free(f.mesh);
+        }
+    }
+}
+
+/* A profile of the pinion that begins late ends the lines there: columns stand at the kinks of that end. */
+static void kinks_of_a_given_start_have_their_columns(void) {
+    gm_pair_params drawn = reference_params(REFERENCE_FACE_WIDTH);
+    drawn.pinion_start_radius = 43.6e-3;
+    drawn.wheel_start_radius = 39.6e-3;
+    for (int side = GM_DRIVE; side <= GM_COAST; ++side) {
+        gm_test_context("side %d", side);
+        fixture f;
+        memset(&f, 0, sizeof f);
+        f.pair = make_pair(&drawn);
+        gm_cache_params params = default_params();
+        params.side = side;
+        make_cache(&f, &params);
+        assert_columns_begin_at(&f, 0.0);
+        free_fixture(&f);
+    }
+}
+
 static gm_pair pair_of_teeth(int pinion, int wheel) {
     gm_pair_params params = reference_params(REFERENCE_FACE_WIDTH);
     params.pinion_teeth = pinion;
@@ -845,8 +926,34 @@ static void wrong_calls_are_refused(void) {
         gm_test_context("params %d", (int)i);
         assert_refused(&wrong[i], mesh, GM_ERR_PARAMETER);
     }
+    const gm_cache_params ends[] = {
+        params_of(GM_DRIVE, 4, 10000, 20e-6),
+        params_of(GM_DRIVE, 10000, 4, 20e-6),
+        params_of(GM_DRIVE, 4, 4, 1e-10),
+        params_of(GM_COAST, 4, 4, 0.25 * p_bt),
+    };
+    for (size_t i = 0; i < sizeof ends / sizeof ends[0]; ++i) {
+        gm_test_context("end of a range %d", (int)i);
+        GM_ASSERT(gm_cache_size(&ends[i], mesh) > 0);
+    }
+
+    /* What a table over phase cannot hold: forces that jump, no lines at all, edges that touch beside the lines. */
     gm_test_context("spur");
     assert_refused(&good, jumping, GM_ERR_GEOMETRY);
+    for (int corners = 0; corners <= 1; ++corners) {
+        gm_test_context("simple, or corners: %d", corners);
+        gm_mesh_params law;
+        gm_mesh *other = NULL;
+        gm_mesh_params_default(&law);
+        law.stiffness = 1e8;
+        law.model = corners ? GM_MODEL_3D : GM_MODEL_SIMPLE;
+        law.corner_contact = corners ? GM_CORNER_ON : GM_CORNER_OFF;
+        const size_t room = gm_mesh_size(&law, &pair);
+        void *place = malloc(room);
+        GM_ASSERT_INT(gm_mesh_init(&other, &law, &pair, NULL, NULL, place, room), GM_OK);
+        assert_refused(&good, other, GM_ERR_GEOMETRY);
+        free(place);
+    }
     gm_test_context("NULL");
     assert_refused(NULL, mesh, GM_ERR_NULL);
     assert_refused(&good, NULL, GM_ERR_NULL);
@@ -933,6 +1040,8 @@ int main(int argc, char **argv) {
         GM_TEST(a_cache_serves_its_own_mesh_alone),
         GM_TEST(pairs_and_wrenches_are_exact_on_request),
         GM_TEST(ideal_flanks_need_one_pass),
+        GM_TEST(columns_begin_where_contact_does),
+        GM_TEST(kinks_of_a_given_start_have_their_columns),
         GM_TEST(a_pair_that_hardly_touches_is_measured_in_bounded_time),
         GM_TEST(passes_are_those_that_happen),
         GM_TEST(strangers_are_evaluated_exactly),

@@ -772,6 +772,49 @@ static void cache_holds_elastic_teeth(void) {
     free(memory);
 }
 
+/* Teeth of a different stiffness have columns of their own, whichever gear they belong to. */
+static void cache_knows_the_softer_teeth(void) {
+    const gm_pair_params gears = paper();
+    for (int role = GM_PINION; role <= GM_WHEEL; ++role) {
+        gm_test_context("gear %d", role);
+        const int teeth = role == GM_PINION ? gears.pinion_teeth : gears.wheel_teeth;
+        double factors[100];
+        for (int tooth = 0; tooth < teeth; ++tooth) {
+            factors[tooth] = tooth == 2 ? 0.5 : 1.0;
+        }
+        gm_mesh_params law = elastic_law();
+        law.corner_contact = GM_CORNER_OFF;
+        *(role == GM_PINION ? &law.pinion_tooth_stiffness : &law.wheel_tooth_stiffness) = factors;
+        elastic_mesh m;
+        GM_ASSERT_INT(make(&m, &gears, &law, NULL, NULL), GM_OK);
+        gm_cache_params params;
+        gm_cache *cache;
+        gm_cache_params_default(&params);
+        const size_t size = gm_cache_size(&params, m.mesh);
+        void *memory = malloc(size);
+        GM_ASSERT_INT(gm_cache_init(&cache, &params, m.mesh, memory, size), GM_OK);
+        GM_ASSERT_INT(gm_cache_passes(cache), teeth);
+
+        /* Wherever the soft tooth is, as without the cache. */
+        const double pitch = 6.283185307179586 / gears.pinion_teeth;
+        double force[100], softest = HUGE_VAL, stiffest = 0.0;
+        for (int tooth = 0; tooth < teeth; ++tooth) {
+            const gm_state state = pressed_state(&m, (tooth + 0.1) * pitch, 4e-6);
+            force[tooth] = evaluate(&m, &state, GM_WANT_FORCE).force;
+            softest = fmin(softest, force[tooth]);
+            stiffest = fmax(stiffest, force[tooth]);
+        }
+        GM_ASSERT(softest < 0.97 * stiffest);
+        GM_ASSERT_INT(gm_mesh_use_cache(m.mesh, cache), GM_OK);
+        for (int tooth = 0; tooth < teeth; ++tooth) {
+            const gm_state state = pressed_state(&m, (tooth + 0.1) * pitch, 4e-6);
+            GM_ASSERT_REL(evaluate(&m, &state, GM_WANT_FORCE).force, force[tooth], 1e-3);
+        }
+        release(&m);
+        free(memory);
+    }
+}
+
 static void wrench_acts_where_the_load_is(void) {
     const gm_pair_params gears = spur62();
     gm_mesh_params law = elastic_law();
@@ -1101,6 +1144,7 @@ int main(int argc, char **argv) {
         GM_TEST(force_of_spur_gears_is_smooth),
         GM_TEST(edges_keep_the_energy),
         GM_TEST(cache_holds_elastic_teeth),
+        GM_TEST(cache_knows_the_softer_teeth),
         GM_TEST(wrench_acts_where_the_load_is),
         GM_TEST(line_loads_are_the_force),
         GM_TEST(doubtful_loads_are_told),

@@ -70,7 +70,15 @@ SLIPS = [
     ("drive.start_rpm=104.72", "in rad/s", "1000"),
     ("drive.end_rpm=-1047.1976", "in rad/s", "-10000"),
     ("drive.kind=torque drive.torque_Nm=21 bodies.pinion_inertia_kg_m2=2e-3 analysis.stop_rpm=157.08", "in rad/s", "1500"),
+    ("drive.start_rpm=16.6667", "in turns per second", "1000"),
+    ("drive.end_rpm=-33.3333", "in turns per second", "-2000"),
+    ("bodies.wheel_drag_Nms=300", "in N mm s", "0.3"),
+    ("load.per_speed_Nms=100", "in N mm s", "0.1"),
     ("load.noise_amplitude_Nm=10 load.noise_interval_s=100", "in us", "0.0001"),
+    ("drive.start_rpm=2400 output.rate_Hz=25.6", "in kHz", "25600"),
+    ("drive.end_rpm=-2400 output.rate_Hz=0.0512", "in MHz", "51200"),
+    ("solver.max_step_s=100", "in us", "0.0001"),
+    ("flanks.profile_blend=10", "in percent", "0.1"),
     ("flanks.scale=1e-6", "as a change of unit", "1"),
     ("modifications.pinion_crowning_um=0.005", "in mm", "5"),
     ("modifications.wheel_coast_helix_slope_um=-0.01", "in mm", "-10"),
@@ -90,6 +98,9 @@ REFUSED = [
     ("mesh.roughness_Ra_um=4e-4", "; was it meant in mm? write 0.4"),
     ("pose.skew_mrad=-400", "; was it meant in microradians? write -0.4"),
     ("flanks.profile_from=20", "; was it meant in percent? write 0.2"),
+    ("mesh.friction_coefficient=6", "; was it meant in percent? write 0.06"),
+    ("mesh.iso_blank_factor=80", "; was it meant in percent? write 0.8"),
+    ("mesh.damping_ratio=5", "; was it meant in percent? write 0.05"),
 ]
 
 # Gears as they are published or in use, each in its key = value pairs of [gears].

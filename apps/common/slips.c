@@ -513,15 +513,37 @@ static void judge_torque(const config *conf, const char *key, double torque,
                 units, "more than the teeth bear");
 }
 
-/* A speed with decimals that is a round one in rad/s, to the digits that people write. */
+/* A speed with decimals that is a round one in another unit, to the digits that people write. */
 static void judge_speed(const config *conf, const char *key, double speed) {
     static const double of_a_radian = 30 / 3.14159265358979323846, roundness = 100;
-    const double written = of_a_radian * speed, meant = of_a_radian * written;
-    const double whole = floor(written + 0.5), round = roundness * floor(meant / roundness + 0.5);
+    static const other_unit units[] = {
+        {"in rad/s", 30 / 3.14159265358979323846}, {"in turns per second", 60}, {NULL, 0}};
+    const double written = of_a_radian * speed;
 
-    if (is_given(conf, key) && fabs(written - whole) > 1e-9 * fabs(written) && round != 0 &&
-        fabs(meant - round) <= 5e-5 * fabs(round)) {
-        tell(conf, key, " rpm", "which is no round speed", "in rad/s", round);
+    if (!is_given(conf, key) || fabs(written - floor(written + 0.5)) <= 1e-9 * fabs(written)) {
+        return;
+    }
+    for (const other_unit *unit = units; unit->meant != NULL; ++unit) {
+        const double meant = unit->size * written;
+        const double round = roundness * floor(meant / roundness + 0.5);
+        if (round != 0 && fabs(meant - round) <= 5e-5 * fabs(round)) {
+            tell(conf, key, " rpm", "which is no round speed", unit->meant, round);
+        }
+    }
+}
+
+/* Drag and loads over the wheel's speed, by the torque at the fastest speed that is prescribed (none: NaN). */
+static void judge_torque_over_speed(const config *conf, const char *key, double per_speed,
+                                    const usual_gear *usual) {
+    static const double possible[] = {0, 3000}, usual_range[] = {0.0005, 500};
+    static const other_unit units[] = {{"in N mm s", 1e-3}, {NULL, 0}};
+    const double ratio = usual->diameter[0] / usual->diameter[1];
+    const double speed = ratio * fmax(fabs(conf->start_speed), fabs(conf->end_speed));
+    const double of_one = usual->face_width * usual->module * 0.5e-3 * usual->diameter[1];
+
+    if (conf->drive == DRIVE_SPEED && conf->drive_file == NULL) {
+        (void)judge(conf, key, per_speed, " N m s", of_one / speed, possible, usual_range, units,
+                    "more at that speed than the teeth bear");
     }
 }
 
@@ -535,6 +557,38 @@ static void judge_noise_interval(const config *conf) {
         (void)judge(conf, "load.noise_interval_s", conf->noise_interval, " s", 1, possible, usual,
                     units, "longer than the run");
     }
+}
+
+/* Fewer rows than turns of the pinion show nothing of the mesh. */
+static void judge_rate(const config *conf) {
+    static const double usual[] = {1e3, 1e6};
+    static const other_unit units[] = {{"in kHz", 1e3}, {"in MHz", 1e6}, {NULL, 0}};
+    const double turns = fmax(fabs(conf->start_speed), fabs(conf->end_speed)) / (2 * pi);
+    const double possible[] = {turns, HUGE_VAL};
+
+    if (conf->drive == DRIVE_SPEED && conf->drive_file == NULL) {
+        (void)judge(conf, "output.rate_Hz", conf->output_rate, " Hz", 1, possible, usual, units,
+                    "fewer rows than turns of the pinion");
+    }
+}
+
+/* A limit that no step of the run can reach is none. */
+static void judge_max_step(const config *conf) {
+    static const double usual[] = {1e-8, 1e-2};
+    static const other_unit units[] = {{"in us", 1e-6}, {"in ms", 1e-3}, {NULL, 0}};
+    const double possible[] = {0, conf->duration};
+
+    (void)judge(conf, "solver.max_step_s", conf->max_step, " s", 1, possible, usual, units,
+                "longer than the run");
+}
+
+/* A blend is a part of the profile. */
+static void judge_profile_blend(const config *conf) {
+    static const double possible[] = {0, 1}, usual[] = {0.01, 1};
+    static const other_unit units[] = {{"in percent", 1e-2}, {NULL, 0}};
+
+    (void)judge(conf, "flanks.profile_blend", conf->profile_blend, "", 1, possible, usual, units,
+                "wider than the profile");
 }
 
 /* Deviations are in um already. */
@@ -625,9 +679,16 @@ static void judge_run(const config *conf, const usual_gear *usual) {
     judge_speed(conf, "drive.start_rpm", conf->start_speed);
     judge_speed(conf, "drive.end_rpm", conf->end_speed);
     judge_speed(conf, "analysis.stop_rpm", conf->stop_speed);
-    judge_noise_interval(conf);
+    if (conf->analysis == ANALYSIS_DYNAMIC) {
+        judge_torque_over_speed(conf, "bodies.wheel_drag_Nms", conf->wheel_drag, usual);
+        judge_torque_over_speed(conf, "load.per_speed_Nms", conf->load_per_speed, usual);
+        judge_noise_interval(conf);
+        judge_rate(conf);
+        judge_max_step(conf);
+    }
     if (conf->model == MODEL_3D) {
         judge_flank_scale(conf);
+        judge_profile_blend(conf);
         judge_modifications(conf, usual);
     }
 }
