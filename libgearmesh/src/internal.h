@@ -1003,7 +1003,8 @@ struct gm_mesh {
     int is_posed;
     gmi_side side[2]; /* GM_DRIVE, GM_COAST */
     int model;        /* enum gm_model */
-    int is_special;   /* it has a cache, friction, or teeth that bend */
+    int is_special;   /* it has a cache, friction, corners, or teeth that bend */
+    int is_plain;     /* 3D and nothing of that, on parallel axes as drawn */
     gmi_law law;
     const struct gmi_elastic_mesh *elastic; /* NULL = constant stiffness */
     gmi_friction friction;

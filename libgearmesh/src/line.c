@@ -818,11 +818,9 @@ static OWN_STACK void walk_depths(walk_state at, const gmi_grid *first, const gm
 /* What a walk is for, beside sums. */
 enum walk_kind { WALK_SUMS, WALK_TANGENT, WALK_DEPTHS };
 
-/* `first` has a table, `second` may have one. */
-SPECIALIZED void walk_tables(const gmi_line *line, const gmi_grid *first, const double *first_table,
-                             double first_profile, const gmi_grid *second,
-                             const double *second_table, double second_profile, int wanted,
-                             enum walk_kind kind, gmi_line_sum *result) {
+/* The pinion, which leads, has a table; the wheel may have one. */
+SPECIALIZED void walk_tables(const gmi_line *line, const gmi_grid *first, const gmi_grid *second,
+                             int wanted, enum walk_kind kind, gmi_line_sum *result) {
     const double v1 = line->from * first->face_rate + first->face_base;
     const double to = line->to * first->face_rate + first->face_base;
     const int face = cell_of(v1, first->last_face);
@@ -839,15 +837,16 @@ SPECIALIZED void walk_tables(const gmi_line *line, const gmi_grid *first, const 
 
     /* Into both tables. Face lines are shared, or those of the second one are counted in cells of the first. */
     at.first.faces = cell_of(to, first->last_face) - face;
-    double end = gmi_smaller(to - (double)face, begin(&at.first, first, first_table, first_profile,
-                                                      line->from, face, s, s, &at.f));
-    if (second_table == NULL) {
+    double end =
+        gmi_smaller(to - (double)face, begin(&at.first, first, line->pinion, line->pinion_profile,
+                                             line->from, face, s, s, &at.f));
+    if (line->wheel == NULL) {
         begin_ideal(&at.second);
         second = &ideal_grid;
     } else if (second->shares_faces) {
         at.second.faces = 0;
-        end = gmi_smaller(end, begin(&at.second, second, second_table, second_profile, line->from,
-                                     face, s, s, &at.f));
+        end = gmi_smaller(end, begin(&at.second, second, line->wheel, line->wheel_profile,
+                                     line->from, face, s, s, &at.f));
     } else {
         same_faces = 0;
         scaled = *second;
@@ -860,8 +859,8 @@ SPECIALIZED void walk_tables(const gmi_line *line, const gmi_grid *first, const 
             cell_of(line->to * second->face_rate + second->face_base, second->last_face) -
             second_face;
         at.second.next_face = s + (1.0 - p) / second->face_ratio;
-        end = gmi_smaller(end, begin(&at.second, second, second_table, second_profile, line->from,
-                                     second_face, p, s, &at.f));
+        end = gmi_smaller(end, begin(&at.second, second, line->wheel, line->wheel_profile,
+                                     line->from, second_face, p, s, &at.f));
     }
 
     result->at_from = at.f.value;
@@ -869,7 +868,7 @@ SPECIALIZED void walk_tables(const gmi_line *line, const gmi_grid *first, const 
     /* A walk of its own for each mask that solvers use: what is not wanted costs nothing in it. */
     enum { DAMPED = GMI_DERIVATIVES | GMI_CONTACT_DERIVATIVES };
     if (kind == WALK_TANGENT) {
-        walk_tangent(at, first, second, end, second_table != NULL, same_faces, result);
+        walk_tangent(at, first, second, end, line->wheel != NULL, same_faces, result);
     } else if (kind == WALK_DEPTHS) {
         if (same_faces) {
             at.second.next_face = NO_CROSSING;
@@ -890,12 +889,32 @@ SPECIALIZED void walk_tables(const gmi_line *line, const gmi_grid *first, const 
     }
 }
 
-static void integrate_tables(const gmi_line *line, const gmi_grid *first, const double *first_table,
-                             double first_profile, const gmi_grid *second,
-                             const double *second_table, double second_profile, int wanted,
-                             gmi_line_sum *result) {
-    walk_tables(line, first, first_table, first_profile, second, second_table, second_profile,
-                wanted, WALK_SUMS, result);
+/* Where only the wheel has a table it leads: the same line with it in the pinion's place. */
+static gmi_line led_by_wheel(const gmi_line *line) {
+    gmi_line led = *line;
+    led.pinion = line->wheel;
+    led.pinion_profile = line->wheel_profile;
+    led.wheel = NULL;
+    return led;
+}
+
+static OWN_STACK void integrate_tables(const gmi_line *line, const gmi_grid *pinion,
+                                       const gmi_grid *wheel, int wanted, gmi_line_sum *result) {
+    walk_tables(line, pinion, wheel, wanted, WALK_SUMS, result);
+}
+
+static OWN_STACK void integrate_wheel(const gmi_line *line, const gmi_grid *wheel, int wanted,
+                                      gmi_line_sum *result) {
+    const gmi_line led = led_by_wheel(line);
+    integrate_tables(&led, wheel, &ideal_grid, wanted, result);
+
+    /* The first flank was the wheel. */
+    result->wheel = result->pinion;
+    result->pinion = 0.0;
+    if (wanted & GMI_CONTACT_DERIVATIVES) {
+        result->roots_wheel = result->roots_pinion;
+        result->roots_pinion = 0.0;
+    }
 }
 
 /* Apart, so that gcc compiles the other one as if this one were not there. */
@@ -907,11 +926,10 @@ static OWN_STACK void integrate_tangent(const gmi_line *line, const gmi_grid *pi
     tangent->face[0] = tangent->face[1] = 0.0; /* without a table */
     lead_tangent(tangent, wheel_leads, 1.0, 0.0, 0.0, 0.0);
     if (wheel_leads) {
-        walk_tables(line, wheel, line->wheel, line->wheel_profile, &ideal_grid, NULL, 0.0, wanted,
-                    WALK_TANGENT, result);
+        const gmi_line led = led_by_wheel(line);
+        walk_tables(&led, wheel, &ideal_grid, wanted, WALK_TANGENT, result);
     } else if (line->pinion != NULL) {
-        walk_tables(line, pinion, line->pinion, line->pinion_profile, wheel, line->wheel,
-                    line->wheel_profile, wanted, WALK_TANGENT, result);
+        walk_tables(line, pinion, wheel, wanted, WALK_TANGENT, result);
     } else {
         integrate_ideal(line, wanted, result);
     }
@@ -932,14 +950,13 @@ void gmi_line_integrate_depths(const gmi_line *line, const gmi_grid *pinion, con
         depths->shift_second = line->wheel != NULL ? by_wheel : 0.0;
         depths->origin_first = by_pinion;
         depths->origin_second = -depths->shift_second;
-        walk_tables(line, pinion, line->pinion, line->pinion_profile, wheel, line->wheel,
-                    line->wheel_profile, GMI_DERIVATIVES, WALK_DEPTHS, result);
+        walk_tables(line, pinion, wheel, GMI_DERIVATIVES, WALK_DEPTHS, result);
     } else if (line->wheel != NULL) {
         depths->per_place = 1.0 / wheel->face_rate;
         depths->shift_first = by_wheel;
         depths->origin_first = -by_wheel;
-        walk_tables(line, wheel, line->wheel, line->wheel_profile, &ideal_grid, NULL, 0.0,
-                    GMI_DERIVATIVES, WALK_DEPTHS, result);
+        const gmi_line led = led_by_wheel(line);
+        walk_tables(&led, wheel, &ideal_grid, GMI_DERIVATIVES, WALK_DEPTHS, result);
     } else {
         const quadratic f = {line->overlap, 0.0, 0.0};
         const piece whole = {0.0, line->to - line->from, f, 0.0, 0.0, 0.0, 0.0};
@@ -964,19 +981,9 @@ void gmi_line_integrate(const gmi_line *line, const gmi_grid *pinion, const gmi_
 
     /* The flank with a table leads; if both have one, the pinion. */
     if (line->pinion != NULL) {
-        integrate_tables(line, pinion, line->pinion, line->pinion_profile, wheel, line->wheel,
-                         line->wheel_profile, wanted, result);
+        integrate_tables(line, pinion, wheel, wanted, result);
     } else if (line->wheel != NULL) {
-        integrate_tables(line, wheel, line->wheel, line->wheel_profile, &ideal_grid, NULL, 0.0,
-                         wanted, result);
-
-        /* The first flank was the wheel. */
-        result->wheel = result->pinion;
-        result->pinion = 0.0;
-        if (wanted & GMI_CONTACT_DERIVATIVES) {
-            result->roots_wheel = result->roots_pinion;
-            result->roots_pinion = 0.0;
-        }
+        integrate_wheel(line, wheel, wanted, result);
     } else {
         integrate_ideal(line, wanted, result);
     }

@@ -6,6 +6,7 @@
  * overlaps is found by penetration.c or cache.c, law.c makes a force of it, wrench.c says where it acts.
  */
 #include "cache.h"
+#include "contact.h"
 #include "corner.h"
 #include "elastic_mesh.h"
 #include "internal.h"
@@ -210,6 +211,16 @@ static int make_elastic(gm_mesh *mesh, gmi_elastic_mesh *elastic, gm_mesh_params
     return status;
 }
 
+/* Which way its evaluations go. */
+static void set_kind(gm_mesh *mesh) {
+    const gmi_engagement *at = &mesh->engagement;
+    mesh->is_special =
+        mesh->cache != NULL || mesh->friction.is_on || mesh->elastic != NULL || mesh->has_corners;
+    mesh->is_posed = at->offset_shift != 0.0 || at->phase_shift != 0.0;
+    mesh->is_plain =
+        mesh->model == GM_MODEL_3D && !mesh->is_special && !mesh->is_posed && !at->is_tilted;
+}
+
 int gm_mesh_init(gm_mesh **mesh, const gm_mesh_params *params, const gm_pair *pair,
                  const gm_flanks *pinion_flanks, const gm_flanks *wheel_flanks, void *memory,
                  size_t memory_size) {
@@ -270,8 +281,7 @@ int gm_mesh_init(gm_mesh **mesh, const gm_mesh_params *params, const gm_pair *pa
     if (has_corners) {
         memcpy(made->corners, corners, sizeof corners);
     }
-    made->is_special = made->friction.is_on || made->elastic != NULL || has_corners;
-    made->is_posed = engagement.offset_shift != 0.0 || engagement.phase_shift != 0.0;
+    set_kind(made);
     if (params->model == GM_MODEL_SIMPLE) {
         pinion_flanks = wheel_flanks = NULL;
     }
@@ -375,8 +385,7 @@ int gm_mesh_use_cache(gm_mesh *mesh, gm_cache *cache) {
         return GM_ERR_PARAMETER;
     }
     mesh->cache = cache;
-    mesh->is_special =
-        cache != NULL || mesh->friction.is_on || mesh->elastic != NULL || mesh->has_corners;
+    set_kind(mesh);
     return GM_OK;
 }
 
@@ -520,33 +529,61 @@ SPECIALIZED void set_result(const gm_mesh *mesh, const gmi_side_sum *drive,
     set_forces(mesh, drive_force, coast_force, friction, wanted, result);
 }
 
+/* Which flanks both sides have: known where an evaluation is compiled for them, else found out. */
+enum flank_kind { ANY_FLANKS, IDEAL_FLANKS, TABLES };
+
 /* The sum of a side, by a mask of enum gmi_wanted: written to `memory`, or that of no contact. */
 SPECIALIZED const gmi_side_sum *exact_sum(const gm_mesh *mesh, int side,
                                           const gm_position *position, int mask,
-                                          gmi_side_sum *memory) {
-    if (gmi_side_is_clear(&mesh->engagement, &mesh->side[side], side, position->offset)) {
+                                          enum flank_kind kind, gmi_side_sum *memory) {
+    const gmi_engagement *at = &mesh->engagement;
+    const gmi_side *prepared = &mesh->side[side];
+    if (gmi_side_is_clear(at, prepared, side, position->offset)) {
         return &no_contact;
     }
-    if (mesh->model == GM_MODEL_SIMPLE) {
-        gmi_side_sum_simple(mesh->pair, &mesh->engagement, side, position->offset, memory);
+    if (kind == IDEAL_FLANKS) {
+        *memory = gmi_no_contact();
+        gmi_sum_ideal(mesh->pair, at, side, position, mask, memory);
+    } else if (kind == TABLES) {
+        *memory = gmi_no_contact();
+        gmi_side_sum_tables(mesh->pair, at, prepared, side, position, mask, memory);
+    } else if (mesh->model == GM_MODEL_SIMPLE) {
+        gmi_side_sum_simple(mesh->pair, at, side, position->offset, memory);
     } else {
-        gmi_side_sum_3d(mesh->pair, &mesh->engagement, &mesh->side[side], side, position, mask,
-                        memory);
+        gmi_side_sum_3d(mesh->pair, at, prepared, side, position, mask, memory);
     }
     return memory;
 }
 
-/* Compiled once for the force alone and once for any mask. */
+/* Compiled for what most calls want, and once for any mask and flanks. */
 SPECIALIZED void evaluate(const gm_mesh *mesh, const gm_position *position, int wanted,
-                          gm_mesh_result *result) {
+                          enum flank_kind kind, gm_mesh_result *result) {
     const int mask = accumulated(mesh, position->offset_rate != 0.0, wanted);
     gmi_side_sum sums[2];
-    const gmi_side_sum *drive = exact_sum(mesh, GM_DRIVE, position, mask, &sums[GM_DRIVE]);
-    const gmi_side_sum *coast = exact_sum(mesh, GM_COAST, position, mask, &sums[GM_COAST]);
+    const gmi_side_sum *drive = exact_sum(mesh, GM_DRIVE, position, mask, kind, &sums[GM_DRIVE]);
+    const gmi_side_sum *coast = exact_sum(mesh, GM_COAST, position, mask, kind, &sums[GM_COAST]);
 
     /* The coast flanks approach each other while x falls. */
     const double approach[2] = {position->offset_rate, -position->offset_rate};
     set_result(mesh, drive, coast, NULL, approach, wanted, result);
+}
+
+static OWN_STACK int evaluate_ideal_force(const gm_mesh *mesh, const gm_position *position,
+                                          gm_mesh_result *result) {
+    evaluate(mesh, position, GM_WANT_FORCE, IDEAL_FLANKS, result);
+    return GM_OK;
+}
+
+static OWN_STACK int evaluate_force(const gm_mesh *mesh, const gm_position *position,
+                                    gm_mesh_result *result) {
+    evaluate(mesh, position, GM_WANT_FORCE, TABLES, result);
+    return GM_OK;
+}
+
+static OWN_STACK int evaluate_any(const gm_mesh *mesh, const gm_position *position, int wanted,
+                                  gm_mesh_result *result) {
+    evaluate(mesh, position, wanted, ANY_FLANKS, result);
+    return GM_OK;
 }
 
 /*
@@ -602,12 +639,6 @@ static OWN_STACK int evaluate_elastic(const gm_mesh *mesh, const gm_position *po
 /* Teeth that bend: the simple model has none. */
 static inline int is_elastic(const gm_mesh *mesh) {
     return mesh->elastic != NULL && mesh->model != GM_MODEL_SIMPLE;
-}
-
-/* Apart from what calls it for other meshes. */
-static OWN_STACK void evaluate_any(const gm_mesh *mesh, const gm_position *position, int wanted,
-                                   gm_mesh_result *result) {
-    evaluate(mesh, position, wanted, result);
 }
 
 /* With friction, which needs the moments of the force; and their derivatives, where those are wanted. rates: [side], NULL =
@@ -818,7 +849,7 @@ int gmi_mesh_evaluate_exact(const gm_mesh *mesh, const gm_position *position, in
     } else if (mesh->friction.is_on) {
         evaluate_rolling(mesh, position, wanted, result);
     } else {
-        evaluate_any(mesh, position, wanted, result);
+        return evaluate_any(mesh, position, wanted, result);
     }
     return GM_OK;
 }
@@ -859,13 +890,18 @@ static int check_speed(double speed) {
     return gmi_is_finite(speed) ? GM_STATE_OUT_OF_RANGE : GM_STATE_NOT_FINITE;
 }
 
+/* A sum of enum gm_wanted. */
+static inline int is_mask(int wanted) {
+    const int all = GM_WANT_DERIVATIVES | GM_WANT_WRENCH | GM_WANT_PAIRS;
+    return (wanted & ~all) == 0;
+}
+
 static inline int check_evaluation(const gm_mesh *mesh, const gm_position *position, int wanted,
                                    const gm_workspace *workspace) {
-    const int all = GM_WANT_DERIVATIVES | GM_WANT_WRENCH | GM_WANT_PAIRS;
     if (mesh == NULL || position == NULL || (workspace == NULL && is_elastic(mesh))) {
         return GM_ERR_NULL;
     }
-    if ((wanted & ~all) != 0) {
+    if (!is_mask(wanted)) {
         return GM_ERR_PARAMETER;
     }
     return mesh->model == GM_MODEL_SIMPLE
@@ -881,11 +917,8 @@ static int evaluate_special(const gm_mesh *mesh, const gm_position *position, in
                : gmi_mesh_evaluate_exact(mesh, position, wanted, workspace, result);
 }
 
-int gm_mesh_evaluate_at(const gm_mesh *mesh, const gm_position *position, int wanted,
-                        gm_workspace *workspace, gm_mesh_result *result) {
-    if (result == NULL) {
-        return GM_ERR_NULL;
-    }
+static OWN_STACK int evaluate_checked(const gm_mesh *mesh, const gm_position *position, int wanted,
+                                      gm_workspace *workspace, gm_mesh_result *result) {
     gm_position posed;
     if (mesh != NULL && position != NULL && mesh->is_posed) {
         posed = gmi_mesh_posed(mesh, position);
@@ -899,17 +932,27 @@ int gm_mesh_evaluate_at(const gm_mesh *mesh, const gm_position *position, int wa
         gmi_mesh_result_set_nan(result);
         return status;
     }
+    return mesh->is_special ? evaluate_special(mesh, position, wanted, workspace, result)
+                            : evaluate_any(mesh, position, wanted, result);
+}
 
-    /* Most calls want the force alone: a copy for them leaves all else out. */
-    if (mesh->is_special) {
-        return evaluate_special(mesh, position, wanted, workspace, result);
+int gm_mesh_evaluate_at(const gm_mesh *mesh, const gm_position *position, int wanted,
+                        gm_workspace *workspace, gm_mesh_result *result) {
+    if (result == NULL) {
+        return GM_ERR_NULL;
     }
-    if (wanted == GM_WANT_FORCE) {
-        evaluate(mesh, position, GM_WANT_FORCE, result);
-    } else {
-        evaluate(mesh, position, wanted, result);
+
+    /* Most calls are for a mesh that is nothing special, and want the force alone. */
+    if (mesh != NULL && position != NULL && mesh->is_plain && is_mask(wanted) &&
+        gmi_check_position(mesh->pair, position) == GM_OK) {
+        if (wanted != GM_WANT_FORCE) {
+            return evaluate_any(mesh, position, wanted, result);
+        }
+        return mesh->side[GM_DRIVE].pinion == NULL && mesh->side[GM_DRIVE].wheel == NULL
+                   ? evaluate_ideal_force(mesh, position, result)
+                   : evaluate_force(mesh, position, result);
     }
-    return GM_OK;
+    return evaluate_checked(mesh, position, wanted, workspace, result);
 }
 
 int gm_mesh_evaluate(const gm_mesh *mesh, const gm_state *state, int wanted,
@@ -941,7 +984,6 @@ static int move_mesh(const gm_mesh *mesh, const gm_pose *pose, gm_mesh *moved) {
     const gm_pose both = both_poses(&mesh->pose, pose);
     *moved = *mesh;
     moved->cache = NULL;
-    moved->is_special = mesh->friction.is_on || mesh->elastic != NULL || mesh->has_corners;
 
     /* The gears in the pose, and their corners. */
     const int status = gmi_engagement_find(mesh->pair, &both, &moved->engagement);
@@ -962,7 +1004,7 @@ static int move_mesh(const gm_mesh *mesh, const gm_pose *pose, gm_mesh *moved) {
     if (mesh->friction.is_on) {
         gmi_friction_place(mesh->pair, &moved->engagement, &moved->friction);
     }
-    moved->is_posed = moved->engagement.offset_shift != 0.0 || moved->engagement.phase_shift != 0.0;
+    set_kind(moved);
     for (int side = GM_DRIVE; side <= GM_COAST; ++side) {
         gmi_side_move(&moved->side[side], mesh->pair, &moved->engagement, side);
     }

@@ -9,6 +9,7 @@
  * slices, no quadrature error.
  */
 #include "penetration.h"
+#include "contact.h"
 #include "internal.h"
 
 #include <math.h>
@@ -470,10 +471,9 @@ SPECIALIZED gmi_line line_between(const side_view *view, const gmi_flank *pinion
 }
 
 SPECIALIZED void add_line(side_view *view, const gmi_flank *pinion, const gmi_flank *wheel, int k,
-                          int wanted, int slides, gmi_side_sum *side) {
+                          int wanted, int is_tilted, int slides, gmi_side_sum *side) {
     const gmi_interval part = gmi_line_clip(&view->ends, k);
     const gmi_side *prepared = view->prepared;
-    const int is_tilted = prepared->is_tilted;
     if (!(part.from < part.to) && !is_tilted) {
         return;
     }
@@ -533,17 +533,18 @@ SPECIALIZED void add_line(side_view *view, const gmi_flank *pinion, const gmi_fl
     }
 }
 
-/* slides: with friction; a constant at each call. view: with what is said of it there. */
+/* is_tilted: the axes are; slides: with friction; a constant at each call. view: with what is said of it there. */
 SPECIALIZED void follow_lines(const gm_pair *pair, const gmi_engagement *at,
                               const gmi_side *prepared, int side, const gm_position *position,
-                              int wanted, int slides, side_view *view, gmi_side_sum *total) {
+                              int wanted, int is_tilted, int slides, side_view *view,
+                              gmi_side_sum *total) {
     view->pair = pair;
     view->at = at;
     view->side = side;
     view->prepared = prepared;
-    gmi_lines_find(pair, at, side, position, &view->lines);
+    gmi_find_lines(pair, at, side, position, &view->lines);
     view->ends = gmi_line_ends_find(pair, at, &view->lines);
-    if (prepared->is_tilted) {
+    if (is_tilted) {
         /* That may bring a line in that is just outside, and its ends are not those of parallel axes. */
         const gmi_lines *lines = &view->lines;
         const double pitch = pair->transverse_base_pitch;
@@ -555,7 +556,7 @@ SPECIALIZED void follow_lines(const gm_pair *pair, const gmi_engagement *at,
         view->ends.face_from = HUGE_VAL;
         view->ends.face_to = -HUGE_VAL;
     }
-    if (prepared->is_tilted || wanted & GMI_TANGENT) {
+    if (is_tilted || wanted & GMI_TANGENT) {
         find_cuts(view);
     }
     view->wheel_reach = at->line_of_action + view->lines.delta - at->wheel_profile_start;
@@ -565,8 +566,9 @@ SPECIALIZED void follow_lines(const gm_pair *pair, const gmi_engagement *at,
     for (int k = view->lines.first; k <= view->lines.last; ++k) {
         const gmi_flank pinion = gmi_flank_of(prepared->pinion, teeth.pinion);
         const gmi_flank wheel = gmi_flank_of(prepared->wheel, teeth.wheel);
-        if (view->lines.delta + pinion.peak + wheel.peak + prepared->tilt_bound > 0.0) {
-            add_line(view, &pinion, &wheel, k, wanted, slides, total);
+        const double reach = is_tilted ? prepared->tilt_bound : 0.0;
+        if (view->lines.delta + pinion.peak + wheel.peak + reach > 0.0) {
+            add_line(view, &pinion, &wheel, k, wanted, is_tilted, slides, total);
         }
         teeth.pinion = gmi_next_tooth(teeth.pinion, teeth.step, pair->pinion.teeth);
         teeth.wheel = gmi_next_tooth(teeth.wheel, teeth.step, pair->wheel.teeth);
@@ -582,7 +584,7 @@ static void sum_lines(const gm_pair *pair, const gmi_engagement *at, const gmi_s
         view.rates = &tangent->rates;
         view.line_tangent = &tangent->line;
     }
-    follow_lines(pair, at, prepared, side, position, wanted, 0, &view, total);
+    follow_lines(pair, at, prepared, side, position, wanted, prepared->is_tilted, 0, &view, total);
 }
 
 static OWN_STACK void finish_friction(const side_view *view, int wanted,
@@ -680,14 +682,23 @@ void gmi_side_sum_sliding(const gm_pair *pair, const gmi_engagement *at, const g
     view.friction = friction;
     *total = gmi_no_contact();
     *friction = none;
-    follow_lines(pair, at, prepared, side, position, wanted, 1, &view, total);
+    follow_lines(pair, at, prepared, side, position, wanted, prepared->is_tilted, 1, &view, total);
 
     finish_friction(&view, wanted, total);
 }
 
 void gmi_side_sum_tables(const gm_pair *pair, const gmi_engagement *at, const gmi_side *prepared,
                          int side, const gm_position *position, int wanted, gmi_side_sum *total) {
-    sum_lines(pair, at, prepared, side, position, wanted, total, NULL);
+    side_view view;
+    if (prepared->is_tilted) {
+        sum_lines(pair, at, prepared, side, position, wanted, total, NULL);
+    } else if (wanted == GMI_SUM) {
+        follow_lines(pair, at, prepared, side, position, GMI_SUM, 0, 0, &view, total);
+    } else if (wanted == GMI_DERIVATIVES) {
+        follow_lines(pair, at, prepared, side, position, GMI_DERIVATIVES, 0, 0, &view, total);
+    } else {
+        sum_lines(pair, at, prepared, side, position, wanted, total, NULL);
+    }
 }
 
 void gmi_side_sum_tangent(const gm_mesh *mesh, int side, const gm_position *position,
