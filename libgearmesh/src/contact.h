@@ -57,8 +57,9 @@ void gmi_add_ideal_moments(const gm_pair *pair, const gmi_engagement *at, const 
 
 /*
  * Between ideal flanks the integrand is delta on all lines, so only their length within the limits counts. Line k covers
- * the line of action from start + k p_bt on over the length that a line advances by. The parts below the lower limit grow by p_bt from
- * line to line, and so do those above the upper limit: both are arithmetic series, which are subtracted from the whole.
+ * the line of action from start + k p_bt on over the length that a line advances by. The parts below the lower limit grow
+ * by p_bt from line to line, and so do those above the upper limit: both are arithmetic series, which are subtracted from
+ * the whole.
  */
 SPECIALIZED void gmi_sum_ideal(const gm_pair *pair, const gmi_engagement *at, int side,
                                const gm_position *position, int wanted, gmi_side_sum *total) {

@@ -689,12 +689,12 @@ void gmi_side_sum_sliding(const gm_pair *pair, const gmi_engagement *at, const g
 
 void gmi_side_sum_tables(const gm_pair *pair, const gmi_engagement *at, const gmi_side *prepared,
                          int side, const gm_position *position, int wanted, gmi_side_sum *total) {
+    /* Between parallel axes, what most calls want: a copy for each leaves all else out. */
+    const int is_tilted = prepared->is_tilted;
     side_view view;
-    if (prepared->is_tilted) {
-        sum_lines(pair, at, prepared, side, position, wanted, total, NULL);
-    } else if (wanted == GMI_SUM) {
+    if (wanted == GMI_SUM && !is_tilted) {
         follow_lines(pair, at, prepared, side, position, GMI_SUM, 0, 0, &view, total);
-    } else if (wanted == GMI_DERIVATIVES) {
+    } else if (wanted == GMI_DERIVATIVES && !is_tilted) {
         follow_lines(pair, at, prepared, side, position, GMI_DERIVATIVES, 0, 0, &view, total);
     } else {
         sum_lines(pair, at, prepared, side, position, wanted, total, NULL);
