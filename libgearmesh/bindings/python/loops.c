@@ -103,12 +103,34 @@ static int solve_static(const gm_mesh *mesh, size_t count, const double *loads,
 }
 
 /*
- * Double-helical pairs. coordinates as in evaluate_offsets(); each: [count][2] of both halves. The float of the pinion
- * begins where it was.
+ * Double-helical pairs. each: [count][2] of both halves. The float of the pinion begins where it was.
  */
-static int evaluate_halves(const gm_double_helical *gears, size_t count, const double *coordinates,
+static int evaluate_halves_at(const gm_double_helical *gears, size_t k, const gm_position *position,
+                              int wanted, double *apexes, gm_mesh_result *each,
+                              gm_mesh_result *results) {
+    apexes[k] = k > 0 && isfinite(apexes[k - 1]) ? apexes[k - 1] : 0.0;
+    return gm_double_helical_evaluate_at(gears, position, wanted, &apexes[k], &each[2 * k],
+                                         &results[k]);
+}
+
+static int evaluate_halves(const gm_double_helical *gears, size_t count, const gm_state *states,
                            int wanted, double *apexes, gm_mesh_result *each,
                            gm_mesh_result *results) {
+    int status = GM_OK;
+    for (size_t k = 0; k < count && status >= GM_OK; ++k) {
+        gm_position position;
+        status = gm_position_from_state(gm_mesh_pair(gears->half[0]), &states[k], &position);
+        if (status >= GM_OK) {
+            status = evaluate_halves_at(gears, k, &position, wanted, apexes, each, results);
+        }
+    }
+    return status < GM_OK ? status : GM_OK;
+}
+
+/* coordinates as in evaluate_offsets(). */
+static int evaluate_halves_offsets(const gm_double_helical *gears, size_t count,
+                                   const double *coordinates, int wanted, double *apexes,
+                                   gm_mesh_result *each, gm_mesh_result *results) {
     int status = GM_OK;
     for (size_t k = 0; k < count && status >= GM_OK; ++k) {
         const double *given = &coordinates[3 * k];
@@ -116,9 +138,7 @@ static int evaluate_halves(const gm_double_helical *gears, size_t count, const d
         status = gm_position_from_pinion_angle(gm_mesh_pair(gears->half[0]), given[0], given[1],
                                                given[2], &position);
         if (status >= GM_OK) {
-            apexes[k] = k > 0 && isfinite(apexes[k - 1]) ? apexes[k - 1] : 0.0;
-            status = gm_double_helical_evaluate_at(gears, &position, wanted, &apexes[k],
-                                                   &each[2 * k], &results[k]);
+            status = evaluate_halves_at(gears, k, &position, wanted, apexes, each, results);
         }
     }
     return status < GM_OK ? status : GM_OK;

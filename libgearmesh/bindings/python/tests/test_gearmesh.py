@@ -105,6 +105,21 @@ def test_arguments_broadcast_and_what_is_not_wanted_is_nan(mesh):
     assert np.isnan(result.force_by.pinion_angle).all()
 
 
+def test_results_go_where_an_earlier_call_put_them(pair, mesh):
+    states = states_about_contact(pair, 20)
+    coordinates = states[0], np.full(20, 54e-6)
+    place = mesh.evaluate(*states, want="derivatives")
+    for call, arguments in ((mesh.evaluate, states), (mesh.evaluate_offset, coordinates)):
+        expected = call(*arguments)
+        place.force = -1.0
+        assert call(*arguments, out=place) is place
+        assert place.tobytes() == expected.tobytes()
+
+    for wrong in (place[:10], place[::-1], np.empty(20), mesh.evaluate(0.0, 0.0), place.tolist()):
+        with pytest.raises(gearmesh.Error, match=r"out: must be what an earlier call returned, of the shape \[20\]"):
+            mesh.evaluate(*states, out=wrong)
+
+
 def test_derivatives_agree_with_differences(pair, mesh):
     states = np.array(states_about_contact(pair, 40))
     result = mesh.evaluate(*states, want="derivatives")
@@ -324,6 +339,35 @@ def test_halves_are_the_gears_of_a_single_helix_of_their_width_on_average():
     assert found.apex == pytest.approx(0.0, abs=1e-12)
 
 
+def test_halves_at_both_angles_carry_what_turns_the_shafts():
+    pair, error = gearmesh.Pair.half(GAP, **WHOLE), 8e-6
+    thick = gearmesh.Flanks(pair, "pinion", np.full((2, 2), error))
+    gears = gearmesh.DoubleHelical(pair, GAP, (thick, None), **LAW)
+    pinion_angle = np.linspace(0.0, 0.3, 40)
+    wheel_angle = (pair.pinion.base_radius * pinion_angle - 45e-6) / pair.wheel.base_radius
+    found = gears.evaluate(pinion_angle, wheel_angle, 2.0, 1.5, want="derivatives")
+
+    # The same torque in both halves, and as a Python program would find it: each half turned by the float along its helix.
+    assert (found.result.wheel_torque > 10.0).all()
+    assert found.halves.wheel_torque[:, 0] == pytest.approx(found.halves.wheel_torque[:, 1], rel=1e-6)
+    assert found.halves.pinion_torque.sum(axis=-1) == pytest.approx(found.result.pinion_torque, rel=1e-12)
+    shift = found.apex * np.tan(pair.base_helix_angle)
+    offset_rate = pair.pinion.base_radius * 2.0 - pair.wheel.base_radius * 1.5
+    meshes = gearmesh.Mesh(pair, thick, **LAW), gearmesh.Mesh(pair, **LAW)
+    for half, (mesh, sign) in enumerate(zip(meshes, (-1, 1))):
+        turned = mesh.evaluate_offset(pinion_angle, 45e-6 + sign * shift, offset_rate)
+        assert turned.wheel_torque == pytest.approx(found.halves.wheel_torque[:, half], rel=1e-6)
+
+    # Derivatives with the float: 1e-8 rad is 0.3 nm of flanks, kinks within that are rare.
+    step = 1e-8
+    ahead, behind = (gears.evaluate(pinion_angle, wheel_angle + way, 2.0, 1.5).result for way in (step, -step))
+    slope = (ahead.wheel_torque - behind.wheel_torque) / (2 * step)
+    assert np.median(np.abs(slope / found.result.wheel_torque_by.wheel_angle - 1)) < 1e-4
+
+    one = gears.evaluate(0.1, 0.1 * 23 / 31)
+    assert one.result.force.shape == () and one.halves.shape == (2,)
+
+
 def test_halves_of_elastic_teeth_carry_the_torque():
     gears = gearmesh.DoubleHelical(gearmesh.Pair.half(GAP, **WHOLE), GAP, law="elastic", stations=5)
     static = gears.static(np.linspace(0, 0.2, 5)[:, None], [150.0, 300.0])
@@ -381,6 +425,7 @@ def test_halves_that_cannot_be_are_refused():
         gearmesh.DoubleHelical(pair, np.nan, **LAW)
     gears = gearmesh.DoubleHelical(pair, GAP, **LAW)
     assert np.isnan(gears.evaluate_offset([0.0, np.nan, 0.0], 40e-6).result.force).tolist() == [False, True, False]
+    assert np.isnan(gears.evaluate([0.0, 0.0, 0.0], [0.0, 1.0, 0.0]).result.force).tolist() == [False, True, False]
     assert np.isnan(gears.static(0.0, [150.0, 0.0, 150.0]).offset).tolist() == [False, True, False]
 
 

@@ -11,7 +11,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from . import _records
 from ._gearmesh import ffi, lib
-from ._memory import LINE_LOADS, POINT, RESULT, Error, fill, stacked, status_text
+from ._memory import LINE_LOADS, POINT, RESULT, STATE, Error, fill, filled, stacked, status_text
 from ._records import LineLoadPoint, MeshResult
 from .flanks import Flanks
 from .mesh import LineLoadsResult, Mesh, check, pointer, shown, wanted
@@ -84,18 +84,26 @@ class DoubleHelical:
             self._struct.half[index] = mesh._struct
             self._struct.workspace[index] = mesh._workspace()
 
+    def evaluate(self, pinion_angle: ArrayLike, wheel_angle: ArrayLike, pinion_speed: ArrayLike = 0.0,
+                 wheel_speed: ArrayLike = 0.0, *, want: str | Iterable[str] = ()) -> DoubleHelicalResult:
+        """
+        Both halves at angles (rad) and speeds (rad/s) of both shafts, numbers or arrays that broadcast together; `want` and
+        NaN as in Mesh.evaluate().
+
+        The float of the pinion is found: `result.wheel_torque` (N m) is that of both halves, `halves.wheel_torque` [..., 2]
+        that of each, `apex` the float (m). Derivatives by the angles in `result` are those with the pinion floating.
+        """
+        states = filled(STATE, {"pinion_angle": pinion_angle, "wheel_angle": wheel_angle, "pinion_speed": pinion_speed,
+                                "wheel_speed": wheel_speed})
+        return self._evaluate(lib.evaluate_halves, "gm_state *", states, states.shape, want)
+
     def evaluate_offset(self, pinion_angle: ArrayLike, offset: ArrayLike, offset_rate: ArrayLike = 0.0, *,
                         want: str | Iterable[str] = ()) -> DoubleHelicalResult:
         """
-        Both halves at pinion angles (rad), x = r_bp phi_p - r_bw phi_w (m) and dx/dt (m/s), numbers or arrays that
-        broadcast together; `want` and NaN as in Mesh.evaluate().
+        The same for a solver that integrates x = r_bp phi_p - r_bw phi_w: pinion angle (rad), x (m) and dx/dt (m/s).
         """
-        states = stacked(pinion_angle, offset, offset_rate)
-        results, halves, apex = self._arrays(states.shape[:-1])
-        check(lib.evaluate_halves(self._struct, results.size, pointer("double *", states), wanted(want),
-                                  pointer("double *", apex), pointer("gm_mesh_result *", halves),
-                                  pointer("gm_mesh_result *", results)))
-        return DoubleHelicalResult(shown(results), shown(halves), apex[()])
+        coordinates = stacked(pinion_angle, offset, offset_rate)
+        return self._evaluate(lib.evaluate_halves_offsets, "double *", coordinates, coordinates.shape[:-1], want)
 
     def static(self, pinion_angle: ArrayLike, wheel_torque: ArrayLike) -> DoubleHelicalStaticResult:
         """Quasi-static equilibrium, as Mesh.static(): under a torque on the wheel (N m) that both halves carry."""
@@ -120,6 +128,13 @@ class DoubleHelical:
         if status < lib.GM_OK:
             raise Error(status_text(status))
         return LineLoadsResult(load[()], points[:load["points"]].view(LineLoadPoint))
+
+    def _evaluate(self, loop: Any, kind: str, given: NDArray[Any], shape: tuple[int, ...],
+                  want: str | Iterable[str]) -> DoubleHelicalResult:
+        results, halves, apex = self._arrays(shape)
+        check(loop(self._struct, results.size, pointer(kind, given), wanted(want), pointer("double *", apex),
+                   pointer("gm_mesh_result *", halves), pointer("gm_mesh_result *", results)))
+        return DoubleHelicalResult(shown(results), shown(halves), apex[()])
 
     @staticmethod
     def _arrays(shape: tuple[int, ...]) -> tuple[NDArray[Any], NDArray[Any], NDArray[np.float64]]:
