@@ -66,7 +66,8 @@ def best(call):
 def show_times():
     for title, *three in calls(100000):
         in_c, new, there = map(best, three)
-        print(f"{title}: C {in_c:.1f} ms, Python {new:.1f} ms, ratio {new / in_c:.2f}, into an array that is there {there / in_c:.2f}")
+        print(f"{title}: C {in_c:.1f} ms, Python {new:.1f} ms, ratio {new / in_c:.2f}, "
+              f"into an array that is there {there / in_c:.2f}")
 
 
 def run_counted():
