@@ -571,13 +571,22 @@ static inline void gmi_line_add_slopes(const gmi_line_tangent *tangent, double p
 /* The same at all depths; the result has f at both ends of the line at the depth of the walk. */
 void gmi_line_integrate_depths(const gmi_line *line, const gmi_grid *pinion, const gmi_grid *wheel,
                                gmi_depths *depths, gmi_line_sum *result);
+
+/* wanted: neither GMI_TANGENT nor GMI_DEPTHS. */
 void gmi_line_integrate(const gmi_line *line, const gmi_grid *pinion, const gmi_grid *wheel,
                         int wanted, gmi_line_sum *result);
+
+/* Sum and moments with the line's tangent: apart, as it takes more stack. */
+void gmi_line_integrate_tangent(const gmi_line *line, const gmi_grid *pinion, const gmi_grid *wheel,
+                                gmi_line_sum *result);
 
 /* ramp.c: gmi_line_integrate() with the ramps of both flanks, NULL = none, taken off. */
 void gmi_ramps_integrate(const gmi_line *line, const gmi_grid *pinion, const gmi_grid *wheel,
                          const gmi_tables *pinion_tables, const gmi_tables *wheel_tables,
                          int wanted, gmi_line_sum *result);
+void gmi_ramps_integrate_tangent(const gmi_line *line, const gmi_grid *pinion,
+                                 const gmi_grid *wheel, const gmi_tables *pinion_tables,
+                                 const gmi_tables *wheel_tables, gmi_line_sum *result);
 
 /* tilt.c: lines of contact between tilted axes. */
 

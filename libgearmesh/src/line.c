@@ -774,24 +774,24 @@ static OWN_STACK void walk_apart(walk_state at, const gmi_grid *first, const gmi
 }
 
 /* The walk of a tangent, apart from the others, which gcc then compiles as if it were not there. */
-static OWN_STACK void walk_tangent(walk_state at, const gmi_grid *first, const gmi_grid *second,
-                                   double end, int has_second, int same_faces,
-                                   gmi_line_sum *result) {
+static OWN_STACK void walk_tangent(const walk_state *at, const gmi_grid *first,
+                                   const gmi_grid *second, double end, int has_second,
+                                   int same_faces, gmi_line_sum *result) {
     enum { TANGENT = GMI_TANGENT | GMI_MOMENTS };
     gmi_line_tangent *tangent = result->tangent;
     const double per_place = 1.0 / first->face_rate;
     tangent_walk walked = {NOWHERE, {0.0, 0.0}, 0.0, {{0.0, 0.0}, {0.0, 0.0}, {0.0, 0.0}}};
     if (tangent->wheel_leads) {
-        begin_face_slope(&at.first, first, at.s, walked.face);
+        begin_face_slope(&at->first, first, at->s, walked.face);
     } else if (has_second) {
-        begin_face_slope(&at.second, second, at.s, walked.face);
+        begin_face_slope(&at->second, second, at->s, walked.face);
     }
     lead_tangent(tangent, tangent->wheel_leads, per_place, -first->face_base * per_place,
                  first->direction, second->direction);
     if (same_faces) {
-        walk(at, first, second, end, TANGENT, 1, &walked, result);
+        walk(*at, first, second, end, TANGENT, 1, &walked, result);
     } else {
-        walk(at, first, second, end, TANGENT, 0, &walked, result);
+        walk(*at, first, second, end, TANGENT, 0, &walked, result);
     }
 
     /* From places to t1. */
@@ -868,7 +868,7 @@ SPECIALIZED void walk_tables(const gmi_line *line, const gmi_grid *first, const 
     /* A walk of its own for each mask that solvers use: what is not wanted costs nothing in it. */
     enum { DAMPED = GMI_DERIVATIVES | GMI_CONTACT_DERIVATIVES };
     if (kind == WALK_TANGENT) {
-        walk_tangent(at, first, second, end, line->wheel != NULL, same_faces, result);
+        walk_tangent(&at, first, second, end, line->wheel != NULL, same_faces, result);
     } else if (kind == WALK_DEPTHS) {
         if (same_faces) {
             at.second.next_face = NO_CROSSING;
@@ -917,21 +917,21 @@ static OWN_STACK void integrate_wheel(const gmi_line *line, const gmi_grid *whee
     }
 }
 
-/* Apart, so that gcc compiles the other one as if this one were not there. */
-static OWN_STACK void integrate_tangent(const gmi_line *line, const gmi_grid *pinion,
-                                        const gmi_grid *wheel, int wanted, gmi_line_sum *result) {
+void gmi_line_integrate_tangent(const gmi_line *line, const gmi_grid *pinion, const gmi_grid *wheel,
+                                gmi_line_sum *result) {
+    enum { TANGENT = GMI_TANGENT | GMI_MOMENTS };
     gmi_line_tangent *tangent = line->tangent;
     const int wheel_leads = line->pinion == NULL && line->wheel != NULL;
+    result->sum = result->contact = result->sum_t1 = result->contact_t1 = 0.0;
     result->tangent = tangent;
     tangent->face[0] = tangent->face[1] = 0.0; /* without a table */
     lead_tangent(tangent, wheel_leads, 1.0, 0.0, 0.0, 0.0);
-    if (wheel_leads) {
-        const gmi_line led = led_by_wheel(line);
-        walk_tables(&led, wheel, &ideal_grid, wanted, WALK_TANGENT, result);
-    } else if (line->pinion != NULL) {
-        walk_tables(line, pinion, wheel, wanted, WALK_TANGENT, result);
+    if (line->pinion == NULL && line->wheel == NULL) {
+        integrate_ideal(line, TANGENT, result);
     } else {
-        integrate_ideal(line, wanted, result);
+        const gmi_line led = wheel_leads ? led_by_wheel(line) : *line;
+        walk_tables(&led, wheel_leads ? wheel : pinion, wheel_leads ? &ideal_grid : wheel, TANGENT,
+                    WALK_TANGENT, result);
     }
     finish_tangent(tangent);
 }
@@ -972,11 +972,6 @@ void gmi_line_integrate(const gmi_line *line, const gmi_grid *pinion, const gmi_
     result->sum_t1 = result->contact_t1 = 0.0;
     if (wanted & GMI_CONTACT_DERIVATIVES) {
         result->roots = result->roots_pinion = result->roots_wheel = 0.0;
-    }
-
-    if (wanted & GMI_TANGENT) {
-        integrate_tangent(line, pinion, wheel, wanted, result);
-        return;
     }
 
     /* The flank with a table leads; if both have one, the pinion. */

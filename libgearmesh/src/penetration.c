@@ -575,18 +575,6 @@ SPECIALIZED void follow_lines(const gm_pair *pair, const gmi_engagement *at,
     }
 }
 
-static void sum_lines(const gm_pair *pair, const gmi_engagement *at, const gmi_side *prepared,
-                      int side, const gm_position *position, int wanted, gmi_side_sum *total,
-                      gmi_side_tangent *tangent) {
-    side_view view;
-    view.tangent = tangent;
-    if (tangent != NULL) {
-        view.rates = &tangent->rates;
-        view.line_tangent = &tangent->line;
-    }
-    follow_lines(pair, at, prepared, side, position, wanted, prepared->is_tilted, 0, &view, total);
-}
-
 static OWN_STACK void finish_friction(const side_view *view, int wanted,
                                       const gmi_side_sum *total) {
     gmi_side_force force;
@@ -697,8 +685,21 @@ void gmi_side_sum_tables(const gm_pair *pair, const gmi_engagement *at, const gm
     } else if (wanted == GMI_DERIVATIVES && !is_tilted) {
         follow_lines(pair, at, prepared, side, position, GMI_DERIVATIVES, 0, 0, &view, total);
     } else {
-        sum_lines(pair, at, prepared, side, position, wanted, total, NULL);
+        follow_lines(pair, at, prepared, side, position, wanted & ~GMI_TANGENT, is_tilted, 0, &view,
+                     total);
     }
+}
+
+/* Apart, as it takes more stack. */
+static OWN_STACK void follow_tangent(const gm_mesh *mesh, int side, const gm_position *position,
+                                     gmi_side_sum *total, gmi_side_tangent *tangent) {
+    const gmi_side *prepared = &mesh->side[side];
+    side_view view;
+    view.tangent = tangent;
+    view.rates = &tangent->rates;
+    view.line_tangent = &tangent->line;
+    follow_lines(mesh->pair, &mesh->engagement, prepared, side, position,
+                 GMI_TANGENT | GMI_MOMENTS, prepared->is_tilted, 0, &view, total);
 }
 
 void gmi_side_sum_tangent(const gm_mesh *mesh, int side, const gm_position *position,
@@ -713,8 +714,7 @@ void gmi_side_sum_tangent(const gm_mesh *mesh, int side, const gm_position *posi
     }
     *total = gmi_no_contact();
     if (!gmi_side_is_clear(&mesh->engagement, &mesh->side[side], side, position->offset)) {
-        sum_lines(mesh->pair, &mesh->engagement, &mesh->side[side], side, position,
-                  GMI_TANGENT | GMI_MOMENTS, total, tangent);
+        follow_tangent(mesh, side, position, total, tangent);
     }
 }
 

@@ -20,7 +20,14 @@ static inline int gmi_side_is_clear(const gmi_engagement *at, const gmi_side *pr
 static inline void gmi_flanks_integrate(const gmi_side *prepared, const gmi_grid *pinion_grid,
                                         const gmi_grid *wheel_grid, const gmi_line *line,
                                         int wanted, gmi_line_sum *sum) {
-    if (prepared->ramps > 0) {
+    if (wanted & GMI_TANGENT) {
+        if (prepared->ramps > 0) {
+            gmi_ramps_integrate_tangent(line, pinion_grid, wheel_grid, prepared->pinion,
+                                        prepared->wheel, sum);
+        } else {
+            gmi_line_integrate_tangent(line, pinion_grid, wheel_grid, sum);
+        }
+    } else if (prepared->ramps > 0) {
         gmi_ramps_integrate(line, pinion_grid, wheel_grid, prepared->pinion, prepared->wheel,
                             wanted, sum);
     } else {

@@ -19,11 +19,18 @@ typedef struct trace {
 
 /* The ramps that take something off the line. */
 typedef struct traces {
-    trace list[2 * GM_FLANK_RAMPS_MAX];
-    short of[2 * GM_FLANK_RAMPS_MAX]; /* which ramps of their flank they are */
-    int pinion;                       /* the first ones; the rest are the wheel's */
+    trace *list; /* NULL = found anew each time: a tangent has no stack to spare for them */
+    unsigned char of[2 * GM_FLANK_RAMPS_MAX]; /* which ramps of their flank they are */
+    int pinion;                               /* the first ones; the rest are the wheel's */
     int all;
 } traces;
+
+/* One flank, as the line runs along it. */
+typedef struct flank_along {
+    const gmi_tables *tables;
+    const gmi_grid *grid;
+    double profile; /* v2 at t1 = 0 */
+} flank_along;
 
 /* What a ramp takes off more per cell of v2 (m). */
 static double per_profile_of(const gm_flank_ramp *ramp, const gmi_grid *grid) {
@@ -38,30 +45,39 @@ static trace trace_of(const gm_flank_ramp *ramp, const gmi_grid *grid, double pr
     return along;
 }
 
+/* Trace k of those found; of this flank. */
+SPECIALIZED trace trace_at(const traces *found, int k, const flank_along *flank, int is_kept) {
+    return is_kept ? found->list[k]
+                   : trace_of(&flank->tables->ramps[found->of[k]], flank->grid, flank->profile);
+}
+
 static double height(const trace *ramp, double t1) {
     return ramp->at_zero + ramp->per_t1 * t1;
 }
 
-/* profile: v2 of this flank at t1 = 0. */
-static void add_traces(traces *found, const gmi_tables *tables, const gmi_grid *grid,
-                       double profile, double from, double to) {
-    const int count = tables == NULL ? 0 : tables->ramp_count;
+SPECIALIZED void add_traces(traces *found, const flank_along *flank, double from, double to,
+                            int is_kept) {
+    const int count = flank->tables == NULL ? 0 : flank->tables->ramp_count;
     for (int k = 0; k < count; ++k) {
-        const trace along = trace_of(&tables->ramps[k], grid, profile);
+        const trace along = trace_of(&flank->tables->ramps[k], flank->grid, flank->profile);
         if (height(&along, from) > 0.0 || height(&along, to) > 0.0) {
-            found->list[found->all] = along;
-            found->of[found->all] = (short)k;
+            if (is_kept) {
+                found->list[found->all] = along;
+            }
+            found->of[found->all] = (unsigned char)k;
             ++found->all;
         }
     }
 }
 
 /* The first edge behind `from`, or `to`. */
-static double next_edge(const traces *ramps, double from, double to) {
+SPECIALIZED double next_edge(const traces *ramps, const flank_along flanks[2], double from,
+                             double to, int is_kept) {
     double next = to;
     for (int k = 0; k < ramps->all; ++k) {
         /* Not a finite number if the line runs along it. */
-        const double edge = -ramps->list[k].at_zero / ramps->list[k].per_t1;
+        const trace ramp = trace_at(ramps, k, &flanks[k >= ramps->pinion], is_kept);
+        const double edge = -ramp.at_zero / ramp.per_t1;
         if (edge > from && edge < next) {
             next = edge;
         }
@@ -74,22 +90,21 @@ static double next_edge(const traces *ramps, double from, double to) {
  * middle it does all along. Returns their sum by v2 of the flank (m), and *per_face by v1, if wanted.
  */
 SPECIALIZED double take_off(gmi_line *part, const traces *ramps, int first, int last,
-                            const gmi_tables *tables, const gmi_grid *grid, int wanted,
-                            double *per_face) {
+                            const flank_along *flank, int wanted, int is_kept, double *per_face) {
     const double middle = 0.5 * (part->from + part->to);
     double per_profile = 0.0;
     *per_face = 0.0;
     for (int k = first; k < last; ++k) {
-        const trace *ramp = &ramps->list[k];
-        if (!(height(ramp, middle) > 0.0)) {
+        const trace ramp = trace_at(ramps, k, flank, is_kept);
+        if (!(height(&ramp, middle) > 0.0)) {
             continue;
         }
-        part->overlap -= height(ramp, part->from);
-        part->half_slope -= 0.5 * ramp->per_t1;
+        part->overlap -= height(&ramp, part->from);
+        part->half_slope -= 0.5 * ramp.per_t1;
         if (wanted & (GMI_DERIVATIVES | GMI_TANGENT)) {
-            const gm_flank_ramp *taken = &tables->ramps[ramps->of[k]];
-            per_profile += per_profile_of(taken, grid);
-            *per_face += taken->per_t1 * (grid->face_scale / grid->face_rate);
+            const gm_flank_ramp *taken = &flank->tables->ramps[ramps->of[k]];
+            per_profile += per_profile_of(taken, flank->grid);
+            *per_face += taken->per_t1 * (flank->grid->face_scale / flank->grid->face_rate);
         }
     }
     return per_profile;
@@ -122,16 +137,20 @@ SPECIALIZED void add_part(const gmi_line_sum *part, int wanted, gmi_line_sum *re
     }
 }
 
-/* wanted: a constant where it matters. */
+/* wanted: a constant where it matters; list: where traces are kept, or NULL. */
 SPECIALIZED void follow_edges(const gmi_line *line, const gmi_grid *pinion, const gmi_grid *wheel,
                               const gmi_tables *pinion_tables, const gmi_tables *wheel_tables,
-                              int wanted, gmi_line_sum *result) {
+                              int wanted, trace *list, gmi_line_sum *result) {
     const gmi_line_sum none = {.sum = 0.0};
+    const int is_kept = list != NULL;
+    const flank_along flanks[2] = {{pinion_tables, pinion, line->pinion_profile},
+                                   {wheel_tables, wheel, line->wheel_profile}};
     traces ramps;
+    ramps.list = list;
     ramps.all = 0;
-    add_traces(&ramps, pinion_tables, pinion, line->pinion_profile, line->from, line->to);
+    add_traces(&ramps, &flanks[GM_PINION], line->from, line->to, is_kept);
     ramps.pinion = ramps.all;
-    add_traces(&ramps, wheel_tables, wheel, line->wheel_profile, line->from, line->to);
+    add_traces(&ramps, &flanks[GM_WHEEL], line->from, line->to, is_kept);
 
     /* From edge to edge: between two of them all ramps together are one straight line. */
     *result = none;
@@ -142,18 +161,22 @@ SPECIALIZED void follow_edges(const gmi_line *line, const gmi_grid *pinion, cons
         const double gone = from - line->from; /* the parabola as seen from here */
         part.overlap += gone * (2.0 * line->half_slope + gone * line->curvature);
         part.half_slope += gone * line->curvature;
-        part.to = next_edge(&ramps, from, line->to);
+        part.to = next_edge(&ramps, flanks, from, line->to, is_kept);
         double pinion_face, wheel_face;
-        const double by_pinion =
-            take_off(&part, &ramps, 0, ramps.pinion, pinion_tables, pinion, wanted, &pinion_face);
-        const double by_wheel = take_off(&part, &ramps, ramps.pinion, ramps.all, wheel_tables,
-                                         wheel, wanted, &wheel_face);
+        const double by_pinion = take_off(&part, &ramps, 0, ramps.pinion, &flanks[GM_PINION],
+                                          wanted, is_kept, &pinion_face);
+        const double by_wheel = take_off(&part, &ramps, ramps.pinion, ramps.all, &flanks[GM_WHEEL],
+                                         wanted, is_kept, &wheel_face);
 
         /* Tables and straight line as one; the slope of the ramps counts where the flanks touch. */
         if (wanted & GMI_TANGENT) {
             add_ramp_slopes(line->tangent, -by_pinion, -by_wheel, -wheel_face);
         }
-        gmi_line_integrate(&part, pinion, wheel, wanted, &sum);
+        if (wanted & GMI_TANGENT) {
+            gmi_line_integrate_tangent(&part, pinion, wheel, &sum);
+        } else {
+            gmi_line_integrate(&part, pinion, wheel, wanted, &sum);
+        }
         if (wanted & GMI_TANGENT) {
             add_ramp_slopes(line->tangent, by_pinion, by_wheel, wheel_face);
         }
@@ -179,14 +202,24 @@ SPECIALIZED void follow_edges(const gmi_line *line, const gmi_grid *pinion, cons
 static OWN_STACK void integrate_sum(const gmi_line *line, const gmi_grid *pinion,
                                     const gmi_grid *wheel, const gmi_tables *pinion_tables,
                                     const gmi_tables *wheel_tables, gmi_line_sum *result) {
-    follow_edges(line, pinion, wheel, pinion_tables, wheel_tables, GMI_SUM, result);
+    trace list[2 * GM_FLANK_RAMPS_MAX];
+    follow_edges(line, pinion, wheel, pinion_tables, wheel_tables, GMI_SUM, list, result);
 }
 
 static OWN_STACK void integrate_all(const gmi_line *line, const gmi_grid *pinion,
                                     const gmi_grid *wheel, const gmi_tables *pinion_tables,
                                     const gmi_tables *wheel_tables, int wanted,
                                     gmi_line_sum *result) {
-    follow_edges(line, pinion, wheel, pinion_tables, wheel_tables, wanted, result);
+    trace list[2 * GM_FLANK_RAMPS_MAX];
+    follow_edges(line, pinion, wheel, pinion_tables, wheel_tables, wanted & ~GMI_TANGENT, list,
+                 result);
+}
+
+void gmi_ramps_integrate_tangent(const gmi_line *line, const gmi_grid *pinion,
+                                 const gmi_grid *wheel, const gmi_tables *pinion_tables,
+                                 const gmi_tables *wheel_tables, gmi_line_sum *result) {
+    follow_edges(line, pinion, wheel, pinion_tables, wheel_tables, GMI_TANGENT | GMI_MOMENTS, NULL,
+                 result);
 }
 
 void gmi_ramps_integrate(const gmi_line *line, const gmi_grid *pinion, const gmi_grid *wheel,
