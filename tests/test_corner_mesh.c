@@ -565,6 +565,7 @@ static void friction_of_a_tip_follows_each_motion(void) {
             .wheel_speed = gm_test_uniform(&seed, -2.0, 2.0),
             .wheel_sign = i % 2 == 0 ? 1.0 : -1.0,
             .line_of_action = 3.0,
+            .rolling = {.value = 1.0},
             .sideways = {gm_test_uniform(&seed, -1.0, 1.0), gm_test_uniform(&seed, -1.0, 1.0)},
             .forward = {gm_test_uniform(&seed, -1.0, 1.0), gm_test_uniform(&seed, -1.0, 1.0)}};
         const gmi_part_force part = {

@@ -29,6 +29,7 @@ static gm_motion moved(const gm_pair *pair, const gm_motion *motion, int which, 
         const double arc = coordinate == GM_PINION_ANGLE ? r_bp * by : -r_bw * by;
         if (is_rate) {
             result.position.offset_rate += arc;
+            result.position.pinion_speed += coordinate == GM_PINION_ANGLE ? by : 0.0;
         } else {
             result.position.offset += arc;
             result.position.phase += coordinate == GM_PINION_ANGLE ? arc : 0.0;
@@ -73,9 +74,18 @@ static void difference(const gm_mesh *mesh, const gm_motion *motion, int which, 
     }
 }
 
+/* All three laws of friction; v0 such that the coefficient bends where flanks slide. */
+static void add_friction(uint64_t *seed, int i, gm_mesh_params *law) {
+    law->friction_law = i % 3;
+    law->friction_coefficient = 0.1;
+    law->friction_speed = gm_test_uniform(seed, 0.01, 0.2);
+    law->oil_viscosity = 0.01;
+    law->roughness = 1e-6;
+}
+
 /* In contact for the most part; damped in every other case, and simple in some. */
-static int random_motion(const random_case *c, uint64_t *seed, int i, double tilt, gm_mesh **mesh,
-                         plain_mesh *room, gm_motion *motion) {
+static int random_motion(const random_case *c, uint64_t *seed, int i, double tilt, int slides,
+                         gm_mesh **mesh, plain_mesh *room, gm_motion *motion) {
     const gm_pair *pair = &c->pair;
     const double m = pair->normal_module;
     const int may_be_parallel = c->use[0] == NULL && c->use[1] == NULL;
@@ -87,6 +97,9 @@ static int random_motion(const random_case *c, uint64_t *seed, int i, double til
     law.stiffness = 1e8;
     law.damping = i % 2 == 0 ? 0.0 : 1e5;
     law.model = i % 11 == 0 ? GM_MODEL_SIMPLE : GM_MODEL_3D;
+    if (slides) {
+        add_friction(seed, i, &law);
+    }
     const int status =
         gm_mesh_init(mesh, &law, pair, c->use[0], c->use[1], room->memory, sizeof room->memory);
 
@@ -108,6 +121,11 @@ static int random_motion(const random_case *c, uint64_t *seed, int i, double til
     const double x = side * (0.5 * pair->backlash + gm_test_uniform(seed, 0.0, 12e-3) * m);
     (void)gm_position_from_pinion_angle(pair, gm_test_uniform(seed, 0.0, 6.0), x,
                                         gm_test_uniform(seed, -1e-3, 1e-3) * m, &motion->position);
+    if (slides) { /* either way round, and next to rest */
+        const double fastest = i % 7 == 0 ? 0.1 : 100.0;
+        motion->position.pinion_speed =
+            gm_test_uniform(seed, -fastest, fastest) * 0.1 / pair->center_distance;
+    }
     return status;
 }
 
@@ -115,8 +133,41 @@ static int random_motion(const random_case *c, uint64_t *seed, int i, double til
  * Differences of fourth order with two steps: where they disagree there is a kink between, or the law of another cell. The
  * tolerance is 1e-7 of the largest derivative of the same kind over the sizes of the gears, and what is left of 16 digits.
  */
-static void tangent_is_that_of_differences(void) {
-    uint64_t seed = UINT64_C(301);
+static void compare_with_differences(const gm_mesh *mesh, const gm_motion *motion,
+                                     const gm_tangent *tangent, int i, int *compared, int *kinks) {
+    const gm_pair *pair = gm_mesh_pair(mesh);
+    const double m = pair->normal_module;
+    for (int which = 0; which < ALL; ++which) {
+        const int q = which % GM_COORDINATES;
+        const int is_rate = which >= GM_COORDINATES;
+        const int is_turn = q == GM_PINION_ANGLE || q == GM_WHEEL_ANGLE;
+        const double arm = q >= GM_SKEW ? pair->face_width + pair->center_distance
+                           : is_turn    ? pair->center_distance
+                                        : 1.0;
+        const double h = (is_rate ? 1e-4 : 2e-6) * m / arm;
+        double exact[VALUES], coarse[VALUES], fine[VALUES];
+        int status = GM_OK;
+        pack(is_rate ? &tangent->wrench_by_rate[q] : &tangent->wrench_by[q],
+             is_rate ? tangent->force_by_rate[q] : tangent->force_by[q], exact);
+        difference(mesh, motion, which, h, coarse, &status);
+        difference(mesh, motion, which, 0.4 * h, fine, &status);
+        for (int k = 0; k < VALUES && status == GM_OK; ++k) {
+            const int is_moment = k > 0 && (k - 1) / 3 % 2 == 1;
+            const double lever = is_moment ? pair->center_distance + pair->face_width : 1.0;
+            const double size = (is_rate ? 1e5 : 1e8) * arm * lever;
+            const double rounding = 1e-15 * 1e8 * pair->center_distance * lever / h;
+            if (fabs(coarse[k] - fine[k]) > 3e-8 * size + 4.0 * rounding) {
+                ++*kinks;
+                continue;
+            }
+            ++*compared;
+            gm_test_context("case %d, value %d by %d", i, k, which);
+            GM_ASSERT_ABS(exact[k], fine[k], 1e-7 * size + 10.0 * rounding);
+        }
+    }
+}
+
+static void compare_random_tangents(uint64_t seed, int slides) {
     int compared = 0, kinks = 0;
     for (int i = 0; i < 300; ++i) {
         random_case c;
@@ -127,45 +178,114 @@ static void tangent_is_that_of_differences(void) {
         gm_test_context("case %d", i);
         GM_ASSERT_INT(random_mixed_case_make(&c, &seed, i), GM_OK);
         double here[VALUES];
-        if (random_motion(&c, &seed, i, 0.02, &mesh, &room, &motion) == GM_OK &&
+        if (random_motion(&c, &seed, i, 0.02, slides, &mesh, &room, &motion) == GM_OK &&
             evaluate(mesh, &motion, here) == GM_OK && here[0] != 0.0 &&
             GM_ASSERT_INT(gm_mesh_tangent(mesh, &motion, &tangent), GM_OK)) {
-            const double m = c.pair.normal_module;
-            for (int which = 0; which < ALL; ++which) {
-                const int q = which % GM_COORDINATES;
-                const int is_rate = which >= GM_COORDINATES;
-                const int is_turn = q == GM_PINION_ANGLE || q == GM_WHEEL_ANGLE;
-                const double arm = q >= GM_SKEW ? c.pair.face_width + c.pair.center_distance
-                                   : is_turn    ? c.pair.center_distance
-                                                : 1.0;
-                const double h = (is_rate ? 1e-4 : 2e-6) * m / arm;
-                double exact[VALUES], coarse[VALUES], fine[VALUES];
-                int status = GM_OK;
-                pack(is_rate ? &tangent.wrench_by_rate[q] : &tangent.wrench_by[q],
-                     is_rate ? tangent.force_by_rate[q] : tangent.force_by[q], exact);
-                difference(mesh, &motion, which, h, coarse, &status);
-                difference(mesh, &motion, which, 0.4 * h, fine, &status);
-                for (int k = 0; k < VALUES && status == GM_OK; ++k) {
-                    const int is_moment = k > 0 && (k - 1) / 3 % 2 == 1;
-                    const double lever =
-                        is_moment ? c.pair.center_distance + c.pair.face_width : 1.0;
-                    const double size = (is_rate ? 1e5 : 1e8) * arm * lever;
-                    const double rounding = 1e-15 * 1e8 * c.pair.center_distance * lever / h;
-                    if (fabs(coarse[k] - fine[k]) > 3e-8 * size + 4.0 * rounding) {
-                        ++kinks;
-                        continue;
-                    }
-                    ++compared;
-                    gm_test_context("case %d, value %d by %d", i, k, which);
-                    GM_ASSERT_ABS(exact[k], fine[k], 1e-7 * size + 10.0 * rounding);
-                }
-            }
+            compare_with_differences(mesh, &motion, &tangent, i, &compared, &kinks);
         }
         random_case_free(&c);
     }
     gm_test_context("all cases: %d compared, %d kinks", compared, kinks);
     GM_ASSERT(compared > 20000);
     GM_ASSERT(kinks < compared / 10);
+}
+
+static void tangent_is_that_of_differences(void) {
+    compare_random_tangents(UINT64_C(301), 0);
+}
+
+static void tangent_with_friction_is_that_of_differences(void) {
+    compare_random_tangents(UINT64_C(303), 1);
+}
+
+/* The change of a cross product r x f by dr. */
+static void add_cross(const double r[3], const double f[3], double sum[3]) {
+    for (int k = 0; k < 3; ++k) {
+        const int l = (k + 1) % 3, m = (k + 2) % 3;
+        sum[k] += r[l] * f[m] - r[m] * f[l];
+    }
+}
+
+/* What acts on one gear acts on the other, friction too, wherever the wheel is moved: all moments about one point stay 0. */
+static void forces_stay_in_balance_with_friction(void) {
+    uint64_t seed = UINT64_C(304);
+    int compared = 0;
+    for (int i = 0; i < 100; ++i) {
+        random_case c;
+        plain_mesh room;
+        gm_mesh *mesh;
+        gm_motion motion;
+        gm_tangent tangent;
+        gm_mesh_result r;
+        gm_test_context("case %d", i);
+        GM_ASSERT_INT(random_mixed_case_make(&c, &seed, i), GM_OK);
+        if (random_motion(&c, &seed, i, 0.02, 1, &mesh, &room, &motion) == GM_OK &&
+            gm_mesh_evaluate_posed(mesh, &motion, GM_WANT_WRENCH, NULL, &r) == GM_OK &&
+            r.force != 0.0 && GM_ASSERT_INT(gm_mesh_tangent(mesh, &motion, &tangent), GM_OK)) {
+            const double apart = c.pair.wheel.sign * c.pair.center_distance;
+            const double axis[3] = {apart + motion.pose.center_distance_change, motion.pose.offset,
+                                    0.0};
+            const double size = 1e8 * c.pair.center_distance * c.pair.center_distance;
+            for (int which = 0; which < ALL; ++which) {
+                const int q = which % GM_COORDINATES;
+                const gm_wrench *by =
+                    which < GM_COORDINATES ? &tangent.wrench_by[q] : &tangent.wrench_by_rate[q];
+                const double moved[3] = {which == GM_CENTER_DISTANCE_CHANGE, which == GM_OFFSET,
+                                         0.0};
+                double left[3];
+                for (int k = 0; k < 3; ++k) {
+                    GM_ASSERT_ABS(by->pinion_force[k] + by->wheel_force[k], 0.0, 1e-12 * size);
+                    left[k] = by->pinion_moment[k] + by->wheel_moment[k];
+                }
+                add_cross(axis, by->wheel_force, left);
+                add_cross(moved, r.wrench.wheel_force, left);
+                for (int k = 0; k < 3; ++k) {
+                    GM_ASSERT_ABS(left[k], 0.0, 1e-11 * size);
+                }
+            }
+            ++compared;
+        }
+        random_case_free(&c);
+    }
+    gm_test_context("all cases");
+    GM_ASSERT(compared > 50);
+}
+
+/* The wrench of friction does not depend on the way to it: as friction ends, so does what it adds, while axes tilt too. */
+static void friction_ends_without_a_jump(void) {
+    uint64_t seed = UINT64_C(305);
+    int compared = 0;
+    for (int i = 1; i < 60; i += 2) { /* damped */
+        random_case c;
+        plain_mesh room[2];
+        gm_mesh *mesh[2];
+        gm_motion motion;
+        gm_test_context("case %d", i);
+        GM_ASSERT_INT(random_mixed_case_make(&c, &seed, i), GM_OK);
+        const int status = random_motion(&c, &seed, i, 0.02, 0, &mesh[0], &room[0], &motion);
+        gm_mesh_params law;
+        gm_mesh_params_default(&law);
+        law.stiffness = 1e8;
+        law.damping = 1e5;
+        law.friction_coefficient = 1e-13;
+        motion.position.pinion_speed = 10.0;
+        double values[2][VALUES];
+        if (status == GM_OK && i % 11 != 0 &&
+            gm_mesh_init(&mesh[1], &law, &c.pair, c.use[0], c.use[1], room[1].memory,
+                         sizeof room[1].memory) == GM_OK &&
+            evaluate(mesh[0], &motion, values[0]) == GM_OK && values[0][0] != 0.0) {
+            GM_ASSERT_INT(evaluate(mesh[1], &motion, values[1]), GM_OK);
+            const double lever = c.pair.center_distance + c.pair.face_width;
+            for (int k = 0; k < VALUES; ++k) {
+                GM_ASSERT_ABS(values[1][k], values[0][k],
+                              1e-11 * fabs(values[0][0]) * fmax(1.0, lever));
+            }
+            ++compared;
+        }
+        random_case_free(&c);
+    }
+    gm_test_context("all cases");
+    GM_ASSERT(compared > 10);
 }
 
 /* Parallel axes of which one begins to tilt: the power of the wrench is that of the force at each point. */
@@ -180,7 +300,7 @@ static void power_of_a_tilt_is_that_of_its_points(void) {
         gm_mesh_result still, moving;
         gm_test_context("case %d", i);
         GM_ASSERT_INT(random_mixed_case_make(&c, &seed, i), GM_OK);
-        const int status = random_motion(&c, &seed, 2 * i + 1, 0.0, &mesh, &room, &motion);
+        const int status = random_motion(&c, &seed, 2 * i + 1, 0.0, 0, &mesh, &room, &motion);
         const gm_pose rate = motion.pose_rate;
         memset(&motion.pose_rate, 0, sizeof motion.pose_rate);
         motion.position.offset_rate = 0.0;
@@ -250,6 +370,9 @@ int main(int argc, char **argv) {
         GM_TEST(power_of_a_tilt_is_that_of_its_points),
         GM_TEST(what_has_no_tangent_is_refused),
         GM_TEST(tangent_is_that_of_differences),
+        GM_TEST(tangent_with_friction_is_that_of_differences),
+        GM_TEST(forces_stay_in_balance_with_friction),
+        GM_TEST(friction_ends_without_a_jump),
     };
     return gm_test_main("unit.tangent", tests, GM_TEST_COUNT(tests), argc, argv);
 }

@@ -270,7 +270,6 @@ static void hold_flanks(const view *v, double middle, gmi_line *part, int held[2
 static OWN_STACK void begin_tangent(view *v, const whole_line *whole, const int held[2]) {
     gmi_line_tangent *tangent = &v->tangent;
     memset(tangent, 0, sizeof *tangent);
-    tangent->speed[0] = 1.0; /* so that what flows is the touching part */
     tangent->by[GMI_BY_DELTA][0] = 1.0;
     if (v->mesh->engagement.is_tilted) {
         tangent->by[GMI_BY_DELTA][0] = whole->gain;
@@ -315,9 +314,9 @@ static part_force force_of(const view *v, const gmi_line_sum *sum) {
         const gmi_line_tangent *tangent = &v->tangent;
         for (int k = GMI_BY_ORIGIN; k <= GMI_BY_DELTA; ++k) {
             force.whole_by[k] =
-                stiffness * tangent->sum_by[k][0] + viscous * tangent->flow_by[k][0];
+                stiffness * tangent->sum_by[k][0] + viscous * tangent->contact_by[k][0];
             force.by_t1_by[k] =
-                stiffness * tangent->sum_by[k][1] + viscous * tangent->flow_by[k][1];
+                stiffness * tangent->sum_by[k][1] + viscous * tangent->contact_by[k][1];
         }
     }
     return force;
@@ -374,7 +373,7 @@ static gmi_part_force force_with_moments(const view *v, const whole_line *whole,
     double moment_by[2] = {load->whole, 0.0}, touching_by[2] = {0.0, 0.0};
     for (int k = GMI_BY_ORIGIN; k <= GMI_BY_DELTA && v->wanted & GMI_DERIVATIVES; ++k) {
         moment_by[k] += origin * load->whole_by[k] + advance * load->by_t1_by[k];
-        touching_by[k] = v->tangent.flow_by[k][0];
+        touching_by[k] = v->tangent.contact_by[k][0];
     }
 
     /* By angles and speeds. */
@@ -469,8 +468,8 @@ static void add_end(gmi_line_tangent *tangent, double sign, double t1, double f,
         const double moved = sign * end_by[k];
         tangent->sum_by[k][0] += f * moved;
         tangent->sum_by[k][1] += f * moved * t1;
-        tangent->flow_by[k][0] += moved;
-        tangent->flow_by[k][1] += moved * t1;
+        tangent->contact_by[k][0] += moved;
+        tangent->contact_by[k][1] += moved * t1;
     }
 }
 
@@ -490,8 +489,8 @@ static OWN_STACK void add_sums(view *v, const whole_line *whole, const gmi_line_
         const gmi_line_tangent *tangent = &v->tangent;
         side->by_origin += tangent->sum_by[GMI_BY_ORIGIN][0];
         side->by_delta += tangent->sum_by[GMI_BY_DELTA][0];
-        side->contact_by_origin += tangent->flow_by[GMI_BY_ORIGIN][0];
-        side->contact_by_delta += tangent->flow_by[GMI_BY_DELTA][0];
+        side->contact_by_origin += tangent->contact_by[GMI_BY_ORIGIN][0];
+        side->contact_by_delta += tangent->contact_by[GMI_BY_DELTA][0];
     }
     for (int role = GM_PINION; role <= GM_WHEEL; ++role) {
         if (is_beyond[role]) {

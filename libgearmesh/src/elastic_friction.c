@@ -29,6 +29,7 @@ static point_sums sum_points(const gm_mesh *mesh, const gmi_sliding *sliding,
                              const gmi_elastic_work *work) {
     point_sums sums = {.force = 0.0};
     const double per_width = 1.0 / mesh->pair->face_width;
+    const gmi_rolling_by rolling = gmi_rolling_differentiate(sliding);
     for (int p = 0; p < 2 * work->slots; ++p) {
         const gmi_point_friction at = friction_at(mesh, sliding, work, p);
         const double friction = at.share * work->force[p];
@@ -37,7 +38,10 @@ static point_sums sum_points(const gm_mesh *mesh, const gmi_sliding *sliding,
         sums.force_t1 += friction * (mesh->engagement.face_from + work->z[p] * per_width);
         sums.loss += friction * at.speed;
 
-        const double by_speed[2] = {at.by_pinion_speed, at.by_wheel_speed};
+        const double rho_w = sliding->line_of_action - work->roll[p];
+        const double by_speed[2] = {
+            at.by_speed * work->roll[p] + at.by_rolling * rolling.pinion_speed,
+            sliding->wheel_sign * (at.by_rolling * rolling.wheel_speed - at.by_speed * rho_w)};
         for (int k = 0; k < 2; ++k) {
             sums.by_speed[k] += by_speed[k] * work->force[p];
             sums.moment_by_speed[k] += by_speed[k] * work->force[p] * work->roll[p];
@@ -51,13 +55,14 @@ static gmi_elastic_gradient differentiate(const gm_mesh *mesh, const gmi_sliding
                                           int is_moment, gmi_elastic_work *work) {
     double *factor = work->table[0], *by_deviation = work->table[0] + 2 * work->slots;
     double *by_roll = work->table[1], *by_z = work->table[2], *by_load = work->table[3];
+    const double both = sliding->pinion_speed + sliding->wheel_speed;
     for (int p = 0; p < 2 * work->slots; ++p) {
         const gmi_point_friction at = friction_at(mesh, sliding, work, p);
         const double arm = is_moment ? work->roll[p] : 1.0;
         factor[p] = arm * (at.share + at.by_load);
         const int is_kept = work->at.goes_on && work->beyond[p] != 0.0; /* at the end of the path */
-        by_roll[p] = is_kept ? 0.0 : arm * at.by_roll + (is_moment ? at.share : 0.0);
-        by_z[p] = arm * at.by_t1 / mesh->pair->face_width;
+        by_roll[p] = is_kept ? 0.0 : arm * at.by_speed * both + (is_moment ? at.share : 0.0);
+        by_z[p] = -arm * at.by_speed * sliding->sideways[1] / mesh->pair->face_width;
         by_load[p] = arm * at.by_load;
     }
     const gmi_elastic_functional functional = {factor, by_roll, by_z, by_load};

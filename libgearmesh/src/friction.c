@@ -38,17 +38,29 @@ static double schlenk_factor(const gm_mesh_params *params, const gm_pair *pair, 
            pow(micro * params->roughness, 0.25);
 }
 
+/* Parts are twice as long from one to the next: as mu_r changes most next to the pitch point. */
+static const double cut_shares[GMI_FRICTION_CUTS] = {-0.5, -0.25, -0.125, 0.0, 0.125, 0.25, 0.5};
+
 void gmi_friction_place(const gm_pair *pair, const gmi_engagement *at, gmi_friction *friction) {
-    /* Parts are twice as long from one to the next: as mu_r changes most next to the pitch point. */
-    const double shares[GMI_FRICTION_CUTS] = {-0.5, -0.25, -0.125, 0.0, 0.125, 0.25, 0.5};
     const double pitch_point = pair->pinion.base_radius * tan(at->working_pressure_angle);
     const double beyond = at->line_of_action - pitch_point;
     const double reach =
         fmax(pair->pinion.tip_roll_length - pitch_point, at->tip_roll_length[GM_WHEEL] - beyond);
     friction->pitch_point = pitch_point;
     for (int k = 0; k < GMI_FRICTION_CUTS; ++k) {
-        friction->cuts[k] = pitch_point + shares[k] * reach;
+        friction->cuts[k] = pitch_point + cut_shares[k] * reach;
     }
+}
+
+/* The pitch point divides the line of action in a ratio that stays; the longer way to a tip is one of two. */
+double gmi_friction_cut_by_length(const gm_pair *pair, const gmi_engagement *at,
+                                  const gmi_friction *friction, int k) {
+    const double pitch_point = friction->pitch_point;
+    const double beyond = at->line_of_action - pitch_point;
+    const double pitch_point_by = pitch_point / at->line_of_action;
+    const int is_pinions =
+        pair->pinion.tip_roll_length - pitch_point >= at->tip_roll_length[GM_WHEEL] - beyond;
+    return pitch_point_by - cut_shares[k] * (is_pinions ? pitch_point_by : 1.0 - pitch_point_by);
 }
 
 gmi_friction gmi_friction_of(const gm_mesh_params *params, const gm_pair *pair,
@@ -85,28 +97,27 @@ gmi_friction gmi_friction_of(const gm_mesh_params *params, const gm_pair *pair,
  * Sliding and rolling
  * ------------------------------------------------------------------------------------------- */
 
-gmi_sliding gmi_sliding_find(const gmi_friction *friction, const gm_pair *pair,
-                             const gmi_engagement *at, const gm_position *position,
-                             const gmi_rates *rates) {
-    gmi_sliding s = {.friction = friction};
-    s.pinion_speed = position->pinion_speed;
-    s.wheel_speed = (pair->pinion.base_radius * position->pinion_speed - position->offset_rate) /
-                    at->wheel_base_radius;
-    s.wheel_sign = pair->wheel.sign;
-    s.line_of_action = at->line_of_action;
+void gmi_sliding_find(const gmi_friction *friction, const gm_pair *pair, const gmi_engagement *at,
+                      const gm_position *position, const gmi_rates *rates, gmi_sliding *s) {
+    const gmi_sliding none = {.friction = friction};
+    *s = none;
+    s->pinion_speed = position->pinion_speed;
+    s->wheel_speed = (pair->pinion.base_radius * position->pinion_speed - position->offset_rate) /
+                     at->wheel_base_radius;
+    s->wheel_sign = pair->wheel.sign;
+    s->line_of_action = at->line_of_action;
     for (int k = 0; k < 2 && rates != NULL; ++k) {
-        s.sideways[k] = rates->sideways[k];
-        s.forward[k] = rates->forward[k];
+        s->sideways[k] = rates->sideways[k];
+        s->forward[k] = rates->forward[k];
     }
 
     /* In the pitch point; v0 keeps the coefficients finite at rest. */
     const double rho_p = friction->pitch_point;
     const double rho_w = at->line_of_action - rho_p;
-    const double sum = s.pinion_speed * rho_p + s.wheel_speed * rho_w;
-    s.rolling.value = sqrt(sum * sum + friction->creep_squared);
-    s.rolling.by[GMI_PINION_SPEED] = sum / s.rolling.value * rho_p;
-    s.rolling.by[GMI_WHEEL_SPEED] = sum / s.rolling.value * s.wheel_sign * rho_w;
-    return s;
+    const double sum = s->pinion_speed * rho_p + s->wheel_speed * rho_w;
+    s->rolling.value = sqrt(sum * sum + friction->creep_squared);
+    s->rolling.by[GMI_PINION_SPEED] = sum / s->rolling.value * rho_p;
+    s->rolling.by[GMI_WHEEL_SPEED] = sum / s->rolling.value * s->wheel_sign * rho_w;
 }
 
 /* Where a point slides by. */
@@ -161,49 +172,31 @@ static gmi_varying tip_sliding_speed(const gmi_sliding *s, const gmi_part_force 
  * Coefficients
  * ------------------------------------------------------------------------------------------- */
 
+/* Of mu what depends on the place, by the sliding speed and by the logarithms of the load and of the rolling speed. */
+typedef struct coefficient {
+    double value, by_speed, by_load, by_rolling;
+} coefficient;
+
 /*
  * [BenedictKelley]: 0.0127 lg(29.66 (F/b) / (eta |v| v_sum^2)), N/m and mPa s, with sqrt(v^2 + v0^2) for |v|. Not below 0,
- * where the formula does not hold.
+ * where the formula does not hold. The other laws have the same mu all over a side.
  */
-static gmi_varying benedict_kelley(const gmi_sliding *s, const gmi_varying *load,
-                                   const gmi_varying *speed) {
-    const double squared = speed->value * speed->value + s->friction->creep_squared;
+static coefficient coefficient_of(const gmi_sliding *s, double load, double speed) {
+    coefficient mu = {1.0, 0.0, 0.0, 0.0};
+    if (s->friction->law != GM_FRICTION_BENEDICT_KELLEY) {
+        return mu;
+    }
+    const double squared = speed * speed + s->friction->creep_squared;
     const double factor = 0.0127 * per_ln_10;
-    gmi_varying mu = {.value = factor * log(s->friction->factor * load->value /
-                                            (sqrt(squared) * s->rolling.value * s->rolling.value))};
+    mu.value = factor * log(s->friction->factor * load /
+                            (sqrt(squared) * s->rolling.value * s->rolling.value));
     if (!(mu.value > 0.0)) {
         mu.value = 0.0;
         return mu;
     }
-    for (int k = 0; k < GMI_MOTIONS; ++k) {
-        mu.by[k] = factor * (load->by[k] / load->value - speed->value * speed->by[k] / squared -
-                             2.0 * s->rolling.by[k] / s->rolling.value);
-    }
-    return mu;
-}
-
-/* What of mu depends on the place; the rest is the same all over the side. */
-static gmi_varying coefficient_of(const gmi_sliding *s, const gmi_varying *load,
-                                  const gmi_varying *speed) {
-    if (s->friction->law == GM_FRICTION_BENEDICT_KELLEY) {
-        return benedict_kelley(s, load, speed);
-    }
-    const gmi_varying one = {1.0, {0.0, 0.0, 0.0, 0.0}};
-    return one;
-}
-
-/* And the rest. */
-static gmi_varying common_coefficient(const gmi_sliding *s, const gmi_varying *force) {
-    gmi_varying mu = {1.0, {0.0, 0.0, 0.0, 0.0}};
-    if (s->friction->law == GM_FRICTION_CONSTANT) {
-        mu.value = s->friction->factor;
-    } else if (s->friction->law == GM_FRICTION_ISO14179) {
-        mu.value = s->friction->factor * pow(force->value / s->rolling.value, 0.2);
-        for (int k = 0; k < GMI_MOTIONS; ++k) {
-            mu.by[k] = 0.2 * mu.value *
-                       (force->by[k] / force->value - s->rolling.by[k] / s->rolling.value);
-        }
-    }
+    mu.by_speed = -factor * speed / squared;
+    mu.by_load = factor;
+    mu.by_rolling = -2.0 * factor;
     return mu;
 }
 
@@ -212,20 +205,180 @@ static gmi_varying common_coefficient(const gmi_sliding *s, const gmi_varying *f
  * ------------------------------------------------------------------------------------------- */
 
 /* mu_r / cos(beta_b) with its derivatives: v / sqrt(v^2 + v0^2) changes by v0^2 / sqrt(v^2 + v0^2)^3. */
-static gmi_varying share_of(const gmi_sliding *sliding, const gmi_varying *load,
+static gmi_point_friction friction_of(const gmi_sliding *s, double load, double speed) {
+    const coefficient mu = coefficient_of(s, load, speed);
+    const double creep_squared = s->friction->creep_squared;
+    const double squared = speed * speed + creep_squared;
+    const double per_root = s->friction->normal / sqrt(squared);
+    const gmi_point_friction result = {
+        .share = per_root * mu.value * speed,
+        .speed = speed,
+        .by_speed = per_root * (mu.value * creep_squared / squared + mu.by_speed * speed),
+        .by_load = per_root * mu.by_load * speed,
+        .by_rolling = per_root * mu.by_rolling * speed,
+    };
+    return result;
+}
+
+static gmi_varying share_of(const gmi_sliding *s, const gmi_varying *load,
                             const gmi_varying *speed) {
-    const gmi_varying mu = coefficient_of(sliding, load, speed);
-    const double creep_squared = sliding->friction->creep_squared;
-    const double squared = speed->value * speed->value + creep_squared;
-    const double per_root = 1.0 / sqrt(squared);
-    const double normal = sliding->friction->normal;
-    gmi_varying share = {.value = normal * mu.value * speed->value * per_root};
+    const gmi_point_friction at = friction_of(s, load->value, speed->value);
+    gmi_varying share = {.value = at.share};
     for (int k = 0; k < GMI_MOTIONS; ++k) {
-        share.by[k] = normal * per_root *
-                      (mu.value * creep_squared / squared * speed->by[k] + mu.by[k] * speed->value);
+        share.by[k] = at.by_speed * speed->by[k] + at.by_load * load->by[k] / load->value +
+                      at.by_rolling * s->rolling.by[k] / s->rolling.value;
     }
     return share;
 }
+
+gmi_point_friction gmi_friction_at(const gmi_sliding *sliding, double rho_p, double t1,
+                                   double load) {
+    return friction_of(sliding, load, sliding_at(sliding, rho_p, t1));
+}
+
+/* v_sum is that in the pitch point, which divides T in a ratio that stays: it grows in proportion, v0 aside. */
+gmi_rolling_by gmi_rolling_differentiate(const gmi_sliding *sliding) {
+    const gmi_varying *rolling = &sliding->rolling;
+    const double creep = sliding->friction->creep_squared / (rolling->value * rolling->value);
+    const gmi_rolling_by by = {
+        .pinion_speed = rolling->by[GMI_PINION_SPEED] / rolling->value,
+        .wheel_speed = rolling->by[GMI_WHEEL_SPEED] * sliding->wheel_sign / rolling->value,
+        .length = (1.0 - creep) / sliding->line_of_action,
+    };
+    return by;
+}
+
+/* ---------------------------------------------------------------------------------------------
+ * Of a part, and of a side
+ * ------------------------------------------------------------------------------------------- */
+
+/* The share of a part: by its load, of which rho_p and t1 are the means, and by how the flanks slide there. */
+static void differentiate_share(const gmi_sliding *s, const gmi_point_friction *at,
+                                const gmi_load *load, const gmi_load_by *load_by, double rho_p,
+                                double t1, double by[GMI_VARIABLES]) {
+    const double by_speed = at->by_speed;
+    for (int k = 0; k < GMI_LOAD_VARIABLES; ++k) {
+        const double *force_by = load_by->force[k];
+        const double rho_by = force_by[GMI_BY_RHO] - rho_p * force_by[GMI_WHOLE];
+        const double t1_by = force_by[GMI_BY_T1] - t1 * force_by[GMI_WHOLE];
+        by[k] = (by_speed * ((s->pinion_speed + s->wheel_speed) * rho_by - s->sideways[1] * t1_by) +
+                 at->by_load * force_by[GMI_WHOLE]) /
+                load->force[GMI_WHOLE];
+    }
+    for (int k = 0; k < GMI_COORDINATES; ++k) {
+        by[k] -= at->by_load * load_by->contact[k] / load->contact;
+    }
+    const gmi_rolling_by rolling = gmi_rolling_differentiate(s);
+    by[GMI_BY_LENGTH] += at->by_rolling * rolling.length - by_speed * s->wheel_speed;
+    by[GMI_BY_PINION_SPEED] = at->by_rolling * rolling.pinion_speed + by_speed * rho_p;
+    by[GMI_BY_WHEEL_SPEED] =
+        at->by_rolling * rolling.wheel_speed - by_speed * (s->line_of_action - rho_p);
+    by[GMI_BY_SIDEWAYS] = -by_speed;
+    by[GMI_BY_SIDEWAYS_T1] = -by_speed * t1;
+}
+
+void gmi_rubbing_add(const gmi_sliding *sliding, const gmi_load *load, const gmi_load_by *load_by,
+                     gmi_rubbing *total, gmi_rubbing_by *by) {
+    const double *force = load->force;
+    if (!(force[GMI_WHOLE] > 0.0)) {
+        return;
+    }
+
+    /* At its mean rho_p and t1, with its load over its touching length. */
+    const double rho_p = force[GMI_BY_RHO] / force[GMI_WHOLE];
+    const double t1 = force[GMI_BY_T1] / force[GMI_WHOLE];
+    const gmi_point_friction at =
+        gmi_friction_at(sliding, rho_p, t1, force[GMI_WHOLE] / load->contact);
+    for (int weight = 0; weight < GMI_WEIGHTS; ++weight) {
+        total->force[weight] += at.share * force[weight];
+    }
+    total->loss += at.share * force[GMI_WHOLE] * at.speed;
+    if (by == NULL) {
+        return;
+    }
+
+    double share_by[GMI_VARIABLES];
+    differentiate_share(sliding, &at, load, load_by, rho_p, t1, share_by);
+    for (int weight = 0; weight < GMI_WEIGHTS; ++weight) {
+        for (int k = 0; k < GMI_VARIABLES; ++k) {
+            by->force[k][weight] += share_by[k] * force[weight];
+        }
+        for (int k = 0; k < GMI_LOAD_VARIABLES; ++k) {
+            by->force[k][weight] += at.share * load_by->force[k][weight];
+        }
+    }
+}
+
+/* The part of mu that is the same all over a side, and of it the power of the load over the rolling speed. */
+typedef struct common_part {
+    double value, power;
+} common_part;
+
+static common_part common_of(const gmi_sliding *s, double force) {
+    common_part mu = {1.0, 0.0};
+    if (s->friction->law == GM_FRICTION_CONSTANT) {
+        mu.value = s->friction->factor;
+    } else if (s->friction->law == GM_FRICTION_ISO14179) {
+        mu.power = 0.2;
+        mu.value = s->friction->factor * pow(force / s->rolling.value, mu.power);
+    }
+    return mu;
+}
+
+void gmi_rubbing_finish(const gmi_sliding *sliding, const gmi_load *load,
+                        const gmi_load_by *load_by, gmi_rubbing *total, gmi_rubbing_by *by) {
+    const double force = load->force[GMI_WHOLE];
+    common_part mu = {0.0, 0.0};
+    if (force > 0.0) { /* else damping has taken the force of the side away */
+        mu = common_of(sliding, force);
+    }
+    if (by != NULL) {
+        double power_by[GMI_VARIABLES] = {0.0};
+        const gmi_rolling_by rolling = gmi_rolling_differentiate(sliding);
+        for (int k = 0; k < GMI_LOAD_VARIABLES && mu.power != 0.0; ++k) {
+            power_by[k] = mu.power * load_by->force[k][GMI_WHOLE] / force;
+        }
+        power_by[GMI_BY_LENGTH] -= mu.power * rolling.length;
+        power_by[GMI_BY_PINION_SPEED] = -mu.power * rolling.pinion_speed;
+        power_by[GMI_BY_WHEEL_SPEED] = -mu.power * rolling.wheel_speed;
+        for (int weight = 0; weight < GMI_WEIGHTS; ++weight) {
+            for (int k = 0; k < GMI_VARIABLES; ++k) {
+                by->force[k][weight] =
+                    mu.value * (by->force[k][weight] + power_by[k] * total->force[weight]);
+            }
+        }
+    }
+    for (int weight = 0; weight < GMI_WEIGHTS; ++weight) {
+        total->force[weight] *= mu.value;
+    }
+    total->loss *= mu.value;
+}
+
+/* One weight of the friction of a side, with what a solver knows. */
+static gmi_varying varying_of(const gm_pair *pair, int side, const gmi_rubbing *rubbing,
+                              const gmi_rubbing_by *by, int weight) {
+    gmi_varying result = {.value = rubbing->force[weight]};
+    if (by != NULL) {
+        result =
+            gmi_varying_of(pair, side, rubbing->force[weight], by->force[GMI_BY_ORIGIN][weight],
+                           by->force[GMI_BY_DELTA][weight], by->force[GMI_BY_DELTA_RATE][weight]);
+        result.by[GMI_PINION_SPEED] += by->force[GMI_BY_PINION_SPEED][weight];
+        result.by[GMI_WHEEL_SPEED] += pair->wheel.sign * by->force[GMI_BY_WHEEL_SPEED][weight];
+    }
+    return result;
+}
+
+void gmi_friction_sum_of(const gm_pair *pair, int side, const gmi_rubbing *rubbing,
+                         const gmi_rubbing_by *by, gmi_friction_sum *sum) {
+    sum->force = varying_of(pair, side, rubbing, by, GMI_WHOLE);
+    sum->moment = varying_of(pair, side, rubbing, by, GMI_BY_RHO);
+    sum->force_t1 = rubbing->force[GMI_BY_T1];
+    sum->loss = rubbing->loss;
+}
+
+/* ---------------------------------------------------------------------------------------------
+ * By what a solver knows
+ * ------------------------------------------------------------------------------------------- */
 
 /* By the load of the part over its touching length; what it adds at the place of the line of action. */
 static gmi_varying add_part(const gmi_sliding *sliding, const gmi_part_force *part,
@@ -270,31 +423,6 @@ void gmi_friction_add_tip(const gmi_sliding *sliding, const gmi_part_force *part
     tip->sine_t1 += place->sine.value * force_t1;
 }
 
-gmi_point_friction gmi_friction_at(const gmi_sliding *sliding, double rho_p, double t1,
-                                   double load) {
-    enum { BY_SLIDING = GMI_PINION_ANGLE, BY_LOAD = GMI_WHEEL_ANGLE }; /* in place of the angles */
-    const double rho_w = sliding->line_of_action - rho_p;
-    const gmi_varying speed = {
-        sliding_at(sliding, rho_p, t1),
-        {[BY_SLIDING] = 1.0,
-         [GMI_PINION_SPEED] = rho_p,
-         [GMI_WHEEL_SPEED] = -sliding->wheel_sign * rho_w},
-    };
-    const gmi_varying loaded = {load, {[BY_LOAD] = load}};
-    const gmi_varying share = share_of(sliding, &loaded, &speed);
-    const double by_sliding = share.by[BY_SLIDING];
-    const gmi_point_friction result = {
-        .share = share.value,
-        .speed = speed.value,
-        .by_roll = by_sliding * (sliding->pinion_speed + sliding->wheel_speed),
-        .by_t1 = -by_sliding * sliding->sideways[1],
-        .by_load = share.by[BY_LOAD],
-        .by_pinion_speed = share.by[GMI_PINION_SPEED],
-        .by_wheel_speed = share.by[GMI_WHEEL_SPEED],
-    };
-    return result;
-}
-
 /* Times the common part of mu. */
 static void finish_tip(const gmi_varying *mu, gmi_tip_friction *tip) {
     const gmi_tip_friction parts = *tip;
@@ -314,7 +442,13 @@ void gmi_friction_finish(const gmi_sliding *sliding, const gmi_varying *force,
     gmi_varying mu = {.value = 0.0};
     *total = none;
     if (force->value > 0.0) { /* else damping has taken the force of the side away */
-        mu = common_coefficient(sliding, force);
+        const common_part common = common_of(sliding, force->value);
+        mu.value = common.value;
+        for (int k = 0; k < GMI_MOTIONS && common.power != 0.0; ++k) {
+            mu.by[k] =
+                common.power * mu.value *
+                (force->by[k] / force->value - sliding->rolling.by[k] / sliding->rolling.value);
+        }
     }
     if (tip != NULL) {
         finish_tip(&mu, tip);

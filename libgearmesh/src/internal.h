@@ -461,7 +461,7 @@ enum gmi_coordinate {
  */
 typedef struct gmi_line_tangent {
     double by[GMI_COORDINATES][3]; /* beside the tables */
-    double speed[2];               /* of approach (m/s) */
+    double speed[2];               /* of approach (m/s); line.c leaves it and the next to others */
 
     /* u of tilt.c: the speed of approach falls by it times that of the tilt across (m) */
     double arm[2];
@@ -472,8 +472,8 @@ typedef struct gmi_line_tangent {
     /* Times 1 and t1, over all parts of the line: */
     double contact[4];                 /* of 1, t1, t1^2, t1^3 */
     double sum_by[GMI_COORDINATES][2]; /* of d f / d coordinate */
-    double flow_by[GMI_COORDINATES]
-                  [2]; /* over the roots of f: speed times how the touching part moves there */
+    double contact_by[GMI_COORDINATES]
+                     [3]; /* how the touching part moves, at the roots of f; and times t1^2 */
 
     /* Of the part at hand. */
     int wheel_leads;
@@ -710,15 +710,38 @@ void gmi_side_sum_simple(const gm_pair *pair, const gmi_engagement *at, int side
 /* Weights of integrals over the touching part. */
 enum gmi_weight { GMI_WHOLE, GMI_BY_T1, GMI_BY_RHO, GMI_WEIGHTS };
 
-/* How the sums of a side move with its coordinates; flow: the integral of the speed of approach. */
+/* What the force of a side depends on: its coordinates, how fast its flanks approach, and with friction how they slide. */
+enum gmi_variable {
+    GMI_BY_DELTA_RATE = GMI_COORDINATES, /* of gmi_rates (m/s) */
+    GMI_BY_ALONG_RATE,                   /* (rad/s) */
+    GMI_BY_ACROSS_RATE,                  /* (rad/s) */
+    GMI_LOAD_VARIABLES,
+
+    GMI_BY_PINION_SPEED = GMI_LOAD_VARIABLES, /* of gmi_sliding (rad/s) */
+    GMI_BY_WHEEL_SPEED,                       /* (rad/s) */
+    GMI_BY_SIDEWAYS,                          /* both numbers of gmi_rates (m/s) */
+    GMI_BY_SIDEWAYS_T1,
+    GMI_VARIABLES
+};
+
+/* The normal force of a part of a line or of a side, in the transverse section; and how it moves. */
+typedef struct gmi_load {
+    double force[GMI_WEIGHTS]; /* times 1, t1, rho_p (N, N, N m) */
+    double contact;            /* touching part (1) */
+} gmi_load;
+
+typedef struct gmi_load_by {
+    double force[GMI_LOAD_VARIABLES][GMI_WEIGHTS];
+    double contact[GMI_COORDINATES];
+} gmi_load_by;
+
+/* The force of a side with all that moves it; below 0 where damping takes it away. */
 typedef struct gmi_side_tangent {
     gmi_rates rates; /* given */
-    double sum_by[GMI_COORDINATES][GMI_WEIGHTS];
-    double flow[GMI_WEIGHTS];
-    double flow_by[GMI_COORDINATES][GMI_WEIGHTS];
-    double contact[GMI_WEIGHTS]; /* d flow / d rates.delta */
-    double arm[GMI_WEIGHTS];     /* - d flow / d rates.across */
-    gmi_line_tangent line;       /* at hand */
+    double flow;     /* integral of the speed of approach over what touches (m/s) */
+    gmi_load load;
+    gmi_load_by by;
+    gmi_line_tangent line; /* at hand */
 } gmi_side_tangent;
 
 gm_penetration gmi_penetration_nan(void);
@@ -748,6 +771,15 @@ static inline int gmi_check_position(const gm_pair *pair, const gm_position *pos
 
 /* Status of x and dx/dt in any model. */
 int gmi_check_offset(double offset, double offset_rate);
+
+/* Status of a speed of a gear, as friction takes it. */
+static inline int gmi_check_speed(double speed) {
+    if (fabs(speed) <= GMI_LARGEST_SPEED) {
+        return GM_OK;
+    }
+    return gmi_is_finite(speed) ? GM_STATE_OUT_OF_RANGE : GM_STATE_NOT_FINITE;
+}
+
 int gmi_check_flanks(const gm_pair *pair, const gm_flanks *pinion_flanks,
                      const gm_flanks *wheel_flanks);
 
@@ -805,25 +837,21 @@ static inline void gmi_law_force(const gmi_law *law, const gmi_side_sum *sum, do
     }
 }
 
-/* The same where the speed of approach is not the same all over the side: with moments, and derivatives of the force. */
-static inline void gmi_law_force_of_flow(const gmi_law *law, const gmi_side_sum *sum,
-                                         const gmi_side_tangent *tangent, gmi_side_force *result) {
-    const double k = law->stiffness;
-    const double d = law->damping;
+/* The same from the tangent of a side, on which each point may have a speed of approach of its own. */
+static inline void gmi_law_force_of_tangent(const gmi_side_tangent *tangent,
+                                            gmi_side_force *result) {
     const gmi_side_force none = {0.0, 0.0, 0.0, 0.0, 0.0, 0.0};
+    const double *force = tangent->load.force;
     *result = none;
-    const double force = k * sum->sum + d * tangent->flow[GMI_WHOLE];
-    if (!(force > 0.0)) {
+    if (!(force[GMI_WHOLE] > 0.0)) {
         return;
     }
-    result->force = force;
-    result->by_origin = k * tangent->sum_by[GMI_BY_ORIGIN][GMI_WHOLE] +
-                        d * tangent->flow_by[GMI_BY_ORIGIN][GMI_WHOLE];
-    result->by_delta = k * tangent->sum_by[GMI_BY_DELTA][GMI_WHOLE] +
-                       d * tangent->flow_by[GMI_BY_DELTA][GMI_WHOLE];
-    result->by_speed = d * tangent->contact[GMI_WHOLE];
-    result->force_t1 = k * sum->sum_t1 + d * tangent->flow[GMI_BY_T1];
-    result->force_rho = k * sum->sum_rho + d * tangent->flow[GMI_BY_RHO];
+    result->force = force[GMI_WHOLE];
+    result->force_t1 = force[GMI_BY_T1];
+    result->force_rho = force[GMI_BY_RHO];
+    result->by_origin = tangent->by.force[GMI_BY_ORIGIN][GMI_WHOLE];
+    result->by_delta = tangent->by.force[GMI_BY_DELTA][GMI_WHOLE];
+    result->by_speed = tangent->by.force[GMI_BY_DELTA_RATE][GMI_WHOLE];
 }
 
 /* Net sum of overlaps that carries a torque at rest (m). */
@@ -848,8 +876,10 @@ typedef struct gmi_friction {
 gmi_friction gmi_friction_of(const gm_mesh_params *params, const gm_pair *pair,
                              const gmi_engagement *at);
 
-/* Pitch point and cuts of the gears as they stand. */
+/* Pitch point and cuts of the gears as they stand; and the derivative of cut k by T. */
 void gmi_friction_place(const gm_pair *pair, const gmi_engagement *at, gmi_friction *friction);
+double gmi_friction_cut_by_length(const gm_pair *pair, const gmi_engagement *at,
+                                  const gmi_friction *friction, int k);
 
 /* What a solver knows, in the order of gm_gradient. */
 enum gmi_motion {
@@ -897,9 +927,8 @@ typedef struct gmi_sliding {
 } gmi_sliding;
 
 /* rates: of the side, NULL = the axes stand still. */
-gmi_sliding gmi_sliding_find(const gmi_friction *friction, const gm_pair *pair,
-                             const gmi_engagement *at, const gm_position *position,
-                             const gmi_rates *rates);
+void gmi_sliding_find(const gmi_friction *friction, const gm_pair *pair, const gmi_engagement *at,
+                      const gm_position *position, const gmi_rates *rates, gmi_sliding *sliding);
 
 /* The normal force of a part of a line, in the transverse section. */
 typedef struct gmi_part_force {
@@ -909,7 +938,17 @@ typedef struct gmi_part_force {
     gmi_varying force_t1; /* times mean t1 (N) */
 } gmi_part_force;
 
-/* Friction on the wheel, in the sense in which the pinion's flank moves; on the pinion the other way. */
+/* Friction on the wheel, in the sense in which the pinion's flank moves; on the pinion the other way. And how it moves. */
+typedef struct gmi_rubbing {
+    double force[GMI_WEIGHTS]; /* times 1, t1, rho_p (N, N, N m) */
+    double loss;               /* (W) */
+} gmi_rubbing;
+
+typedef struct gmi_rubbing_by {
+    double force[GMI_VARIABLES][GMI_WEIGHTS];
+} gmi_rubbing_by;
+
+/* The same with the derivatives by what a solver knows. */
 typedef struct gmi_friction_sum {
     gmi_varying force;  /* (N) */
     gmi_varying moment; /* times rho_p (N m) */
@@ -936,13 +975,32 @@ typedef struct gmi_point_friction {
     double share; /* mu_r / cos(beta_b) */
     double speed; /* of sliding (m/s) */
 
-    /* Derivatives of the share: by rho_p, t1, the logarithm of the load, and by both speeds. */
-    double by_roll, by_t1, by_load, by_pinion_speed, by_wheel_speed;
+    /* Derivatives of the share: by that speed, and by the logarithms of the load and of the rolling speed. */
+    double by_speed, by_load, by_rolling;
 } gmi_point_friction;
 
 /* load: transverse, over the common face width (N). */
 gmi_point_friction gmi_friction_at(const gmi_sliding *sliding, double rho_p, double t1,
                                    double load);
+
+/* The logarithm of the rolling speed by both speeds, and by T. */
+typedef struct gmi_rolling_by {
+    double pinion_speed, wheel_speed, length;
+} gmi_rolling_by;
+
+gmi_rolling_by gmi_rolling_differentiate(const gmi_sliding *sliding);
+
+/* Adds the friction of one part, with derivatives where load_by and by are not NULL. */
+void gmi_rubbing_add(const gmi_sliding *sliding, const gmi_load *load, const gmi_load_by *load_by,
+                     gmi_rubbing *total, gmi_rubbing_by *by);
+
+/* What of the law is the same all over a side, by all of its load. */
+void gmi_rubbing_finish(const gmi_sliding *sliding, const gmi_load *load,
+                        const gmi_load_by *load_by, gmi_rubbing *total, gmi_rubbing_by *by);
+
+/* by: NULL = without derivatives, which are 0 then. */
+void gmi_friction_sum_of(const gm_pair *pair, int side, const gmi_rubbing *rubbing,
+                         const gmi_rubbing_by *by, gmi_friction_sum *sum);
 
 /* Adds that of one part. */
 void gmi_friction_add(const gmi_sliding *sliding, const gmi_part_force *part,
@@ -957,11 +1015,10 @@ void gmi_friction_add_tip(const gmi_sliding *sliding, const gmi_part_force *part
 void gmi_friction_finish(const gmi_sliding *sliding, const gmi_varying *force,
                          gmi_friction_sum *total, gmi_tip_friction *tip);
 
-/* penetration.c: the sum of a side, with its friction; with_derivatives: of both. */
-void gmi_side_sum_sliding(const gm_pair *pair, const gmi_engagement *at, const gmi_side *prepared,
-                          int side, const gm_position *position, int with_derivatives,
-                          const gmi_law *law, double approach_speed, const gmi_sliding *sliding,
-                          gmi_side_sum *total, gmi_friction_sum *friction);
+/* penetration.c: the sum of a side with its friction, at a speed of approach that is the same all over it. */
+void gmi_side_sum_sliding(const gm_mesh *mesh, int side, const gm_position *position,
+                          double approach_speed, const gmi_sliding *sliding, gmi_side_sum *total,
+                          gmi_rubbing *rubbing);
 
 /* wrench.c: adds the forces of one side. */
 void gmi_wrench_add_side(const gm_pair *pair, const gmi_engagement *at, const gmi_side_force *force,
@@ -971,6 +1028,12 @@ void gmi_wrench_add_side(const gm_pair *pair, const gmi_engagement *at, const gm
 void gmi_wrench_add_friction(const gm_pair *pair, const gmi_engagement *at,
                              const gmi_friction_sum *friction, int side_of_teeth,
                              gm_wrench *wrench);
+
+/* And its derivative: of the friction, and where alpha_wt and T move under it. */
+void gmi_wrench_add_friction_by(const gm_pair *pair, const gmi_engagement *at,
+                                const double friction_by[GMI_WEIGHTS],
+                                const double friction[GMI_WEIGHTS], int side_of_teeth,
+                                double angle_by, double length_by, gm_wrench *wrench);
 
 /* Its derivative where alpha_wt and the centre distance move, the forces being what they are. */
 void gmi_wrench_add_by_direction(const gm_pair *pair, const gmi_engagement *at,
@@ -1023,9 +1086,14 @@ struct gm_mesh {
     gmi_corner corners[2];     /* [enum gm_role] whose tip it is; set where it has them */
 };
 
-/* Sum of a side with first moments and its tangent, of rates that are set in it. */
+/*
+ * Sum of a side with first moments, derivatives of the sum by origin and delta, and the tangent of its force, of rates that
+ * are set in it; sliding: NULL = without friction, and rubbing and rubbing_by too.
+ */
 void gmi_side_sum_tangent(const gm_mesh *mesh, int side, const gm_position *position,
-                          gmi_side_sum *total, gmi_side_tangent *tangent);
+                          const gmi_sliding *sliding, gmi_side_sum *total,
+                          gmi_side_tangent *tangent, gmi_rubbing *rubbing,
+                          gmi_rubbing_by *rubbing_by);
 
 /* As gm_mesh_evaluate_at() without the cache, of a position that has been checked and posed. GM_OK or GM_NO_CONVERGENCE. */
 int gmi_mesh_evaluate_exact(const gm_mesh *mesh, const gm_position *position, int wanted,

@@ -256,15 +256,14 @@ static void add_ordered_slopes(const gmi_line_tangent *tangent, double first, do
                         tangent->wheel_leads ? first : second, face, by);
 }
 
-/* Where f passes zero the touching part moves by d f / |d f / d t1|, and takes its speed of approach along. */
+/* Where f passes zero the touching part moves by d f / |d f / d t1|. */
 static void add_tangent_root(const piece *part, double root, double per_slope,
                              gmi_line_tangent *tangent) {
     if (!(root > 0.0 && root < part->length)) {
         return;
     }
     const double t1 = tangent->t1_zero + (part->s + root) * tangent->per_place;
-    const double flow =
-        (tangent->speed[0] + tangent->speed[1] * t1) * per_slope * tangent->per_place;
+    const double moves = per_slope * tangent->per_place;
     double by[GMI_COORDINATES];
     for (int k = 0; k < GMI_COORDINATES; ++k) {
         const double *powers = tangent->by[k];
@@ -274,8 +273,10 @@ static void add_tangent_root(const piece *part, double root, double per_slope,
                        part->second_slope + root * part->second_rate,
                        tangent->face[0] + root * tangent->face[1], by);
     for (int k = 0; k < GMI_COORDINATES; ++k) {
-        tangent->flow_by[k][0] += flow * by[k];
-        tangent->flow_by[k][1] += flow * by[k] * t1;
+        const double moved = moves * by[k];
+        tangent->contact_by[k][0] += moved;
+        tangent->contact_by[k][1] += moved * t1;
+        tangent->contact_by[k][2] += moved * t1 * t1;
     }
 }
 

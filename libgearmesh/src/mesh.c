@@ -610,8 +610,9 @@ static OWN_STACK void finish_elastic(const gm_mesh *mesh, const gm_position *pos
     gmi_friction_sum friction[2];
     const int slides = mesh->friction.is_on;
     for (int side = GM_DRIVE; side <= GM_COAST && slides; ++side) {
-        const gmi_sliding sliding = gmi_sliding_find(&mesh->friction, mesh->pair, &mesh->engagement,
-                                                     position, rates == NULL ? NULL : &rates[side]);
+        gmi_sliding sliding;
+        gmi_sliding_find(&mesh->friction, mesh->pair, &mesh->engagement, position,
+                         rates == NULL ? NULL : &rates[side], &sliding);
         gmi_elastic_friction(mesh, side, approach[side], &sliding, &sums[side], mask, workspace,
                              &friction[side]);
     }
@@ -641,38 +642,93 @@ static inline int is_elastic(const gm_mesh *mesh) {
     return mesh->elastic != NULL && mesh->model != GM_MODEL_SIMPLE;
 }
 
-/* With friction, which needs the moments of the force; and their derivatives, where those are wanted. rates: [side], NULL =
-   axes at rest. */
-static OWN_STACK void evaluate_sliding(const gm_mesh *mesh, const gm_position *position,
-                                       const double approach[2], const gmi_rates *rates, int wanted,
-                                       gm_mesh_result *result) {
-    const gmi_friction_sum none = {.loss = 0.0};
+/* Axes at rest: only the angles move. */
+static gmi_rates resting(const gm_position *position, int side) {
+    const gmi_rates rates = {.delta = gmi_side_sign(side) * position->offset_rate};
+    return rates;
+}
+
+/* One side by its tangent: what a user may see of it. rates: NULL = axes at rest, friction: NULL = without. */
+static OWN_STACK void follow_side(const gm_mesh *mesh, const gm_position *position,
+                                  const gmi_rates *rates, int side, gmi_side_sum *sum,
+                                  gmi_side_force *force, gmi_friction_sum *friction,
+                                  double *approach) {
+    gmi_side_tangent tangent;
+    gmi_rubbing rubbing;
+    gmi_rubbing_by rubbing_by;
+    gmi_sliding sliding;
+    tangent.rates = rates != NULL ? *rates : resting(position, side);
+    if (friction != NULL) {
+        gmi_sliding_find(&mesh->friction, mesh->pair, &mesh->engagement, position, &tangent.rates,
+                         &sliding);
+    }
+    gmi_side_sum_tangent(mesh, side, position, friction != NULL ? &sliding : NULL, sum, &tangent,
+                         &rubbing, &rubbing_by);
+    gmi_law_force_of_tangent(&tangent, force);
+    if (friction != NULL) {
+        gmi_friction_sum_of(mesh->pair, side, &rubbing, &rubbing_by, friction);
+    }
+    *approach = sum->contact > 0.0 ? tangent.flow / sum->contact : 0.0;
+}
+
+/* By the tangents of both sides: with friction and derivatives, and where the speed of approach is another at each point. */
+static OWN_STACK void evaluate_followed(const gm_mesh *mesh, const gm_position *position,
+                                        const gmi_rates *rates, int wanted,
+                                        gm_mesh_result *result) {
+    gmi_side_sum sums[2];
+    gmi_side_force forces[2];
+    gmi_friction_sum friction[2];
+    double approach[2];
+    const int slides = mesh->friction.is_on;
+    for (int side = GM_DRIVE; side <= GM_COAST; ++side) {
+        follow_side(mesh, position, rates == NULL ? NULL : &rates[side], side, &sums[side],
+                    &forces[side], slides ? &friction[side] : NULL, &approach[side]);
+    }
+    gmi_penetration_set(mesh->pair, &sums[GM_DRIVE], &sums[GM_COAST], approach,
+                        accumulated(mesh, 1, wanted), &result->contact);
+    set_forces(mesh, &forces[GM_DRIVE], &forces[GM_COAST], slides ? friction : NULL, wanted,
+               result);
+}
+
+static inline int are_tilting(const gmi_rates rates[2]) {
+    return rates[GM_DRIVE].along != 0.0 || rates[GM_DRIVE].across != 0.0;
+}
+
+/* With friction, which needs the moments of the force: in plain sums, with one speed of approach for each side. */
+static OWN_STACK void evaluate_rubbing(const gm_mesh *mesh, const gm_position *position,
+                                       const gmi_rates *rates, int wanted, gm_mesh_result *result) {
     gmi_side_sum memory[2];
     gmi_friction_sum friction[2];
     const gmi_side_sum *sums[2];
+    double approach[2];
 
     /* A side that is clear of its mate has no force, and nothing rubs. */
     for (int side = GM_DRIVE; side <= GM_COAST; ++side) {
-        const gmi_side *prepared = &mesh->side[side];
+        gmi_rubbing rubbing = {{0.0, 0.0, 0.0}, 0.0};
         sums[side] = &no_contact;
-        friction[side] = none;
-        if (!gmi_side_is_clear(&mesh->engagement, prepared, side, position->offset)) {
-            const gmi_sliding sliding =
-                gmi_sliding_find(&mesh->friction, mesh->pair, &mesh->engagement, position,
-                                 rates == NULL ? NULL : &rates[side]);
-            gmi_side_sum_sliding(mesh->pair, &mesh->engagement, prepared, side, position,
-                                 (wanted & GM_WANT_DERIVATIVES) != 0, &mesh->law, approach[side],
-                                 &sliding, &memory[side], &friction[side]);
+        approach[side] =
+            rates != NULL ? rates[side].delta : gmi_side_sign(side) * position->offset_rate;
+        if (!gmi_side_is_clear(&mesh->engagement, &mesh->side[side], side, position->offset)) {
+            gmi_sliding sliding;
+            gmi_sliding_find(&mesh->friction, mesh->pair, &mesh->engagement, position,
+                             rates == NULL ? NULL : &rates[side], &sliding);
+            gmi_side_sum_sliding(mesh, side, position, approach[side], &sliding, &memory[side],
+                                 &rubbing);
             sums[side] = &memory[side];
         }
+        gmi_friction_sum_of(mesh->pair, side, &rubbing, NULL, &friction[side]);
     }
     set_result(mesh, sums[GM_DRIVE], sums[GM_COAST], friction, approach, wanted, result);
 }
 
-static void evaluate_rolling(const gm_mesh *mesh, const gm_position *position, int wanted,
-                             gm_mesh_result *result) {
-    const double approach[2] = {position->offset_rate, -position->offset_rate};
-    evaluate_sliding(mesh, position, approach, NULL, wanted, result);
+/* rates: NULL = axes at rest. */
+static void evaluate_sliding(const gm_mesh *mesh, const gm_position *position,
+                             const gmi_rates *rates, int wanted, gm_mesh_result *result) {
+    if ((wanted & GM_WANT_DERIVATIVES) || (rates != NULL && are_tilting(rates))) {
+        evaluate_followed(mesh, position, rates, wanted, result);
+    } else {
+        evaluate_rubbing(mesh, position, rates, wanted, result);
+    }
 }
 
 /* A corner has a shorter arm about the axis of its own gear: torque = force times d overlap / d angle. */
@@ -799,12 +855,6 @@ static OWN_STACK void set_drive(const gm_mesh *mesh, const gmi_corner_sums *sums
     set_corner_result(mesh, sums, GM_DRIVE, approach, wanted, result);
 }
 
-/* Its value is copied in a frame of its own. */
-static OWN_STACK void find_sliding(const gm_mesh *mesh, const gm_position *position,
-                                   const gmi_rates *rates, gmi_sliding *sliding) {
-    *sliding = gmi_sliding_find(&mesh->friction, mesh->pair, &mesh->engagement, position, rates);
-}
-
 /*
  * Lines that go on beyond the path of contact; rates: [side], NULL where the axes are at rest. One side at a time: the sums
  * of both would be twice the stack.
@@ -821,7 +871,8 @@ static OWN_STACK void evaluate_corners(const gm_mesh *mesh, const gm_position *p
         /* All lines of the side, with what rubs on them. */
         approach[side] = rates != NULL ? rates[side].delta : approach[side];
         if (slides) {
-            find_sliding(mesh, position, rates == NULL ? NULL : &rates[side], &sliding);
+            gmi_sliding_find(&mesh->friction, mesh->pair, &mesh->engagement, position,
+                             rates == NULL ? NULL : &rates[side], &sliding);
         }
         gmi_side_sum_corners(mesh, side, position, mask, approach[side], slides ? &sliding : NULL,
                              &sums);
@@ -847,7 +898,7 @@ int gmi_mesh_evaluate_exact(const gm_mesh *mesh, const gm_position *position, in
     if (mesh->has_corners) {
         evaluate_corners(mesh, position, NULL, wanted, result);
     } else if (mesh->friction.is_on) {
-        evaluate_rolling(mesh, position, wanted, result);
+        evaluate_sliding(mesh, position, NULL, wanted, result);
     } else {
         return evaluate_any(mesh, position, wanted, result);
     }
@@ -881,13 +932,6 @@ static int evaluate_cached(const gm_mesh *mesh, const gm_position *position, int
     const double approach[2] = {position->offset_rate, -position->offset_rate};
     set_result(mesh, &sums[GM_DRIVE], &sums[GM_COAST], NULL, approach, wanted, result);
     return GM_OK;
-}
-
-static int check_speed(double speed) {
-    if (fabs(speed) <= GMI_LARGEST_SPEED) {
-        return GM_OK;
-    }
-    return gmi_is_finite(speed) ? GM_STATE_OUT_OF_RANGE : GM_STATE_NOT_FINITE;
 }
 
 /* A sum of enum gm_wanted. */
@@ -926,7 +970,7 @@ static OWN_STACK int evaluate_checked(const gm_mesh *mesh, const gm_position *po
     }
     int status = check_evaluation(mesh, position, wanted, workspace);
     if (status == GM_OK && mesh->friction.is_on) {
-        status = check_speed(position->pinion_speed);
+        status = gmi_check_speed(position->pinion_speed);
     }
     if (status != GM_OK) {
         gmi_mesh_result_set_nan(result);
@@ -1030,18 +1074,10 @@ static int sum_moving(const gm_mesh *mesh, const gm_position *position, const gm
     return GM_OK;
 }
 
-/* That speed alone, for friction, which follows the lines itself. */
-static OWN_STACK int find_approach(const gm_mesh *mesh, const gm_position *position,
-                                   const gmi_rates rates[2], double approach[2]) {
-    gmi_side_sum sums[2];
-    return sum_moving(mesh, position, rates, GMI_MOMENTS, NULL, sums, approach);
-}
-
 static OWN_STACK int evaluate_moving(const gm_mesh *mesh, const gm_position *position,
                                      const gmi_rates rates[2], int wanted, gm_workspace *workspace,
                                      gm_mesh_result *result) {
-    const int is_tilting = rates[GM_DRIVE].along != 0.0 || rates[GM_DRIVE].across != 0.0;
-    const int mask = accumulated(mesh, 1, wanted) | (is_tilting ? GMI_MOMENTS : GMI_SUM) |
+    const int mask = accumulated(mesh, 1, wanted) | (are_tilting(rates) ? GMI_MOMENTS : GMI_SUM) |
                      (is_elastic(mesh) ? GMI_ROLL : GMI_SUM);
     gmi_side_sum sums[2];
     double approach[2];
@@ -1057,28 +1093,6 @@ static OWN_STACK int evaluate_moving(const gm_mesh *mesh, const gm_position *pos
         set_result(mesh, &sums[GM_DRIVE], &sums[GM_COAST], NULL, approach, wanted, result);
     }
     return GM_OK;
-}
-
-/* The speed of approach is another at each point, which the tangent of a side knows. */
-static OWN_STACK void evaluate_tilting(const gm_mesh *mesh, const gm_position *position,
-                                       const gmi_rates rates[2], int wanted,
-                                       gm_mesh_result *result) {
-    gmi_side_tangent tangent;
-    gmi_side_sum sums[2];
-    gmi_side_force forces[2];
-    double approach[2];
-    for (int side = GM_DRIVE; side <= GM_COAST; ++side) {
-        gmi_side_sum *sum = &sums[side];
-        tangent.rates = rates[side];
-        gmi_side_sum_tangent(mesh, side, position, sum, &tangent);
-        gmi_law_force_of_flow(&mesh->law, sum, &tangent, &forces[side]);
-        approach[side] = sum->contact > 0.0 ? tangent.flow[GMI_WHOLE] / sum->contact : 0.0;
-        sum->by_origin = tangent.sum_by[GMI_BY_ORIGIN][GMI_WHOLE];
-        sum->by_delta = tangent.sum_by[GMI_BY_DELTA][GMI_WHOLE];
-    }
-    gmi_penetration_set(mesh->pair, &sums[GM_DRIVE], &sums[GM_COAST], approach,
-                        accumulated(mesh, 1, wanted), &result->contact);
-    set_forces(mesh, &forces[GM_DRIVE], &forces[GM_COAST], NULL, wanted, result);
 }
 
 static int is_finite_pose(const gm_pose *pose) {
@@ -1133,7 +1147,7 @@ static OWN_STACK int evaluate_posed(const gm_mesh *mesh, const gm_motion *motion
         status = check_evaluation(&moved, &position, wanted, workspace);
     }
     if (status == GM_OK && mesh->friction.is_on) {
-        status = check_speed(position.pinion_speed);
+        status = gmi_check_speed(position.pinion_speed);
     }
     if (status != GM_OK) {
         return status;
@@ -1150,16 +1164,13 @@ static OWN_STACK int evaluate_posed(const gm_mesh *mesh, const gm_motion *motion
         return GM_OK;
     }
     if (mesh->friction.is_on && !is_elastic(mesh)) {
-        double approach[2];
-        status = find_approach(&moved, &position, rates, approach);
-        evaluate_sliding(&moved, &position, approach, rates, wanted, result);
-        return status;
+        evaluate_sliding(&moved, &position, rates, wanted, result);
+        return GM_OK;
     }
 
     /* While the tilt changes, each point of a side has a speed of its own; else the whole side has one. */
-    const int is_tilting = rates[GM_DRIVE].along != 0.0 || rates[GM_DRIVE].across != 0.0;
-    if (is_tilting && !is_elastic(mesh)) {
-        evaluate_tilting(&moved, &position, rates, wanted, result);
+    if (are_tilting(rates) && !is_elastic(mesh)) {
+        evaluate_followed(&moved, &position, rates, wanted, result);
         return GM_OK;
     }
     return evaluate_moving(&moved, &position, rates, wanted, workspace, result);

@@ -89,16 +89,13 @@ typedef struct side_view {
 
     double wheel_reach;        /* rho_w - start of the wheel's flank = wheel_reach - rho_p (m) */
     gmi_side_tangent *tangent; /* GMI_TANGENT */
-
-    /* GMI_TANGENT: */
-    const gmi_rates *rates;
-    gmi_line_tangent *line_tangent; /* of the line at hand */
+    const gmi_law *law;        /* likewise, and where flanks slide */
 
     /* Where flanks slide: */
-    const gmi_law *law;
     const gmi_sliding *sliding;
-    double approach_speed; /* of the flanks (m/s) */
-    gmi_friction_sum *friction;
+    double approach_speed; /* of the flanks, without GMI_TANGENT (m/s) */
+    gmi_rubbing *rubbing;
+    gmi_rubbing_by *rubbing_by; /* GMI_TANGENT */
 } side_view;
 
 /*
@@ -235,214 +232,207 @@ static int tilt_line(side_view *view, double rho_origin, int wanted, gmi_line *l
  * ------------------------------------------------------------------------------------------- */
 
 /* What is known of a line's tangent before it is followed. */
-static void begin_tangent(const side_view *view, double rho_origin) {
+static OWN_STACK void begin_tangent(const side_view *view, double rho_origin) {
     const gmi_side *prepared = view->prepared;
-    gmi_line_tangent *line = view->line_tangent;
+    gmi_line_tangent *line = &view->tangent->line;
     memset(line, 0, sizeof *line);
-    gmi_tilt_tangent(view->pair, view->at, view->side, rho_origin, view->lines.delta, view->rates,
-                     line);
+    gmi_tilt_tangent(view->pair, view->at, view->side, rho_origin, view->lines.delta,
+                     &view->tangent->rates, line);
     line->pinion_per_rho = prepared->pinion_grid.per_rho;
     line->wheel_per_rho = prepared->wheel_grid.per_rho;
     line->face_per_length = prepared->wheel_grid.face_rate / view->pair->face_width;
 }
 
-/* An end at t1 that moves takes f there into the sum or out of it, and the speed of approach likewise. */
+/* An end at t1 that moves by one coordinate takes f there into the sum or out of it, and the touching part likewise. */
+static inline void move_end(gmi_line_tangent *line, int coordinate, double moved, double t1,
+                            double f) {
+    double *sum = line->sum_by[coordinate], *contact = line->contact_by[coordinate];
+    sum[0] += f * moved;
+    sum[1] += f * moved * t1;
+    contact[0] += moved;
+    contact[1] += moved * t1;
+    contact[2] += moved * t1 * t1;
+}
+
 static void add_end(gmi_line_tangent *line, double sign, double t1, double f,
                     const double end_by[GMI_COORDINATES]) {
-    if (!(f > 0.0)) {
-        return;
-    }
-    const double speed = line->speed[0] + line->speed[1] * t1;
-    for (int k = 0; k < GMI_COORDINATES; ++k) {
-        const double moved = sign * end_by[k];
-        line->sum_by[k][0] += f * moved;
-        line->sum_by[k][1] += f * moved * t1;
-        line->flow_by[k][0] += speed * moved;
-        line->flow_by[k][1] += speed * moved * t1;
+    for (int k = 0; k < GMI_COORDINATES && f > 0.0; ++k) {
+        move_end(line, k, sign * end_by[k], t1, f);
     }
 }
 
-/* What a line adds for one weight that is 1 or t1, and with rho = rho_origin + advance t1 for the third. */
-static void add_weighted(double *total, double by_one, double by_t1, double rho_origin,
-                         double advance) {
-    total[GMI_WHOLE] += by_one;
-    total[GMI_BY_T1] += by_t1;
-    total[GMI_BY_RHO] += rho_origin * by_one + advance * by_t1;
+/* The third weight, rho_p = rho_origin + advance t1, from the first two. */
+static inline void weigh(double row[GMI_WEIGHTS], double rho_origin, double advance) {
+    row[GMI_BY_RHO] = rho_origin * row[GMI_WHOLE] + advance * row[GMI_BY_T1];
 }
 
-static void add_tangent(const side_view *view, double rho_origin, const gmi_interval *part,
-                        const gmi_line_sum *sum) {
-    gmi_side_tangent *side = view->tangent;
-    gmi_line_tangent *line = &side->line;
-    const gmi_line_part *ends = &view->tilted_part;
-    add_end(line, 1.0, part->to, sum->at_to, ends->to_by);
-    add_end(line, -1.0, part->from, sum->at_from, ends->from_by);
-
-    /* The speed of approach itself, and how it moves where the line is. */
-    const double *c = line->contact;
+/* The force of a line or of a part of one, from its sums and its tangent; returns the integral of the speed of approach. */
+static double find_load(const side_view *view, double rho_origin, const gmi_line_sum *sum,
+                        gmi_load *load, gmi_load_by *by) {
+    const gmi_line_tangent *line = &view->tangent->line;
+    const double k = view->law->stiffness, d = view->law->damping;
+    const double advance = view->lines.advance;
+    const double *c = line->contact, *speed = line->speed, *arm = line->arm;
     const double tau =
         gmi_side_sign(view->side) * view->pair->face_advance / view->pair->face_width;
-    const double across = side->rates.across;
-    const double flow[2] = {line->speed[0] * c[0] + line->speed[1] * c[1],
-                            line->speed[0] * c[1] + line->speed[1] * c[2]};
+    const double of_along = -tau * view->at->wheel_base_radius;
+    const double across = view->tangent->rates.across;
+    const double sums[2] = {sum->sum, sum->sum_t1};
     for (int weight = 0; weight < 2; ++weight) {
-        line->flow_by[GMI_BY_ORIGIN][weight] -= across * tau * c[weight];
-        line->flow_by[GMI_BY_LENGTH][weight] += across * tau * c[weight];
-        line->flow_by[GMI_BY_AXIAL][weight] += across * c[weight];
+        const double flow = speed[0] * c[weight] + speed[1] * c[weight + 1];
+        load->force[weight] = k * sums[weight] + d * flow;
+
+        /* By the coordinates, and what the speed of approach changes by where the line is. */
+        for (int of = 0; of < GMI_COORDINATES; ++of) {
+            const double *contact = &line->contact_by[of][weight];
+            by->force[of][weight] =
+                k * line->sum_by[of][weight] + d * (speed[0] * contact[0] + speed[1] * contact[1]);
+        }
+        by->force[GMI_BY_ORIGIN][weight] -= d * across * tau * c[weight];
+        by->force[GMI_BY_LENGTH][weight] += d * across * tau * c[weight];
+        by->force[GMI_BY_AXIAL][weight] += d * across * c[weight];
+
+        /* By the rates. */
+        by->force[GMI_BY_DELTA_RATE][weight] = d * c[weight];
+        by->force[GMI_BY_ALONG_RATE][weight] = d * of_along * c[weight];
+        by->force[GMI_BY_ACROSS_RATE][weight] = -d * (arm[0] * c[weight] + arm[1] * c[weight + 1]);
     }
 
-    /* To the sums of the side; rho moves with the origin. */
-    const double advance = view->lines.advance;
-    for (int k = 0; k < GMI_COORDINATES; ++k) {
-        add_weighted(side->sum_by[k], line->sum_by[k][0], line->sum_by[k][1], rho_origin, advance);
-        add_weighted(side->flow_by[k], line->flow_by[k][0], line->flow_by[k][1], rho_origin,
-                     advance);
+    /* The moment over rho_p, which moves with the origin. */
+    weigh(load->force, rho_origin, advance);
+    for (int of = 0; of < GMI_LOAD_VARIABLES; ++of) {
+        weigh(by->force[of], rho_origin, advance);
     }
-    side->sum_by[GMI_BY_ORIGIN][GMI_BY_RHO] += sum->sum;
-    side->flow_by[GMI_BY_ORIGIN][GMI_BY_RHO] += flow[0];
-    add_weighted(side->flow, flow[0], flow[1], rho_origin, advance);
-    add_weighted(side->contact, c[0], c[1], rho_origin, advance);
-    add_weighted(side->arm, line->arm[0] * c[0] + line->arm[1] * c[1],
-                 line->arm[0] * c[1] + line->arm[1] * c[2], rho_origin, advance);
+    by->force[GMI_BY_ORIGIN][GMI_BY_RHO] += load->force[GMI_WHOLE];
+
+    load->contact = c[0];
+    for (int of = 0; of < GMI_COORDINATES; ++of) {
+        by->contact[of] = line->contact_by[of][0];
+    }
+    return speed[0] * c[0] + speed[1] * c[1];
+}
+
+/* What a line or a part of one adds to the tangent of the side, and to its friction. */
+static OWN_STACK void add_tangent(const side_view *view, double rho_origin, int slides,
+                                  const gmi_line_sum *sum, gmi_side_sum *total) {
+    gmi_side_tangent *side = view->tangent;
+    gmi_load load;
+    gmi_load_by by;
+    side->flow += find_load(view, rho_origin, sum, &load, &by);
+    for (int weight = 0; weight < GMI_WEIGHTS; ++weight) {
+        side->load.force[weight] += load.force[weight];
+        for (int of = 0; of < GMI_LOAD_VARIABLES; ++of) {
+            side->by.force[of][weight] += by.force[of][weight];
+        }
+    }
+    total->by_origin += side->line.sum_by[GMI_BY_ORIGIN][0];
+    total->by_delta += side->line.sum_by[GMI_BY_DELTA][0];
+    if (slides) {
+        gmi_rubbing_add(view->sliding, &load, &by, view->rubbing, view->rubbing_by);
+    }
 }
 
 /* The simple model's pair touches in the pitch point, which follows the line of action, at mid-face. */
-static void set_simple_tangent(const gm_pair *pair, const gmi_engagement *at,
+static void set_simple_tangent(const gm_pair *pair, const gmi_engagement *at, const gmi_law *law,
                                const gmi_side_sum *sum, gmi_side_tangent *tangent) {
     if (!(sum->sum > 0.0)) {
         return;
     }
     const double where[GMI_WEIGHTS] = {1.0, sum->contact_t1, sum->contact_rho};
-    const double speed = tangent->rates.delta;
+    const double force = law->stiffness * sum->sum + law->damping * tangent->rates.delta;
     for (int weight = 0; weight < GMI_WEIGHTS; ++weight) {
-        tangent->sum_by[GMI_BY_DELTA][weight] = where[weight];
-        tangent->contact[weight] = where[weight];
-        tangent->flow[weight] = speed * where[weight];
+        tangent->load.force[weight] = force * where[weight];
+        tangent->by.force[GMI_BY_DELTA][weight] = law->stiffness * where[weight];
+        tangent->by.force[GMI_BY_DELTA_RATE][weight] = law->damping * where[weight];
     }
-    const double by_length =
-        pair->pinion.base_radius / (pair->pinion.base_radius + at->wheel_base_radius);
-    tangent->sum_by[GMI_BY_LENGTH][GMI_BY_RHO] = sum->sum * by_length;
-    tangent->flow_by[GMI_BY_LENGTH][GMI_BY_RHO] = speed * by_length;
+    tangent->flow = tangent->rates.delta;
+    tangent->by.force[GMI_BY_LENGTH][GMI_BY_RHO] =
+        force * pair->pinion.base_radius / (pair->pinion.base_radius + at->wheel_base_radius);
 }
 
 /* ---------------------------------------------------------------------------------------------
  * Lines with friction: in parts
  * ------------------------------------------------------------------------------------------- */
 
-/* What the masks of both evaluations mean to the law. */
-enum { SLIDING_SUM = GMI_MOMENTS, SLIDING_ALL = GMI_MOMENTS | GMI_TANGENT };
-static int law_mask(int wanted) {
-    return wanted & GMI_TANGENT ? GMI_MOMENTS | GMI_DERIVATIVES | GMI_CONTACT_DERIVATIVES
-                                : GMI_MOMENTS;
-}
-
 /* Hands the normal force of a part on to friction. */
-static OWN_STACK void add_friction(const side_view *view, double rho_origin, int wanted,
-                                   const gmi_side_sum *part) {
-    gmi_side_force force, of_moment = {.force = 0.0}, of_t1 = {.force = 0.0};
-    gmi_law_force(view->law, part, view->approach_speed, law_mask(wanted), &force);
-    if (wanted & GMI_TANGENT) {
-        const gmi_line_tangent *line = view->line_tangent;
-        const double(*sum)[2] = line->sum_by, (*contact)[2] = line->flow_by;
-        const int o = GMI_BY_ORIGIN, d = GMI_BY_DELTA;
-        const gmi_side_sum over_t1 = {.sum = part->sum_t1,
-                                      .contact = part->contact_t1,
-                                      .by_origin = sum[o][1],
-                                      .by_delta = sum[d][1],
-                                      .contact_by_origin = contact[o][1],
-                                      .contact_by_delta = contact[d][1]};
-
-        /* rho_p = origin + advance t1 */
-        const double advance = view->lines.advance;
-        const gmi_side_sum moment = {
-            .sum = part->sum_rho,
-            .contact = part->contact_rho,
-            .by_origin = part->sum + rho_origin * sum[o][0] + advance * sum[o][1],
-            .by_delta = rho_origin * sum[d][0] + advance * sum[d][1],
-            .contact_by_origin =
-                part->contact + rho_origin * contact[o][0] + advance * contact[o][1],
-            .contact_by_delta = rho_origin * contact[d][0] + advance * contact[d][1]};
-        gmi_law_force(view->law, &over_t1, view->approach_speed, law_mask(wanted), &of_t1);
-        gmi_law_force(view->law, &moment, view->approach_speed, law_mask(wanted), &of_moment);
-    }
-
-    const gm_pair *pair = view->pair;
-    const int side = view->side;
-    const gmi_part_force part_force = {
-        .force = gmi_varying_of(pair, side, force.force, force.by_origin, force.by_delta,
-                                force.by_speed),
-        .moment = gmi_varying_of(pair, side, force.force_rho, of_moment.by_origin,
-                                 of_moment.by_delta, of_moment.by_speed),
-        .contact = gmi_varying_of(pair, side, part->contact, part->contact_by_origin,
-                                  part->contact_by_delta, 0.0),
-        .force_t1 = gmi_varying_of(pair, side, force.force_t1, of_t1.by_origin, of_t1.by_delta,
-                                   of_t1.by_speed)};
-    gmi_friction_add(view->sliding, &part_force, view->friction);
+static OWN_STACK void add_friction(const side_view *view, double rho_origin,
+                                   const gmi_line_sum *sum) {
+    const double k = view->law->stiffness, viscous = view->law->damping * view->approach_speed;
+    gmi_load load = {
+        {k * sum->sum + viscous * sum->contact, k * sum->sum_t1 + viscous * sum->contact_t1, 0.0},
+        sum->contact};
+    weigh(load.force, rho_origin, view->lines.advance);
+    gmi_rubbing_add(view->sliding, &load, NULL, view->rubbing, NULL);
 }
 
-static void add_sum(const gmi_side_sum *part, gmi_side_sum *side) {
-    side->sum += part->sum;
-    side->contact += part->contact;
-    side->by_origin += part->by_origin;
-    side->by_delta += part->by_delta;
-    side->contact_by_origin += part->contact_by_origin;
-    side->contact_by_delta += part->contact_by_delta;
-    side->sum_t1 += part->sum_t1;
-    side->sum_rho += part->sum_rho;
-    side->contact_t1 += part->contact_t1;
-    side->contact_rho += part->contact_rho;
-}
+/* Where a line is cut for friction next, and which place that is; -1: the end of the line. */
+typedef struct friction_cut {
+    double t1;
+    int place;
+} friction_cut;
 
-/* The first place behind `from` at which a line is cut for friction, or `to`. */
-static double next_cut(const side_view *view, double rho_origin, double from, double to) {
-    double next = to;
+static friction_cut next_cut(const side_view *view, double rho_origin, double from, double to) {
+    friction_cut next = {to, -1};
     for (int k = 0; k < GMI_FRICTION_CUTS; ++k) {
         const double cut = (view->sliding->friction->cuts[k] - rho_origin) / view->lines.advance;
-        if (cut > from && cut < next) { /* not for spur gears: infinite */
-            next = cut;
+        if (cut > from && cut < next.t1) { /* not for spur gears: infinite */
+            next.t1 = cut;
+            next.place = k;
         }
     }
     return next;
 }
 
-/* A line from cut to cut. A cut stays where it is while the line moves: what one part loses there the next one gains. */
-static void add_line_in_parts(side_view *view, const gmi_line *line, double rho_origin, int wanted,
-                              gmi_side_sum *side) {
+/*
+ * An end of a part, as it moves. A cut stays where it is while the line moves: what one part loses there the next one
+ * gains. All cuts follow the line of action.
+ */
+static OWN_STACK void add_part_end(const side_view *view, double sign, const friction_cut *end,
+                                   double f, const double end_by[GMI_COORDINATES]) {
+    gmi_line_tangent *line = &view->tangent->line;
+    if (end->place < 0) {
+        add_end(line, sign, end->t1, f, end_by);
+    } else if (f > 0.0) {
+        const double per_advance = sign * view->ends.per_advance;
+        const double by_length =
+            gmi_friction_cut_by_length(view->pair, view->at, view->sliding->friction, end->place);
+        move_end(line, GMI_BY_ORIGIN, -per_advance, end->t1, f);
+        move_end(line, GMI_BY_LENGTH, per_advance * by_length, end->t1, f);
+    }
+}
+
+/* A line from cut to cut. */
+SPECIALIZED void add_line_in_parts(side_view *view, const gmi_line *line, double rho_origin,
+                                   int wanted, gmi_side_sum *side) {
     const gmi_side *prepared = view->prepared;
     const gmi_line_part *whole = &view->tilted_part;
-    const double cut_by[GMI_COORDINATES] = {[GMI_BY_ORIGIN] = -view->ends.per_advance};
     int touches = 0;
-    double to;
     if (wanted & GMI_TANGENT && !prepared->is_tilted) {
         (void)gmi_tilt_cut_line(&view->cuts, rho_origin, &view->tilted_part);
         move_ends(view, rho_origin);
     }
-    for (double from = line->from; from < line->to; from = to) {
-        to = next_cut(view, rho_origin, from, line->to);
-        gmi_line part = gmi_line_between(line, from, to);
+    friction_cut from = {line->from, -1}, to;
+    for (; from.t1 < line->to; from = to) {
+        to = next_cut(view, rho_origin, from.t1, line->to);
+        gmi_line part = gmi_line_between(line, from.t1, to.t1);
         if (wanted & GMI_TANGENT) {
             begin_tangent(view, rho_origin);
-            part.tangent = view->line_tangent;
+            part.tangent = &view->tangent->line;
         }
         gmi_line_sum sum;
         gmi_flanks_integrate(prepared, &prepared->pinion_grid, &prepared->wheel_grid, &part, wanted,
                              &sum);
 
-        gmi_side_sum of_part = gmi_no_contact();
-        of_part.sum = sum.sum;
-        of_part.contact = sum.contact;
-        add_moments(&view->lines, rho_origin, &sum, &of_part);
+        side->sum += sum.sum;
+        side->contact += sum.contact;
+        add_moments(&view->lines, rho_origin, &sum, side);
         if (wanted & GMI_TANGENT) {
-            gmi_line_tangent *tangent = view->line_tangent;
-            add_end(tangent, 1.0, to, sum.at_to, to < line->to ? cut_by : whole->to_by);
-            add_end(tangent, -1.0, from, sum.at_from, from > line->from ? cut_by : whole->from_by);
-            of_part.by_origin = tangent->sum_by[GMI_BY_ORIGIN][0];
-            of_part.by_delta = tangent->sum_by[GMI_BY_DELTA][0];
-            of_part.contact_by_origin = tangent->flow_by[GMI_BY_ORIGIN][0];
-            of_part.contact_by_delta = tangent->flow_by[GMI_BY_DELTA][0];
+            add_part_end(view, 1.0, &to, sum.at_to, whole->to_by);
+            add_part_end(view, -1.0, &from, sum.at_from, whole->from_by);
+            add_tangent(view, rho_origin, 1, &sum, side);
+        } else {
+            add_friction(view, rho_origin, &sum);
         }
-        add_friction(view, rho_origin, wanted, &of_part);
-        add_sum(&of_part, side);
         touches = touches || sum.contact > 0.0;
     }
     side->pairs += touches;
@@ -493,7 +483,7 @@ SPECIALIZED void add_line(side_view *view, const gmi_flank *pinion, const gmi_fl
 
     if (wanted & GMI_TANGENT) {
         begin_tangent(view, rho_origin);
-        line.tangent = view->line_tangent;
+        line.tangent = &view->tangent->line;
     }
 
     gmi_line_sum sum;
@@ -524,12 +514,13 @@ SPECIALIZED void add_line(side_view *view, const gmi_flank *pinion, const gmi_fl
         add_tilt_contact_derivatives(&tilted, &view->tilted_part, &sum, side);
     }
     if (wanted & GMI_TANGENT) {
-        const gmi_interval whole = {line.from, line.to};
         if (!is_tilted) {
             (void)gmi_tilt_cut_line(&view->cuts, rho_origin, &view->tilted_part);
             move_ends(view, rho_origin);
         }
-        add_tangent(view, rho_origin, &whole, &sum);
+        add_end(line.tangent, 1.0, line.to, sum.at_to, view->tilted_part.to_by);
+        add_end(line.tangent, -1.0, line.from, sum.at_from, view->tilted_part.from_by);
+        add_tangent(view, rho_origin, 0, &sum, side);
     }
 }
 
@@ -573,15 +564,6 @@ SPECIALIZED void follow_lines(const gm_pair *pair, const gmi_engagement *at,
         teeth.pinion = gmi_next_tooth(teeth.pinion, teeth.step, pair->pinion.teeth);
         teeth.wheel = gmi_next_tooth(teeth.wheel, teeth.step, pair->wheel.teeth);
     }
-}
-
-static OWN_STACK void finish_friction(const side_view *view, int wanted,
-                                      const gmi_side_sum *total) {
-    gmi_side_force force;
-    gmi_law_force(view->law, total, view->approach_speed, law_mask(wanted), &force);
-    const gmi_varying all = gmi_varying_of(view->pair, view->side, force.force, force.by_origin,
-                                           force.by_delta, force.by_speed);
-    gmi_friction_finish(view->sliding, &all, view->friction, NULL);
 }
 
 /*
@@ -653,28 +635,6 @@ void gmi_side_sum_depths(const gm_pair *pair, const gmi_engagement *at, const gm
     }
 }
 
-void gmi_side_sum_sliding(const gm_pair *pair, const gmi_engagement *at, const gmi_side *prepared,
-                          int side, const gm_position *position, int with_derivatives,
-                          const gmi_law *law, double approach_speed, const gmi_sliding *sliding,
-                          gmi_side_sum *total, gmi_friction_sum *friction) {
-    const gmi_friction_sum none = {.loss = 0.0};
-    const int wanted = with_derivatives ? SLIDING_ALL : SLIDING_SUM;
-    const gmi_rates rates = {.delta = 1.0}; /* so that what flows is the touching part */
-    gmi_line_tangent tangent;
-    side_view view;
-    view.rates = &rates;
-    view.line_tangent = &tangent;
-    view.law = law;
-    view.sliding = sliding;
-    view.approach_speed = approach_speed;
-    view.friction = friction;
-    *total = gmi_no_contact();
-    *friction = none;
-    follow_lines(pair, at, prepared, side, position, wanted, prepared->is_tilted, 1, &view, total);
-
-    finish_friction(&view, wanted, total);
-}
-
 void gmi_side_sum_tables(const gm_pair *pair, const gmi_engagement *at, const gmi_side *prepared,
                          int side, const gm_position *position, int wanted, gmi_side_sum *total) {
     /* Between parallel axes, what most calls want: a copy for each leaves all else out. */
@@ -690,32 +650,82 @@ void gmi_side_sum_tables(const gm_pair *pair, const gmi_engagement *at, const gm
     }
 }
 
-/* Apart, as it takes more stack. */
+void gmi_side_sum_sliding(const gm_mesh *mesh, int side, const gm_position *position,
+                          double approach_speed, const gmi_sliding *sliding, gmi_side_sum *total,
+                          gmi_rubbing *rubbing) {
+    const gmi_rubbing none = {{0.0, 0.0, 0.0}, 0.0};
+    *total = gmi_no_contact();
+    *rubbing = none;
+    side_view view;
+    view.law = &mesh->law;
+    view.sliding = sliding;
+    view.approach_speed = approach_speed;
+    view.rubbing = rubbing;
+    const gmi_side *prepared = &mesh->side[side];
+    follow_lines(mesh->pair, &mesh->engagement, prepared, side, position, GMI_MOMENTS,
+                 prepared->is_tilted, 1, &view, total);
+
+    /* What of the coefficient is the same all over the side. */
+    gmi_load load = {
+        {mesh->law.stiffness * total->sum + mesh->law.damping * approach_speed * total->contact,
+         0.0, 0.0},
+        total->contact};
+    gmi_rubbing_finish(sliding, &load, NULL, rubbing, NULL);
+}
+
+/* Apart from sums, as they take more stack. */
 static OWN_STACK void follow_tangent(const gm_mesh *mesh, int side, const gm_position *position,
                                      gmi_side_sum *total, gmi_side_tangent *tangent) {
     const gmi_side *prepared = &mesh->side[side];
     side_view view;
     view.tangent = tangent;
-    view.rates = &tangent->rates;
-    view.line_tangent = &tangent->line;
-    follow_lines(mesh->pair, &mesh->engagement, prepared, side, position,
-                 GMI_TANGENT | GMI_MOMENTS, prepared->is_tilted, 0, &view, total);
+    view.law = &mesh->law;
+    follow_lines(mesh->pair, &mesh->engagement, prepared, side, position, GMI_TANGENT | GMI_MOMENTS,
+                 prepared->is_tilted, 0, &view, total);
+}
+
+static OWN_STACK void follow_sliding_tangent(const gm_mesh *mesh, int side,
+                                             const gm_position *position,
+                                             const gmi_sliding *sliding, gmi_side_sum *total,
+                                             gmi_side_tangent *tangent, gmi_rubbing *rubbing,
+                                             gmi_rubbing_by *rubbing_by) {
+    side_view view;
+    view.tangent = tangent;
+    view.law = &mesh->law;
+    view.sliding = sliding;
+    view.rubbing = rubbing;
+    view.rubbing_by = rubbing_by;
+    const gmi_side *prepared = &mesh->side[side];
+    follow_lines(mesh->pair, &mesh->engagement, prepared, side, position, GMI_TANGENT | GMI_MOMENTS,
+                 prepared->is_tilted, 1, &view, total);
 }
 
 void gmi_side_sum_tangent(const gm_mesh *mesh, int side, const gm_position *position,
-                          gmi_side_sum *total, gmi_side_tangent *tangent) {
+                          const gmi_sliding *sliding, gmi_side_sum *total,
+                          gmi_side_tangent *tangent, gmi_rubbing *rubbing,
+                          gmi_rubbing_by *rubbing_by) {
     const gmi_rates rates = tangent->rates;
     memset(tangent, 0, sizeof *tangent);
     tangent->rates = rates;
+    *total = gmi_no_contact();
+    if (sliding != NULL) {
+        memset(rubbing, 0, sizeof *rubbing);
+        memset(rubbing_by, 0, sizeof *rubbing_by);
+    }
     if (mesh->model == GM_MODEL_SIMPLE) {
         gmi_side_sum_simple(mesh->pair, &mesh->engagement, side, position->offset, total);
-        set_simple_tangent(mesh->pair, &mesh->engagement, total, tangent);
+        set_simple_tangent(mesh->pair, &mesh->engagement, &mesh->law, total, tangent);
         return;
     }
-    *total = gmi_no_contact();
-    if (!gmi_side_is_clear(&mesh->engagement, &mesh->side[side], side, position->offset)) {
-        follow_tangent(mesh, side, position, total, tangent);
+    if (gmi_side_is_clear(&mesh->engagement, &mesh->side[side], side, position->offset)) {
+        return;
     }
+    if (sliding == NULL) {
+        follow_tangent(mesh, side, position, total, tangent);
+        return;
+    }
+    follow_sliding_tangent(mesh, side, position, sliding, total, tangent, rubbing, rubbing_by);
+    gmi_rubbing_finish(sliding, &tangent->load, &tangent->by, rubbing, rubbing_by);
 }
 
 /* One pair, always there, which touches in the pitch point at mid-face. */

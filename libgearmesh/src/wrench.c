@@ -123,21 +123,15 @@ void gmi_wrench_add_tip(const gm_pair *pair, const gmi_engagement *at, const gmi
 
 /*
  * Friction acts across the line of action, on the wheel as the pinion's flank moves there: friction * (-sign cos(alpha),
- * sin(alpha), 0), at the same points.
+ * sin(alpha), 0), at the same points. about_wheel: of the friction about that axis.
  */
-void gmi_wrench_add_friction(const gm_pair *pair, const gmi_engagement *at,
-                             const gmi_friction_sum *friction, int side_of_teeth,
-                             gm_wrench *wrench) {
-    const double sign = gmi_side_sign(side_of_teeth);
-    const double across[2] = {-sign * at->cos_pressure_angle, at->sin_pressure_angle};
-    const double force = friction->force.value;
-    const double z_force = pair->face_start * force + pair->face_width * friction->force_t1;
-
-    /* About the pinion's axis the arm is rho_p, about the wheel's -rho_w. */
+static void add_friction(const gm_pair *pair, const double friction[GMI_WEIGHTS],
+                         const double across[2], double about_pinion, double about_wheel,
+                         gm_wrench *wrench) {
+    const double force = friction[GMI_WHOLE];
+    const double z_force = pair->face_start * force + pair->face_width * friction[GMI_BY_T1];
     const double on_wheel[2] = {force * across[0], force * across[1]};
     const double tilting[2] = {-z_force * across[1], z_force * across[0]};
-    const double about_pinion = friction->moment.value;
-    const double about_wheel = about_pinion - at->line_of_action * force;
     for (int k = 0; k < 2; ++k) {
         wrench->wheel_force[k] += on_wheel[k];
         wrench->wheel_moment[k] += tilting[k];
@@ -146,6 +140,38 @@ void gmi_wrench_add_friction(const gm_pair *pair, const gmi_engagement *at,
     }
     wrench->pinion_moment[2] -= about_pinion;
     wrench->wheel_moment[2] += about_wheel;
+}
+
+/* About the pinion's axis the arm is rho_p, about the wheel's -rho_w. */
+static void add_friction_as_it_acts(const gm_pair *pair, const gmi_engagement *at,
+                                    const double friction[GMI_WEIGHTS], int side_of_teeth,
+                                    gm_wrench *wrench) {
+    const double across[2] = {-gmi_side_sign(side_of_teeth) * at->cos_pressure_angle,
+                              at->sin_pressure_angle};
+    const double about_pinion = friction[GMI_BY_RHO];
+    add_friction(pair, friction, across, about_pinion,
+                 about_pinion - at->line_of_action * friction[GMI_WHOLE], wrench);
+}
+
+void gmi_wrench_add_friction(const gm_pair *pair, const gmi_engagement *at,
+                             const gmi_friction_sum *friction, int side_of_teeth,
+                             gm_wrench *wrench) {
+    const double weighted[GMI_WEIGHTS] = {[GMI_WHOLE] = friction->force.value,
+                                          [GMI_BY_T1] = friction->force_t1,
+                                          [GMI_BY_RHO] = friction->moment.value};
+    add_friction_as_it_acts(pair, at, weighted, side_of_teeth, wrench);
+}
+
+void gmi_wrench_add_friction_by(const gm_pair *pair, const gmi_engagement *at,
+                                const double friction_by[GMI_WEIGHTS],
+                                const double friction[GMI_WEIGHTS], int side_of_teeth,
+                                double angle_by, double length_by, gm_wrench *wrench) {
+    add_friction_as_it_acts(pair, at, friction_by, side_of_teeth, wrench);
+
+    /* Across turns with alpha_wt, and the arm about the wheel's axis grows with T. */
+    const double across_by[2] = {gmi_side_sign(side_of_teeth) * angle_by * at->sin_pressure_angle,
+                                 angle_by * at->cos_pressure_angle};
+    add_friction(pair, friction, across_by, 0.0, -length_by * friction[GMI_WHOLE], wrench);
 }
 
 /*

@@ -1067,8 +1067,8 @@ typedef struct gm_motion {
  *
  * The damping force of a side is D times the integral of the speed of approach over its touching part: dx/dt, less the
  * velocity of the wheel's axis along the surface normal, less what a changing tilt does at each point, in first order. With
- * elastic teeth and with friction the mean over the touching part is taken. The sliding speed of friction contains what
- * the wheel's body does across the line of action.
+ * elastic teeth the mean over the touching part is taken. The sliding speed of friction contains what the wheel's body
+ * does across the line of action.
  *
  * @return as gm_mesh_evaluate_at(), and GM_POSE_OUT_OF_MESH; GM_STATE_OUT_OF_RANGE for rates too
  *
@@ -1107,10 +1107,12 @@ typedef struct gm_tangent {
  * @param[in]  mesh     the mesh; of constant stiffness, or that of ISO 6336-1
  * @param[in]  motion   where the gears are and how they move
  * @param[out] tangent  all of it; NaN on an error
- * @return as gm_mesh_evaluate_posed(); GM_ERR_PARAMETER with friction, with corner contact, and for elastic teeth, whose derivatives by both angles
- *         gm_mesh_evaluate() has
+ * @return as gm_mesh_evaluate_posed(); GM_ERR_PARAMETER with corner contact, and for elastic teeth: take the derivatives by
+ *         both angles of gm_mesh_evaluate(), and differences for the pose
  *
- * Accuracy: roundings. Cost: some four evaluations with tables; docs/performance.md. Source: docs/equations.md.
+ * The wrench contains friction, of which the rate of the pinion's angle changes sliding speeds alone where x stays as it
+ * is. Accuracy: roundings. Cost: some four evaluations with tables, with friction seven; docs/performance.md. Source:
+ * docs/equations.md.
  */
 GM_API int gm_mesh_tangent(const gm_mesh *mesh, const gm_motion *motion, gm_tangent *tangent);
 

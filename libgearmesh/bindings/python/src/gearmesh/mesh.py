@@ -140,7 +140,7 @@ class Mesh:
         Exact derivatives of force and wrench by both angles and the pose, and by their rates, where evaluate() has the same
         arguments: `force_by` [..., 7], `wrench_by.wheel_moment` [..., 7, 3] ..., in the order of gm_coordinate.
 
-        Not for elastic teeth (Error).
+        Friction is in the wrench. Not for elastic teeth and corner contact (Error).
         """
         states = filled(STATE, {"pinion_angle": pinion_angle, "wheel_angle": wheel_angle, "pinion_speed": pinion_speed,
                                 "wheel_speed": wheel_speed})
