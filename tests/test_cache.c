@@ -576,14 +576,14 @@ static void pairs_and_wrenches_are_exact_on_request(void) {
  * ------------------------------------------------------------------------------------------- */
 
 /* delta times the length of the lines: quadratic in delta, piecewise linear in phase. */
-static void ideal_flanks_need_one_pass(void) {
+static void assert_one_pass_serves(const gm_pair_params *drawn) {
     for (int side = GM_DRIVE; side <= GM_COAST; ++side) {
         gm_test_context("side %d", side);
         gm_cache_params params = default_params();
         params.side = side;
         fixture f;
         memset(&f, 0, sizeof f);
-        f.pair = reference_pair(REFERENCE_FACE_WIDTH);
+        f.pair = make_pair(drawn);
         make_cache(&f, &params);
         GM_ASSERT_INT(f.cache->passes, 1);
         uint64_t seed = UINT64_C(88);
@@ -605,6 +605,19 @@ static void ideal_flanks_need_one_pass(void) {
         GM_ASSERT(count > 900);
         free_fixture(&f);
     }
+}
+
+static void ideal_flanks_need_one_pass(void) {
+    const gm_pair_params drawn = reference_params(REFERENCE_FACE_WIDTH);
+    assert_one_pass_serves(&drawn);
+}
+
+/* Profiles that begin late end the lines there: columns stand at the kinks of those ends. */
+static void kinks_of_a_given_start_have_their_columns(void) {
+    gm_pair_params drawn = reference_params(REFERENCE_FACE_WIDTH);
+    drawn.pinion_start_radius = 43.6e-3;
+    drawn.wheel_start_radius = 39.6e-3;
+    assert_one_pass_serves(&drawn);
 }
 
 typedef struct small_flanks {
@@ -685,21 +698,53 @@ static void columns_begin_where_contact_does(void) {
     }
 }
 
-/* A profile of the pinion that begins late ends the lines there: columns stand at the kinks of that end. */
-static void kinks_of_a_given_start_have_their_columns(void) {
-    gm_pair_params drawn = reference_params(REFERENCE_FACE_WIDTH);
-    drawn.pinion_start_radius = 43.6e-3;
-    drawn.wheel_start_radius = 39.6e-3;
-    for (int side = GM_DRIVE; side <= GM_COAST; ++side) {
-        gm_test_context("side %d", side);
+/*
+ * A relief that grows along the whole profile of a pinion so narrow that one line is alone at some phases: contact begins
+ * there further above what is the least missing anywhere than the depth reaches, as the exact sum says.
+ */
+static void columns_begin_where_the_exact_sum_does(void) {
+    for (int missing = 0; missing <= 1; ++missing) {
+        gm_pair_params drawn = reference_params(0.5e-3);
+        if (!missing) { /* no line at all at some phases */
+            drawn.pinion_tip_radius = 44.913e-3;
+            drawn.wheel_tip_radius = 40.978e-3;
+        }
+        static small_flanks own;
+        const gm_flanks_params sizes = {.teeth = 45};
+        const gm_flank_ramp growing = {.offset = 0.0, .per_t2 = 300e-6};
+        GM_ASSERT_INT(gm_flanks_init(&own.flanks, &sizes, own.memory, sizeof own.memory), GM_OK);
+        GM_ASSERT_INT(gm_flanks_set_ramps(own.flanks, GM_DRIVE, &growing, missing, 1.0), GM_OK);
         fixture f;
         memset(&f, 0, sizeof f);
         f.pair = make_pair(&drawn);
-        gm_cache_params params = default_params();
-        params.side = side;
+        f.flanks[0] = missing ? own.flanks : NULL;
+        const gm_cache_params params = params_of(GM_DRIVE, 16, 8, 20e-6);
         make_cache(&f, &params);
-        assert_columns_begin_at(&f, 0.0);
-        free_fixture(&f);
+        GM_ASSERT_INT(gm_cache_fill(f.cache, 0, f.cache->passes, NULL), GM_OK);
+
+        const double fine = params.depth / 4096.0;
+        double highest = 0.0;
+        int without = 0;
+        for (int column = 0; column < f.cache->columns; ++column) {
+            gm_test_context("missing %d, column %d", missing, column);
+            const double start = f.cache->starts[column];
+            gm_position position = {.phase = f.cache->phases[column]};
+            if (start < HUGE_VAL) {
+                position.offset = offset_of(&f, start);
+                GM_ASSERT(exact_at(&f, &position).drive == 0.0);
+                position.offset = offset_of(&f, start + 1.000001 * fine);
+                GM_ASSERT(exact_at(&f, &position).drive > 0.0);
+                highest = fmax(highest, start);
+            } else {
+                position.offset = 0.4999 * f.pair.transverse_base_pitch;
+                GM_ASSERT(exact_at(&f, &position).drive == 0.0);
+                ++without;
+            }
+        }
+        GM_ASSERT(missing ? without == 0 && highest > 3.0 * params.depth
+                          : without > 0 && without < f.cache->columns);
+        free(f.cache);
+        free(f.mesh);
     }
 }
 
@@ -1040,8 +1085,9 @@ int main(int argc, char **argv) {
         GM_TEST(a_cache_serves_its_own_mesh_alone),
         GM_TEST(pairs_and_wrenches_are_exact_on_request),
         GM_TEST(ideal_flanks_need_one_pass),
-        GM_TEST(columns_begin_where_contact_does),
         GM_TEST(kinks_of_a_given_start_have_their_columns),
+        GM_TEST(columns_begin_where_contact_does),
+        GM_TEST(columns_begin_where_the_exact_sum_does),
         GM_TEST(a_pair_that_hardly_touches_is_measured_in_bounded_time),
         GM_TEST(passes_are_those_that_happen),
         GM_TEST(strangers_are_evaluated_exactly),

@@ -37,6 +37,18 @@ SLIPS = [
      "in N/(mm um)", "2.45e+08"),
     ("gears.pinion_rack_dedendum=2.8875", "in mm, not in modules", "1.75"),
     ("gears.wheel_rack_fillet_radius=0.627", "in mm, not in modules", "0.38"),
+    ("gears.wheel_rack_dedendum=2.8875", "in mm, not in modules", "1.75"),
+    ("gears.pinion_rack_fillet_radius=0.627", "in mm, not in modules", "0.38"),
+    ("gears.pinion_tip_diameter_mm= gears.wheel_tip_diameter_mm= gears.pinion_rack_addendum=1.98",
+     "in mm, not in modules", "1.2"),
+    ("gears.pinion_tip_diameter_mm= gears.wheel_tip_diameter_mm= gears.wheel_rack_addendum=1.98",
+     "in mm, not in modules", "1.2"),
+    ("gears.pinion_tip_diameter_mm= gears.wheel_tip_diameter_mm= gears.pinion_tip_alteration=-1.155",
+     "in mm, not in modules", "-0.7"),
+    ("gears.pinion_tip_diameter_mm= gears.wheel_tip_diameter_mm= gears.wheel_tip_alteration=-1.155",
+     "in mm, not in modules", "-0.7"),
+    ("gears.pinion_profile_shift=2.475", "in mm, not in modules", "1.5"),
+    ("gears.wheel_profile_shift=2.475", "in mm, not in modules", "1.5"),
     ("gears.pinion_tip_diameter_mm=0.09387678", "in metres", "93.8768"),
     ("gears.pinion_tip_diameter_mm=46.93839", "as the radius", "93.8768"),
     ("gears.wheel_tip_diameter_mm=0.086007182", "in metres", "86.0072"),
@@ -52,7 +64,10 @@ SLIPS = [
     ("mesh.law=elastic mesh.stiffness_N_per_m= mesh.pinion_youngs_modulus_GPa=206000", "in MPa", "206"),
     ("mesh.law=elastic mesh.stiffness_N_per_m= mesh.wheel_youngs_modulus_GPa=3200", "in MPa", "3.2"),
     ("mesh.law=elastic mesh.stiffness_N_per_m= gears.pinion_bore_diameter_mm=0.035", "in metres", "35"),
+    ("mesh.law=elastic mesh.stiffness_N_per_m= gears.wheel_bore_diameter_mm=0.04", "in metres", "40"),
+    ("mesh.model=simple mesh.simple_stiffness_N_per_m=300", "in N/um", "3e+08"),
     ("gears.axial_offset_mm=-0.002", "in metres", "-2"),
+    ("gears.double_helical_gap_mm=0.005", "in metres", "5"),
     ("mesh.friction_law=iso14179 mesh.roughness_Ra_um=0.4 mesh.oil_viscosity_mPas=0.08", "in Pa s", "80"),
     ("mesh.friction_law=iso14179 mesh.oil_viscosity_mPas=80 mesh.roughness_Ra_um=400", "in nm", "0.4"),
     ("pose.center_distance_change_um=0.04", "in mm", "40"),
@@ -66,17 +81,19 @@ SLIPS = [
     ("drive.kind=torque drive.torque_Nm=21 bodies.pinion_inertia_kg_m2=2100", "in kg mm2", "0.0021"),
     ("load.mean_Nm=20000", "in N mm", "20"),
     ("load.mean_Nm=-20000", "in N mm", "-20"),
+    ("analysis.type=static load.end_Nm=20000", "in N mm", "20"),
+    ("drive.kind=torque bodies.pinion_inertia_kg_m2=2e-3 drive.torque_Nm=21000", "in N mm", "21"),
     ("load.noise_amplitude_Nm=10000", "in N mm", "10"),
     ("drive.start_rpm=104.72", "in rad/s", "1000"),
     ("drive.end_rpm=-1047.1976", "in rad/s", "-10000"),
     ("drive.kind=torque drive.torque_Nm=21 bodies.pinion_inertia_kg_m2=2e-3 analysis.stop_rpm=157.08", "in rad/s", "1500"),
     ("drive.start_rpm=16.6667", "in turns per second", "1000"),
     ("drive.end_rpm=-33.3333", "in turns per second", "-2000"),
-    ("bodies.wheel_drag_Nms=300", "in N mm s", "0.3"),
+    ("drive.start_rpm=-2400 drive.end_rpm=0 bodies.wheel_drag_Nms=300", "in N mm s", "0.3"),
     ("load.per_speed_Nms=100", "in N mm s", "0.1"),
     ("load.noise_amplitude_Nm=10 load.noise_interval_s=100", "in us", "0.0001"),
-    ("drive.start_rpm=2400 output.rate_Hz=25.6", "in kHz", "25600"),
-    ("drive.end_rpm=-2400 output.rate_Hz=0.0512", "in MHz", "51200"),
+    ("drive.start_rpm=2400 drive.end_rpm=0 output.rate_Hz=25.6", "in kHz", "25600"),
+    ("drive.start_rpm=0 drive.end_rpm=-2400 output.rate_Hz=0.0512", "in MHz", "51200"),
     ("solver.max_step_s=100", "in us", "0.0001"),
     ("flanks.profile_blend=10", "in percent", "0.1"),
     ("flanks.scale=1e-6", "as a change of unit", "1"),
@@ -196,6 +213,40 @@ class Slips(unittest.TestCase):
                 result = self.check(settings + given + f"gears.normal_module_mm={transverse:.9g}")
                 self.assertIn("was it meant as the transverse module? write 3\n", result.stderr)
                 self.assertNotIn("was it meant", self.check(settings + given + "gears.normal_module_mm=3").stderr)
+
+    def test_rings(self):
+        """The difference of the teeth decides, and shifts of the pinion alone move the axes to the other side."""
+        helix = 20
+        transverse = 2 / math.cos(math.radians(helix))
+        ring = ("gears.pinion_teeth=20 gears.wheel_teeth=-60 gears.normal_pressure_angle_deg=20 gears.pinion_rack_dedendum= "
+                "gears.wheel_rack_dedendum= gears.pinion_rack_addendum= gears.wheel_rack_addendum= "
+                "gears.pinion_tip_diameter_mm= gears.wheel_tip_diameter_mm= ")
+        spur = ring + "gears.helix_angle_deg=0 gears.normal_module_mm=2 gears.center_distance_mm=40 "
+        helical = ring + f"gears.helix_angle_deg={helix} gears.center_distance_mm={20 * transverse:.9g} "
+        far = "far from half the difference of the reference diameters"
+        for settings, why, meant in [
+                (spur + "gears.center_distance_mm=0.04", far, "in metres? write 40"),
+                (spur + "gears.center_distance_mm=1.5748031", far, "in inches? write 40"),
+                (spur + "gears.normal_module_mm=12.7", "which does not fit", "as the diametral pitch? write 2"),
+                (spur + "gears.wheel_tip_diameter_mm=58", "far from the reference diameter", "as the radius? write 116"),
+                (helical + f"gears.normal_module_mm={transverse:.9g}", "which does not fit", "as the transverse module? write 2")]:
+            with self.subTest(settings):
+                result = self.check(settings)
+                self.assertIn(f"; was it meant {meant}\n", result.stderr)
+                self.assertIn(why, result.stderr)
+                self.assertEqual(result.stderr.count("was it meant"), 1)
+        for settings in (spur, helical + "gears.normal_module_mm=2", spur + "gears.wheel_tip_diameter_mm=116"):
+            self.assertNotIn("was it meant", self.check(settings).stderr)
+
+    def test_rows_and_drag_go_by_the_fastest_speed_that_is_known(self):
+        """2400 rpm are 40 turns per second; with a torque nothing is known of the speed."""
+        torque = "drive.kind=torque drive.torque_Nm=21 bodies.pinion_inertia_kg_m2=2e-3 "
+        for settings in ("drive.start_rpm=2400 drive.end_rpm=0 output.rate_Hz=41",
+                         torque + "drive.start_rpm=2400 output.rate_Hz=25.6",
+                         torque + "bodies.wheel_drag_Nms=300",
+                         "drive.start_rpm=1 drive.end_rpm=0 bodies.wheel_drag_Nms=300"):
+            with self.subTest(settings):
+                self.assertNotIn("was it meant", self.check(settings).stderr)
 
     def test_a_stiffness_that_two_units_explain_names_both(self):
         result = self.check("gears.face_width_mm=5 mesh.stiffness_N_per_m=20")
