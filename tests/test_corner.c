@@ -262,12 +262,49 @@ static void gap_follows_the_line_of_action(void) {
     }
 }
 
+/* The roll at which a gap is as large as an overlap is the one that the gap is of; beyond the reach it ends there. */
+static void touch_is_where_the_gap_is_the_overlap(void) {
+    uint64_t seed = 6;
+    int met = 0, ended = 0;
+    for (int i = 0; i < 200; ++i) {
+        gm_pair pair;
+        gmi_engagement at;
+        gmi_corner corner;
+        const int role = i % 2;
+        if (!random_corner(&seed, i, &pair, &at) || !gmi_corner_init(&pair, &at, role, &corner)) {
+            continue;
+        }
+        gm_test_context("case %d", i);
+
+        /* In a ring far larger gaps than teeth bend by may shrink again: others may be as large there. */
+        gmi_corner_place place, end;
+        gmi_corner_at(&corner, corner.reach, &end);
+        if (!(end.by_roll > 0.0)) {
+            continue;
+        }
+
+        /* From next to nothing to all of the reach; a gap is known to some 1e-15 of the line of action. */
+        const double u = corner.reach * pow(gm_test_uniform(&seed, 0.03, 1.0), 3.0);
+        gmi_corner_at(&corner, u, &place);
+        const double noise = 1e-14 * fabs(at.line_of_action) / place.by_roll;
+        GM_ASSERT_NEAR(gmi_corner_touch(&corner, place.gap), u, 1e-9, noise);
+        ++met;
+
+        GM_ASSERT_REL(gmi_corner_touch(&corner, 1.01 * end.gap), corner.reach, 0.0);
+        GM_ASSERT_REL(gmi_corner_touch(&corner, 0.0), 0.0, 0.0);
+        GM_ASSERT_REL(gmi_corner_touch(&corner, -1e-6), 0.0, 0.0);
+        ended += corner.reach < fabs(corner.tip_base);
+    }
+    GM_ASSERT(met > 100 && ended > 50);
+}
+
 int main(int argc, char **argv) {
     static const gm_test tests[] = {
         GM_TEST(published_gaps_come_out),
         GM_TEST(gaps_are_those_of_turned_corners),
         GM_TEST(corners_reach_to_the_tip_of_the_mate),
         GM_TEST(gap_follows_the_line_of_action),
+        GM_TEST(touch_is_where_the_gap_is_the_overlap),
     };
     return gm_test_main("unit.corner", tests, GM_TEST_COUNT(tests), argc, argv);
 }
