@@ -59,7 +59,7 @@ GM_TEST_UNUSED static gm_pair reference_pair(double face_width) {
 }
 
 /** A spur pair, contact ratio 1.6. */
-GM_TEST_UNUSED static gm_pair spur_pair(void) {
+GM_TEST_UNUSED static gm_pair_params spur_params(void) {
     gm_pair_params params;
     gm_pair_params_default(&params);
     params.pinion_teeth = 25;
@@ -69,6 +69,11 @@ GM_TEST_UNUSED static gm_pair spur_pair(void) {
     params.center_distance = 62.2e-3;
     params.face_width = 15e-3;
     params.backlash = 60e-6;
+    return params;
+}
+
+GM_TEST_UNUSED static gm_pair spur_pair(void) {
+    const gm_pair_params params = spur_params();
     return make_pair(&params);
 }
 

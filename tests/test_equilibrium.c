@@ -150,6 +150,72 @@ static void the_first_of_two_equilibria_counts(void) {
     GM_ASSERT_INT(r.drive_pairs, 1);
 }
 
+/*
+ * The same next to spur, where a line leaves over some um of travel, and with pitch deviations: where a scan in small
+ * steps finds the load carried first. On both sides, from any guess.
+ */
+static void the_first_place_that_carries_counts_next_to_spur(void) {
+    const double step = 0.02e-6;
+    static double memory[512];
+    const gm_flanks_params sizes = {.teeth = 25};
+    uint64_t seed = UINT64_C(57);
+    int falling = 0;
+    for (int i = 0; i < 300; ++i) {
+        gm_test_context("case %d, seed %llx", i, (unsigned long long)seed);
+        gm_pair_params params = spur_params();
+        const double advance = i % 3 == 0 ? 0.0 : gm_test_uniform(&seed, 0.5e-6, 12e-6);
+        params.helix_angle = atan(advance / params.face_width) * (i % 2 ? 1.0 : -1.0);
+        const gm_pair pair = make_pair(&params);
+        gm_flanks *flanks;
+        const int side = i / 2 % 2 ? GM_COAST : GM_DRIVE;
+        const double sign = side == GM_DRIVE ? 1.0 : -1.0;
+        GM_ASSERT_INT(gm_flanks_init(&flanks, &sizes, memory, sizeof memory), GM_OK);
+        for (int tooth = 0; tooth < 25; ++tooth) {
+            GM_ASSERT_INT(gm_flanks_set_pitch(flanks, side, tooth,
+                                              gm_test_uniform(&seed, -3e-6, 3e-6) * (i % 5 > 1)),
+                          GM_OK);
+        }
+
+        /* A line leaves where rho_p = T0 + delta - rho_w(tip): the angle at which one does within the travel of the load. */
+        const double target = gm_test_uniform(&seed, 10e-6, 40e-6);
+        const double delta = gm_test_uniform(&seed, 0.1, 1.1) * target;
+        const double rho_p = pair.line_of_action + delta - pair.wheel.tip_roll_length;
+        const double angle = sign * (rho_p - pair.phase_origin[side]) / pair.pinion.base_radius +
+                             gm_test_integer(&seed, 0, 24) * pair.pinion.pitch_angle;
+
+        /* The first crossing of a scan, where there is one before half of the largest deflection. */
+        const double begin = 0.5 * pair.backlash - 10e-6;
+        double low = begin, last = 0.0;
+        int k = 0, fell = 0;
+        for (; k < 4000; ++k) {
+            low = begin + k * step;
+            const double sum = sign * at(&pair, flanks, NULL, angle, sign * low).penetration;
+            fell += sum < last - 1e-9;
+            last = sum;
+            if (sum >= target) {
+                break;
+            }
+        }
+        if (k == 4000) {
+            continue;
+        }
+
+        double x = NAN;
+        gm_penetration r;
+        const double torque = sign * 1e8 * pair.wheel.base_radius * target;
+        const double guesses[] = {NAN, sign * low, sign * (low + 3e-6), sign * (low + target)};
+        for (int guess = 0; guess < 4; ++guess) {
+            GM_ASSERT_INT(
+                equilibrium_near(&pair, flanks, NULL, angle, 1e8, torque, guesses[guess], &x, &r),
+                GM_OK);
+            GM_ASSERT_ABS(sign * x, low - 0.5 * step, 0.51 * step);
+        }
+        falling += fell > 0;
+    }
+    gm_test_context("all cases");
+    printf("falling %d ", falling);
+}
+
 /* Whatever it answers with GM_OK carries the torque, spur gears included. */
 static void every_equilibrium_found_carries_the_torque(void) {
     uint64_t seed = UINT64_C(52);
@@ -803,6 +869,7 @@ int main(int argc, char **argv) {
         GM_TEST(loaded_transmission_error_of_the_reference_gears),
         GM_TEST(unequal_faces_carry_as_turned_helicoids_do),
         GM_TEST(the_first_of_two_equilibria_counts),
+        GM_TEST(the_first_place_that_carries_counts_next_to_spur),
         GM_TEST(every_equilibrium_found_carries_the_torque),
         GM_TEST(the_least_torque_is_carried_at_the_clearance),
         GM_TEST(a_thick_tooth_holds_without_torque_where_it_meshes),
