@@ -59,7 +59,7 @@ GM_TEST_UNUSED static gm_pair reference_pair(double face_width) {
 }
 
 /** A spur pair, contact ratio 1.6. */
-GM_TEST_UNUSED static gm_pair_params spur_params(void) {
+GM_TEST_UNUSED static gm_pair_params spur_pair_params(void) {
     gm_pair_params params;
     gm_pair_params_default(&params);
     params.pinion_teeth = 25;
@@ -73,7 +73,7 @@ GM_TEST_UNUSED static gm_pair_params spur_params(void) {
 }
 
 GM_TEST_UNUSED static gm_pair spur_pair(void) {
-    const gm_pair_params params = spur_params();
+    const gm_pair_params params = spur_pair_params();
     return make_pair(&params);
 }
 

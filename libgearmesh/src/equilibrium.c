@@ -157,17 +157,36 @@ static double departure(const problem *p, double lower) {
     return travel + pitch * ceil((lower - travel) / pitch);
 }
 
-/* If the load was carried before a line left: there, and not where the others have taken its share. */
+/*
+ * If the load was carried before a line left: there, and not where the others have taken its share. Next to spur a line
+ * leaves over as much travel as its face advances, and the load may still rise to its largest within that.
+ */
 static int solve_before_departure(const problem *p, double lower, double reached, double *found,
                                   gm_mesh_result *result) {
     const double before = departure(p, lower) - 8.0 * p->resolution;
-    const int can_fall = fabs(p->pair->face_advance) < reached - lower;
-    gm_mesh_result there;
-    if (!can_fall || !(before > lower && before < reached) || residual(p, before, &there) < 0.0) {
+    const double advance = fabs(p->pair->face_advance);
+    if (!(advance < reached - lower && before > lower && before < reached)) {
         return 0;
     }
-    const bracket within = {lower, before, CARRIES};
-    return solve(p, within, before, 0.0, found, result);
+    gm_mesh_result there;
+    const double value = residual(p, before, &there);
+    if (value >= 0.0) {
+        const bracket within = {lower, before, CARRIES};
+        return solve(p, within, before, 0.0, found, result);
+    }
+
+    /* The slope that it has when the line begins to leave is the largest. */
+    if (value + slope_of(p, &there) * advance < 0.0) {
+        return 0;
+    }
+    const bracket leaving = {before, fmin(before + advance, reached), LOAD_FALLS};
+    double travel;
+    if (!solve(p, leaving, before, 0.0, &travel, &there)) {
+        return 0;
+    }
+    *found = travel;
+    *result = there;
+    return 1;
 }
 
 static int find_loaded(const problem *p, double guess, double *found, gm_mesh_result *result) {
