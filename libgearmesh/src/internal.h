@@ -476,11 +476,9 @@ typedef struct gmi_line_tangent {
                      [3]; /* how the touching part moves, at the roots of f; and times t1^2 */
 
     /* Of the part at hand. */
-    int wheel_leads;
+    const struct gmi_line *line;
+    const gmi_grid *pinion, *wheel;
     double t1_zero, per_place; /* t1 = t1_zero + per_place times the place in line.c */
-    double direction[2];       /* of both tables in the order of line.c */
-    double face
-        [2]; /* of the wheel's table where a piece begins: slope across the face, and its rate */
     double part_contact[4];
     double part_slopes[3][2]; /* of the pinion's table by v2, the wheel's, the wheel's by v1 */
 } gmi_line_tangent;

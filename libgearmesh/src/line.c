@@ -141,19 +141,8 @@ SPECIALIZED double begin(trace *path, const gmi_grid *grid, const double *table,
     return s + gmi_larger(grid->profile_cells - u, LEAST_DISTANCE) * grid->profile_spacing;
 }
 
-/* The slope across the face and its rate, from where begin() has left the trace. */
-static void begin_face_slope(const trace *path, const gmi_grid *grid, double s, double *face) {
-    const double *behind = path->ahead - grid->step;
-    const double along_face = behind[grid->row] - behind[0];
-    const double mixed = (path->ahead[grid->row] - path->ahead[0]) - along_face;
-    const double q = 1.0 - (path->next_profile - s) * grid->rate;
-    face[0] = along_face + mixed * q;
-    face[1] = mixed * grid->rate;
-}
-
 /* Across the face line ahead, at `s`; `ahead` is already that of the new cell. */
-SPECIALIZED void cross_face(trace *path, const gmi_grid *grid, double s, int wanted, quadratic *f,
-                            double *face) {
+SPECIALIZED void cross_face(trace *path, const gmi_grid *grid, double s, int wanted, quadratic *f) {
     path->ahead += grid->row;
     const double ahead = path->ahead[GMI_NODE_FACE];
     const double back = path->ahead[GMI_NODE_FACE - grid->step] - ahead;
@@ -162,29 +151,22 @@ SPECIALIZED void cross_face(trace *path, const gmi_grid *grid, double s, int wan
     const double distance = (path->next_profile - s) * grid->rate;
     f->half_slope += grid->face_kick * (ahead + distance * back);
     f->curvature -= grid->bend * back;
-    if (wanted & (GMI_DERIVATIVES | GMI_TANGENT)) {
+    if (wanted & GMI_DERIVATIVES) {
         path->slope_rate -= grid->face_ratio * back;
-    }
-    if (wanted & GMI_TANGENT && face != NULL) {
-        face[0] += ahead + distance * back;
-        face[1] -= grid->rate * back;
     }
 }
 
 /* Across the profile line ahead, at the place p between its nodes on the face lines behind and ahead. */
 SPECIALIZED void cross_profile(trace *path, const gmi_grid *grid, double p, int wanted,
-                               quadratic *f, double *face) {
+                               quadratic *f) {
     const double behind = path->ahead[GMI_NODE_PROFILE];
     const double change = path->ahead[grid->row + GMI_NODE_PROFILE] - behind;
     const double kink = behind + p * change;
     f->half_slope += grid->profile_kick * kink;
     f->curvature += grid->bend * change;
-    if (wanted & (GMI_DERIVATIVES | GMI_TANGENT)) {
+    if (wanted & GMI_DERIVATIVES) {
         path->slope += kink;
         path->slope_rate += grid->face_ratio * change;
-    }
-    if (wanted & GMI_TANGENT && face != NULL) {
-        face[1] += grid->rate * change;
     }
     path->ahead += grid->step;
     path->next_profile += grid->profile_spacing;
@@ -217,66 +199,210 @@ static inline void add_moments(const piece *part, double begin, double end, gmi_
     total->contact_t1 += s * length;
 }
 
-/* A stretch of the line, from place to place, along which the flanks touch: moments up to the third. */
-static void add_stretch(double from, double to, gmi_line_tangent *tangent) {
-    const double length = (to - from) * tangent->per_place;
-    const double t1 = tangent->t1_zero + 0.5 * (from + to) * tangent->per_place;
-    const double spread = length * length * (1.0 / 12.0);
-    tangent->part_contact[0] += length;
-    tangent->part_contact[1] += length * t1;
-    tangent->part_contact[2] += length * (t1 * t1 + spread);
-    tangent->part_contact[3] += length * t1 * (t1 * t1 + 3.0 * spread);
+/* ---------------------------------------------------------------------------------------------
+ * The tangent of a line: a walk finds stretches along which the flanks touch, and each table is followed along them
+ * ------------------------------------------------------------------------------------------- */
+
+/* What is found along a line with its tangent; places are counted from the first face line of the table that leads. */
+typedef struct tangent_walk {
+    double touching_from; /* where the flanks touch since, or NOWHERE */
+    double from_moves;    /* d place / d f there if that is a root of f, else 0 */
+    double moment;        /* twelve times the first moment of f */
+} tangent_walk;
+
+/* What is straight piece by piece: integrals of it over v1, in the terms that the pieces give. */
+typedef struct straight_sums {
+    double from, to;  /* it, at both ends of the stretch */
+    double twice;     /* sum of length times both ends */
+    double at_middle; /* of that times twice the middle */
+    double by_rate;   /* of the cube of the length times how fast it grows */
+} straight_sums;
+
+SPECIALIZED void add_straight(double length, double twice_middle, double from, double rate,
+                              straight_sums *sums) {
+    const double twice = length * (from + sums->to);
+    sums->twice += twice;
+    sums->at_middle += twice_middle * twice;
+    sums->by_rate += length * length * length * rate;
 }
 
-/* A part of a piece, and moments of the slopes of the tables there. */
-static void add_tangent(const piece *part, double begin, double end, gmi_line_tangent *tangent) {
-    add_stretch(part->s + begin, part->s + end, tangent);
-    const double length = (end - begin) * tangent->per_place;
-    const double middle = 0.5 * (begin + end);
-    const double t1 = tangent->t1_zero + (part->s + middle) * tangent->per_place;
-    const double spread = length * length * (1.0 / 12.0);
-    const double *face = tangent->face; /* where the piece begins */
-    const double slopes[3] = {part->first_slope + middle * part->first_rate,
-                              part->second_slope + middle * part->second_rate,
-                              face[0] + middle * face[1]};
-    const double rates[3] = {part->first_rate, part->second_rate, face[1]};
-    const double per_rate = spread / tangent->per_place;
-    for (int k = 0; k < 3; ++k) {
-        tangent->part_slopes[k][0] += length * slopes[k];
-        tangent->part_slopes[k][1] += length * (t1 * slopes[k] + per_rate * rates[k]);
+/* Its integral over t1, and the first moment about t1 = 0, times a factor. */
+static void add_over_t1(const gmi_grid *grid, double factor, const straight_sums *sums,
+                        double integral[2]) {
+    const double per_rate = 1.0 / grid->face_rate;
+    const double over_v1 = 0.5 * sums->twice;
+    const double moment = 0.25 * sums->at_middle + (1.0 / 12.0) * sums->by_rate;
+    integral[0] += factor * per_rate * over_v1;
+    integral[1] += factor * per_rate * per_rate * (moment - grid->face_base * over_v1);
+}
+
+/*
+ * Follows one table from t1 to t1, from cell to cell, and its slopes by u along the profile and by v1 across the face. In a
+ * cell w is bilinear: along the line both slopes are straight. That along the profile goes on across a face line, that
+ * across the face goes on across a profile line. has_face: a constant at each call.
+ */
+SPECIALIZED void follow_slopes(const gmi_grid *grid, const double *table, double profile,
+                               double from, double to, int has_face, straight_sums *along,
+                               straight_sums *across) {
+    const double v1 = from * grid->face_rate + grid->face_base;
+    const double u = grid->base + (grid->direction * profile + from * grid->climb);
+    const int face = cell_of(v1, grid->last_face);
+    const int cell = cell_of(u, grid->last_profile);
+    const ptrdiff_t row = grid->row, step = grid->step;
+    const double *node = table + (face * row + cell * step + grid->corner);
+    const double rate = grid->rate;
+
+    /* Places are counted from the face line behind: of the point, of the profile lines around it, and of the end. */
+    double p = v1 - (double)face;
+    double last = p - (u - (double)cell) * grid->profile_spacing;
+    double next = last + grid->profile_spacing;
+    double end = p + (to - from) * grid->face_rate;
+    double twice_behind = 2.0 * (double)face;
+    int faces = grid->last_face - face, profiles = grid->last_profile - cell;
+    double face_behind = node[row] - node[0];
+    double mixed = (node[row + step] - node[step]) - face_behind;
+    straight_sums d = {0.0, (node[step] - node[0]) + mixed * p, 0.0, 0.0, 0.0};
+    straight_sums c = {0.0, face_behind + mixed * ((p - last) * rate), 0.0, 0.0, 0.0};
+    d.from = d.to;
+    c.from = c.to;
+    if (profiles <= 0) {
+        next = NO_CROSSING;
     }
+    for (;;) {
+        const int is_last = !(end > 1.0) || faces <= 0;
+        const double face_line = is_last ? end : 1.0;
+        for (;;) {
+            /* To the profile line ahead, or the face line. */
+            const int crosses = next < face_line;
+            const double stop = crosses ? next : face_line;
+            const double length = stop - p;
+            const double twice_middle = twice_behind + (p + stop);
+            const double slope = d.to;
+            d.to += mixed * length;
+            add_straight(length, twice_middle, slope, mixed, &d);
+            if (has_face) {
+                const double face_slope = c.to;
+                const double face_rate = mixed * rate;
+                c.to += face_rate * length;
+                add_straight(length, twice_middle, face_slope, face_rate, &c);
+            }
+            p = stop;
+            if (!crosses) {
+                break;
+            }
+
+            /* Into the cell behind the profile line. */
+            node += step;
+            mixed = (node[row + step] - node[step]) - (node[row] - node[0]);
+            d.to = (node[step] - node[0]) + mixed * p;
+            last = next;
+            next = --profiles > 0 ? next + grid->profile_spacing : NO_CROSSING;
+        }
+        if (is_last) {
+            break;
+        }
+
+        /* Into the cell behind the face line. */
+        node += row;
+        face_behind = node[row] - node[0];
+        mixed = (node[row + step] - node[step]) - face_behind;
+        p = 0.0;
+        last -= 1.0;
+        next -= 1.0;
+        end -= 1.0;
+        twice_behind += 2.0;
+        faces -= 1;
+        c.to = face_behind - mixed * (last * rate);
+    }
+    *along = d;
+    *across = c;
 }
 
-/* Slopes in the order of line.c become those of pinion and wheel. */
-static void add_ordered_slopes(const gmi_line_tangent *tangent, double first, double second,
-                               double face, double by[GMI_COORDINATES]) {
-    first *= tangent->direction[0];
-    second *= tangent->direction[1];
-    gmi_line_add_slopes(tangent, tangent->wheel_leads ? second : first,
-                        tangent->wheel_leads ? first : second, face, by);
-}
-
-/* Where f passes zero the touching part moves by d f / |d f / d t1|. */
-static void add_tangent_root(const piece *part, double root, double per_slope,
+/* Where f passes zero the touching part moves by d f / |d f / d t1|; moves: d place / d f, 0 where there is no root. */
+static void add_tangent_root(double t1, double moves, const double slopes[3],
                              gmi_line_tangent *tangent) {
-    if (!(root > 0.0 && root < part->length)) {
+    if (!(moves > 0.0)) {
         return;
     }
-    const double t1 = tangent->t1_zero + (part->s + root) * tangent->per_place;
-    const double moves = per_slope * tangent->per_place;
+    moves *= tangent->per_place;
     double by[GMI_COORDINATES];
     for (int k = 0; k < GMI_COORDINATES; ++k) {
         const double *powers = tangent->by[k];
         by[k] = powers[0] + t1 * (powers[1] + t1 * powers[2]);
     }
-    add_ordered_slopes(tangent, part->first_slope + root * part->first_rate,
-                       part->second_slope + root * part->second_rate,
-                       tangent->face[0] + root * tangent->face[1], by);
+    gmi_line_add_slopes(tangent, slopes[0], slopes[1], slopes[2], by);
     for (int k = 0; k < GMI_COORDINATES; ++k) {
         const double moved = moves * by[k];
         tangent->contact_by[k][0] += moved;
         tangent->contact_by[k][1] += moved * t1;
         tangent->contact_by[k][2] += moved * t1 * t1;
+    }
+}
+
+/* A stretch of the line, from place to place, along which the flanks touch; d place / d f at roots of f, else 0. */
+static OWN_STACK void add_stretch(double from_place, double to_place, double from_moves,
+                                  double to_moves, gmi_line_tangent *tangent) {
+    const double from = tangent->t1_zero + from_place * tangent->per_place;
+    const double to = tangent->t1_zero + to_place * tangent->per_place;
+
+    /* Moments up to the third. */
+    const double length = (to_place - from_place) * tangent->per_place;
+    const double middle = tangent->t1_zero + 0.5 * (from_place + to_place) * tangent->per_place;
+    const double spread = length * length * (1.0 / 12.0);
+    tangent->part_contact[0] += length;
+    tangent->part_contact[1] += length * middle;
+    tangent->part_contact[2] += length * (middle * middle + spread);
+    tangent->part_contact[3] += length * middle * (middle * middle + 3.0 * spread);
+
+    /* The slopes of both tables. */
+    const gmi_line *line = tangent->line;
+    double at_from[3] = {0.0, 0.0, 0.0}, at_to[3] = {0.0, 0.0, 0.0};
+    straight_sums along, across;
+    if (line->pinion != NULL) {
+        const gmi_grid *grid = tangent->pinion;
+        follow_slopes(grid, line->pinion, line->pinion_profile, from, to, 0, &along, &across);
+        add_over_t1(grid, grid->direction, &along, tangent->part_slopes[0]);
+        at_from[0] = grid->direction * along.from;
+        at_to[0] = grid->direction * along.to;
+    }
+    if (line->wheel != NULL) {
+        const gmi_grid *grid = tangent->wheel;
+        follow_slopes(grid, line->wheel, line->wheel_profile, from, to, 1, &along, &across);
+        add_over_t1(grid, grid->direction, &along, tangent->part_slopes[1]);
+        add_over_t1(grid, 1.0, &across, tangent->part_slopes[2]);
+        at_from[1] = grid->direction * along.from;
+        at_from[2] = across.from;
+        at_to[1] = grid->direction * along.to;
+        at_to[2] = across.to;
+    }
+    add_tangent_root(from, from_moves, at_from, tangent);
+    add_tangent_root(to, to_moves, at_to, tangent);
+}
+
+static void begin_stretch(tangent_walk *walked, double place, double moves) {
+    walked->touching_from = place;
+    walked->from_moves = moves;
+}
+
+static void end_stretch(tangent_walk *walked, double place, double moves,
+                        gmi_line_tangent *tangent) {
+    if (walked->touching_from > NOWHERE) {
+        add_stretch(walked->touching_from, place, walked->from_moves, moves, tangent);
+        walked->touching_from = NOWHERE;
+    }
+}
+
+/* A part of a piece in which f > 0: it goes on with a stretch, or begins one, and may end it. */
+static void go_on_touching(const piece *part, double begin, double end, double moves,
+                           tangent_walk *walked, gmi_line_tangent *tangent) {
+    if (begin > 0.0) {
+        end_stretch(walked, part->s, 0.0, tangent);
+        begin_stretch(walked, part->s + begin, moves);
+    } else if (walked->touching_from == NOWHERE) {
+        begin_stretch(walked, part->s, 0.0);
+    }
+    if (end < part->length) {
+        end_stretch(walked, part->s + end, moves, tangent);
     }
 }
 
@@ -289,8 +415,8 @@ static void finish_tangent(gmi_line_tangent *tangent) {
             const double *powers = tangent->by[k];
             by[k] = powers[0] * contact[0] + powers[1] * contact[1] + powers[2] * contact[2];
         }
-        add_ordered_slopes(tangent, tangent->part_slopes[0][weight],
-                           tangent->part_slopes[1][weight], tangent->part_slopes[2][weight], by);
+        gmi_line_add_slopes(tangent, tangent->part_slopes[0][weight],
+                            tangent->part_slopes[1][weight], tangent->part_slopes[2][weight], by);
         for (int k = 0; k < GMI_COORDINATES; ++k) {
             tangent->sum_by[k][weight] += by[k];
         }
@@ -302,16 +428,6 @@ static void finish_tangent(gmi_line_tangent *tangent) {
     for (int k = 0; k < 3; ++k) {
         tangent->part_slopes[k][0] = tangent->part_slopes[k][1] = 0.0;
     }
-}
-
-/* The place in the terms of the table that leads. */
-static void lead_tangent(gmi_line_tangent *tangent, int wheel_leads, double per_place,
-                         double t1_zero, double first, double second) {
-    tangent->wheel_leads = wheel_leads;
-    tangent->per_place = per_place;
-    tangent->t1_zero = t1_zero;
-    tangent->direction[0] = first;
-    tangent->direction[1] = second;
 }
 
 /* Adds the part [begin, end] (from the start of the piece), in which f > 0. */
@@ -345,7 +461,8 @@ static inline void add_root(const piece *part, double root, double per_slope, gm
 }
 
 /* A piece in which f may change its sign: split at the roots of the quadratic. */
-SPECIALIZED void split_piece(const piece *part, int wanted, int has_tangent, gmi_line_sum *total) {
+SPECIALIZED void split_piece(const piece *part, int wanted, tangent_walk *walked,
+                             gmi_line_sum *total) {
     const quadratic f = part->f;
     if (!(part->length > 0.0)) { /* two crossings at the same t1, up to rounding */
         return;
@@ -353,6 +470,7 @@ SPECIALIZED void split_piece(const piece *part, int wanted, int has_tangent, gmi
 
     /* Roots within the piece divide it into three parts at most. */
     double cuts[4] = {0.0, 0.0, 0.0, part->length};
+    double per_slope = 0.0;
     const double discriminant = f.half_slope * f.half_slope - f.curvature * f.value;
     if (discriminant > 0.0) {
         /* Without cancellation; an infinite root (curvature 0) is clamped away. */
@@ -363,15 +481,12 @@ SPECIALIZED void split_piece(const piece *part, int wanted, int has_tangent, gmi
         const double root_2 = gmi_smaller(gmi_larger(f.value / q, 0.0), part->length);
         cuts[1] = gmi_smaller(root_1, root_2);
         cuts[2] = gmi_larger(root_1, root_2);
+        if (wanted & GMI_CONTACT_DERIVATIVES || walked != NULL) {
+            per_slope = 0.5 / half_slope_at_root;
+        }
         if (wanted & GMI_CONTACT_DERIVATIVES) {
-            const double per_slope = 0.5 / half_slope_at_root;
             add_root(part, cuts[1], per_slope, total);
             add_root(part, cuts[2], per_slope, total);
-        }
-        if (has_tangent) {
-            const double per_slope = 0.5 / half_slope_at_root;
-            add_tangent_root(part, cuts[1], per_slope, total->tangent);
-            add_tangent_root(part, cuts[2], per_slope, total->tangent);
         }
     }
 
@@ -381,19 +496,25 @@ SPECIALIZED void split_piece(const piece *part, int wanted, int has_tangent, gmi
         const double at_middle = f.value + middle * (2.0 * f.half_slope + middle * f.curvature);
         if (cuts[k + 1] > cuts[k] && at_middle > 0.0) {
             add_touching(part, cuts[k], cuts[k + 1], wanted, total);
-            if (has_tangent) {
-                add_tangent(part, cuts[k], cuts[k + 1], total->tangent);
+            if (walked != NULL) {
+                go_on_touching(part, cuts[k], cuts[k + 1], per_slope, walked, total->tangent);
             }
         }
     }
 }
 
 static void add_split(const piece *part, int wanted, gmi_line_sum *total) {
-    split_piece(part, wanted, 0, total);
+    split_piece(part, wanted, NULL, total);
 }
 
-static void add_split_tangent(const piece *part, int wanted, gmi_line_sum *total) {
-    split_piece(part, wanted, 1, total);
+/* The same with the stretches of a tangent. */
+static void add_split_tangent(const piece *part, int wanted, tangent_walk *walked,
+                              gmi_line_sum *total) {
+    if (part->f.value <= 0.0) {
+        end_stretch(walked, part->s, 0.0,
+                    total->tangent); /* a root that rounding has put just behind it */
+    }
+    split_piece(part, wanted, walked, total);
 }
 
 /* A walk along a line: where it is, f there, and the sums over whole pieces so far. */
@@ -406,16 +527,6 @@ typedef struct walk_state {
     double contact;
     double two_first, two_second; /* twice the sums of d deviation / d u of both flanks */
 } walk_state;
-
-/* Of a tangent, over whole pieces so far; places are counted from the first face line on. */
-typedef struct tangent_walk {
-    double touching_from; /* where the flanks touch since, or NOWHERE */
-    double face[2];       /* slope of the wheel's table across the face here, and its rate */
-    double moment;        /* twelve times the first moment of f */
-    double slopes
-        [3]
-        [2]; /* twice the integrals of the slopes of both tables and of the wheel's face, six times moments */
-} tangent_walk;
 
 SPECIALIZED piece piece_ahead(const walk_state *at, double length, int wanted) {
     const piece part = {wanted & GMI_MOMENTS ? at->faces + at->s : 0.0,
@@ -537,20 +648,6 @@ SPECIALIZED void add_depths(const piece *part, gmi_depths *depths) {
     }
 }
 
-SPECIALIZED void end_stretch(tangent_walk *walked, double place, gmi_line_tangent *tangent) {
-    if (walked->touching_from > NOWHERE) {
-        add_stretch(walked->touching_from, place, tangent);
-        walked->touching_from = NOWHERE;
-    }
-}
-
-/* What grows from `from` to `to` over a length at a place, straight. */
-SPECIALIZED void add_slope(double place, double length, double from, double to, double sums[2]) {
-    const double twice = length * (from + to);
-    sums[0] += twice;
-    sums[1] += 3.0 * place * twice + length * length * (from + 2.0 * to);
-}
-
 /* Integrates the piece up to `end` and goes there. walked: of a tangent. */
 SPECIALIZED void advance(walk_state *at, double end, int wanted, tangent_walk *walked,
                          gmi_line_sum *split) {
@@ -564,8 +661,6 @@ SPECIALIZED void advance(walk_state *at, double end, int wanted, tangent_walk *w
     /* The slopes of both tables at the end. */
     const double first_slope = at->first.slope + length * at->first.slope_rate;
     const double second_slope = at->second.slope + length * at->second.slope_rate;
-    const double face_slope =
-        wanted & GMI_TANGENT ? walked->face[0] + length * walked->face[1] : 0.0;
 
     /* Touching all along, which is two pieces of three; or in part; or not at all. */
     if (wanted & GMI_DEPTHS) {
@@ -582,50 +677,33 @@ SPECIALIZED void advance(walk_state *at, double end, int wanted, tangent_walk *w
         if (wanted & GMI_TANGENT) {
             const double place = at->faces + at->s;
             if (walked->touching_from == NOWHERE) {
-                walked->touching_from = place;
+                begin_stretch(walked, place, 0.0);
             }
             walked->moment +=
                 4.0 * place * three + length * length * (value + 2.0 * control + 3.0 * end_value);
-            add_slope(place, length, at->first.slope, first_slope, walked->slopes[0]);
-            add_slope(place, length, at->second.slope, second_slope, walked->slopes[1]);
-            add_slope(place, length, walked->face[0], face_slope, walked->slopes[2]);
         } else if (wanted & GMI_MOMENTS) {
             const piece part = piece_ahead(at, length, wanted);
             add_moments(&part, 0.0, length, split);
         }
-    } else {
+    } else if (gmi_larger(gmi_larger(value, control), end_value) > 0.0) {
+        const piece part = piece_ahead(at, length, wanted);
         if (wanted & GMI_TANGENT) {
-            end_stretch(walked, at->faces + at->s, split->tangent);
+            add_split_tangent(&part, wanted, walked, split);
+        } else {
+            add_split(&part, wanted, split);
         }
-        if (gmi_larger(gmi_larger(value, control), end_value) > 0.0) {
-            const piece part = piece_ahead(at, length, wanted);
-            if (wanted & GMI_TANGENT) {
-                split->tangent->face[0] = walked->face[0];
-                split->tangent->face[1] = walked->face[1];
-                add_split_tangent(&part, wanted, split);
-            } else {
-                add_split(&part, wanted, split);
-            }
-        }
+    } else if (wanted & GMI_TANGENT) {
+        end_stretch(walked, at->faces + at->s, 0.0, split->tangent);
     }
 
     /* Go there. */
     at->s = end;
     at->f.value = end_value;
     at->f.half_slope = end_half_slope;
-    if (wanted & (GMI_DERIVATIVES | GMI_TANGENT)) {
+    if (wanted & GMI_DERIVATIVES) {
         at->first.slope = first_slope;
         at->second.slope = second_slope;
     }
-    if (wanted & GMI_TANGENT) {
-        walked->face[0] = face_slope;
-    }
-}
-
-/* That of the first table of the walk or of the second: the wheel's counts. */
-SPECIALIZED double *face_of(int table, int wanted, const gmi_line_sum *split,
-                            tangent_walk *walked) {
-    return wanted & GMI_TANGENT && split->tangent->wheel_leads == !table ? walked->face : NULL;
 }
 
 /*
@@ -646,8 +724,7 @@ SPECIALIZED void walk_cell(walk_state *at, const gmi_grid *first, const gmi_grid
                     break;
                 }
                 advance(at, at->first.next_profile, wanted, walked, split);
-                cross_profile(&at->first, first, at->s, wanted, &at->f,
-                              face_of(0, wanted, split, walked));
+                cross_profile(&at->first, first, at->s, wanted, &at->f);
             } else {
                 if (!(at->second.next_profile < face_line)) {
                     break;
@@ -655,8 +732,7 @@ SPECIALIZED void walk_cell(walk_state *at, const gmi_grid *first, const gmi_grid
                 advance(at, at->second.next_profile, wanted, walked, split);
                 const double p =
                     same_faces ? at->s : 1.0 - (at->second.next_face - at->s) * second->face_ratio;
-                cross_profile(&at->second, second, p, wanted, &at->f,
-                              face_of(1, wanted, split, walked));
+                cross_profile(&at->second, second, p, wanted, &at->f);
             }
         }
 
@@ -665,8 +741,7 @@ SPECIALIZED void walk_cell(walk_state *at, const gmi_grid *first, const gmi_grid
         if (same_faces || !(face_line < end)) {
             return;
         }
-        cross_face(&at->second, second, face_line, wanted, &at->f,
-                   face_of(1, wanted, split, walked));
+        cross_face(&at->second, second, face_line, wanted, &at->f);
         at->second.faces -= 1;
         at->second.next_face += 1.0 / second->face_ratio;
     }
@@ -674,8 +749,7 @@ SPECIALIZED void walk_cell(walk_state *at, const gmi_grid *first, const gmi_grid
 
 /* Across the face line of the leading table, where s begins again. */
 SPECIALIZED void enter_next_cell(walk_state *at, const gmi_grid *first, const gmi_grid *second,
-                                 int wanted, int same_faces, tangent_walk *walked,
-                                 gmi_line_sum *split) {
+                                 int wanted, int same_faces) {
     at->s = 0.0;
     if (wanted & GMI_MOMENTS) {
         at->faces += 1.0;
@@ -689,9 +763,9 @@ SPECIALIZED void enter_next_cell(walk_state *at, const gmi_grid *first, const gm
         at->second.next_face -= 1.0;
     }
 
-    cross_face(&at->first, first, 0.0, wanted, &at->f, face_of(0, wanted, split, walked));
+    cross_face(&at->first, first, 0.0, wanted, &at->f);
     if (same_faces) {
-        cross_face(&at->second, second, 0.0, wanted, &at->f, face_of(1, wanted, split, walked));
+        cross_face(&at->second, second, 0.0, wanted, &at->f);
     }
 }
 
@@ -709,11 +783,11 @@ SPECIALIZED void walk(walk_state at, const gmi_grid *first, const gmi_grid *seco
         if (is_last) {
             break;
         }
-        enter_next_cell(&at, first, second, wanted, same_faces, walked, result);
+        enter_next_cell(&at, first, second, wanted, same_faces);
     }
 
     if (wanted & GMI_TANGENT) {
-        end_stretch(walked, at.faces + at.s, result->tangent);
+        end_stretch(walked, at.faces + at.s, 0.0, result->tangent);
         result->sum_t1 += walked->moment * (1.0 / 12.0);
     }
     const double per_rate = 1.0 / first->face_rate; /* from s to t1 */
@@ -747,7 +821,9 @@ static void integrate_ideal(const gmi_line *line, int wanted, gmi_line_sum *resu
         const quadratic f = {line->overlap, line->half_slope, line->curvature};
         const piece part = {line->from, length, f, 0.0, 0.0, 0.0, 0.0};
         if (wanted & GMI_TANGENT) {
-            add_split_tangent(&part, wanted, result);
+            tangent_walk walked = {NOWHERE, 0.0, 0.0};
+            add_split_tangent(&part, wanted, &walked, result);
+            end_stretch(&walked, line->to, 0.0, result->tangent);
         } else {
             add_split(&part, wanted, result);
         }
@@ -757,9 +833,7 @@ static void integrate_ideal(const gmi_line *line, int wanted, gmi_line_sum *resu
         result->contact_t1 = 0.5 * length * (line->from + line->to);
         result->sum_t1 = line->overlap * result->contact_t1;
         if (wanted & GMI_TANGENT) {
-            const quadratic f = {line->overlap, 0.0, 0.0};
-            const piece part = {line->from, length, f, 0.0, 0.0, 0.0, 0.0};
-            add_tangent(&part, 0.0, length, result->tangent);
+            add_stretch(line->from, line->to, 0.0, 0.0, result->tangent);
         }
     }
 }
@@ -776,33 +850,19 @@ static OWN_STACK void walk_apart(walk_state at, const gmi_grid *first, const gmi
 
 /* The walk of a tangent, apart from the others, which gcc then compiles as if it were not there. */
 static OWN_STACK void walk_tangent(const walk_state *at, const gmi_grid *first,
-                                   const gmi_grid *second, double end, int has_second,
-                                   int same_faces, gmi_line_sum *result) {
+                                   const gmi_grid *second, double end, int same_faces,
+                                   gmi_line_sum *result) {
     enum { TANGENT = GMI_TANGENT | GMI_MOMENTS };
     gmi_line_tangent *tangent = result->tangent;
-    const double per_place = 1.0 / first->face_rate;
-    tangent_walk walked = {NOWHERE, {0.0, 0.0}, 0.0, {{0.0, 0.0}, {0.0, 0.0}, {0.0, 0.0}}};
-    if (tangent->wheel_leads) {
-        begin_face_slope(&at->first, first, at->s, walked.face);
-    } else if (has_second) {
-        begin_face_slope(&at->second, second, at->s, walked.face);
-    }
-    lead_tangent(tangent, tangent->wheel_leads, per_place, -first->face_base * per_place,
-                 first->direction, second->direction);
+    tangent_walk walked = {NOWHERE, 0.0, 0.0};
+    tangent->per_place = 1.0 / first->face_rate;
+    tangent->t1_zero = -first->face_base * tangent->per_place;
     if (same_faces) {
         walk(*at, first, second, end, TANGENT, 1, &walked, result);
     } else {
         walk(*at, first, second, end, TANGENT, 0, &walked, result);
     }
-
-    /* From places to t1. */
     result->contact_t1 = tangent->part_contact[1];
-    for (int k = 0; k < 3; ++k) {
-        const double slopes = 0.5 * per_place * walked.slopes[k][0];
-        tangent->part_slopes[k][0] += slopes;
-        tangent->part_slopes[k][1] +=
-            tangent->t1_zero * slopes + per_place * per_place * (1.0 / 6.0) * walked.slopes[k][1];
-    }
 }
 
 /* The walk at all depths, apart like that of a tangent. */
@@ -868,12 +928,12 @@ SPECIALIZED void walk_tables(const gmi_line *line, const gmi_grid *first, const 
 
     /* A walk of its own for each mask that solvers use: what is not wanted costs nothing in it. */
     enum { DAMPED = GMI_DERIVATIVES | GMI_CONTACT_DERIVATIVES };
+    if (kind != WALK_SUMS && same_faces) {
+        at.second.next_face = NO_CROSSING;
+    }
     if (kind == WALK_TANGENT) {
-        walk_tangent(&at, first, second, end, line->wheel != NULL, same_faces, result);
+        walk_tangent(&at, first, second, end, same_faces, result);
     } else if (kind == WALK_DEPTHS) {
-        if (same_faces) {
-            at.second.next_face = NO_CROSSING;
-        }
         walk_depths(at, first, second, end, same_faces, result);
     } else if (!same_faces) {
         walk_apart(at, first, second, end, wanted, result);
@@ -925,8 +985,11 @@ void gmi_line_integrate_tangent(const gmi_line *line, const gmi_grid *pinion, co
     const int wheel_leads = line->pinion == NULL && line->wheel != NULL;
     result->sum = result->contact = result->sum_t1 = result->contact_t1 = 0.0;
     result->tangent = tangent;
-    tangent->face[0] = tangent->face[1] = 0.0; /* without a table */
-    lead_tangent(tangent, wheel_leads, 1.0, 0.0, 0.0, 0.0);
+    tangent->line = line;
+    tangent->pinion = pinion;
+    tangent->wheel = wheel;
+    tangent->t1_zero = 0.0;
+    tangent->per_place = 1.0;
     if (line->pinion == NULL && line->wheel == NULL) {
         integrate_ideal(line, TANGENT, result);
     } else {

@@ -1181,8 +1181,8 @@ int gm_mesh_evaluate_posed(const gm_mesh *mesh, const gm_motion *motion, int wan
     if (result == NULL) {
         return GM_ERR_NULL;
     }
-    gmi_mesh_result_set_nan(result);
     if (mesh == NULL || motion == NULL) {
+        gmi_mesh_result_set_nan(result);
         return GM_ERR_NULL;
     }
 
@@ -1190,5 +1190,9 @@ int gm_mesh_evaluate_posed(const gm_mesh *mesh, const gm_motion *motion, int wan
     if (gmi_is_at_rest(&motion->pose) && gmi_is_at_rest(&motion->pose_rate)) {
         return gm_mesh_evaluate_at(mesh, &motion->position, wanted, workspace, result);
     }
-    return evaluate_posed(mesh, motion, wanted, workspace, result);
+    const int status = evaluate_posed(mesh, motion, wanted, workspace, result);
+    if (status != GM_OK) {
+        gmi_mesh_result_set_nan(result);
+    }
+    return status;
 }

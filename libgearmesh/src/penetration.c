@@ -642,6 +642,8 @@ void gmi_side_sum_tables(const gm_pair *pair, const gmi_engagement *at, const gm
     side_view view;
     if (wanted == GMI_SUM && !is_tilted) {
         follow_lines(pair, at, prepared, side, position, GMI_SUM, 0, 0, &view, total);
+    } else if (wanted == GMI_SUM) {
+        follow_lines(pair, at, prepared, side, position, GMI_SUM, 1, 0, &view, total);
     } else if (wanted == GMI_DERIVATIVES && !is_tilted) {
         follow_lines(pair, at, prepared, side, position, GMI_DERIVATIVES, 0, 0, &view, total);
     } else {
