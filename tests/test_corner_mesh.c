@@ -833,6 +833,139 @@ static void torques_of_friction_have_no_jumps(void) {
     }
 }
 
+/* ---------------------------------------------------------------------------------------------
+ * Along the lines
+ * ------------------------------------------------------------------------------------------- */
+
+/* The overlap at one place of a line of brute_side(); whose edge it is under, or -1. */
+static double overlap_at(const random_case *c, const gmi_engagement *at,
+                         const gmi_corner corners[2], const gm_line_load_point *point, double delta,
+                         double rho, int *edge) {
+    const gm_pair *pair = &c->pair;
+    const double t1 = (point->z - pair->face_start) / pair->face_width;
+    const double roll[2] = {rho, at->line_of_action + delta - rho};
+    const double start[2] = {pair->pinion.start_roll_length, at->wheel_profile_start};
+    const int tooth[2] = {point->pinion_tooth, point->wheel_tooth};
+    double f = delta;
+    *edge = -1;
+    for (int role = GM_PINION; role <= GM_WHEEL; ++role) {
+        const double length = at->tip_roll_length[role] - start[role];
+        f += deviation_at(c->model_use[role], point->side, tooth[role], t1,
+                          (roll[role] - start[role]) / length);
+        const double beyond = roll[role] - at->tip_roll_length[role];
+        if (beyond > 0.0) {
+            gmi_corner_place place;
+            gmi_corner_at(&corners[role], fmin(beyond, corners[role].reach), &place);
+            f -= place.gap;
+            *edge = role;
+        }
+    }
+    return f;
+}
+
+/* Each point has the overlap of its place; edges have no pressure; the largest are those of all points. */
+static void lines_are_loaded_as_the_overlap_says(void) {
+    uint64_t seed = 4716;
+    int met = 0, edges = 0;
+    for (int i = 0; i < 90; ++i) {
+        random_case c;
+        room where;
+        gm_mesh *mesh;
+        if (random_corner_case(&c, &seed, i)) {
+            gm_test_context("case %d", i);
+            const gm_pair *pair = &c.pair;
+            GM_ASSERT_INT(make_mesh(&where, pair, c.use[0], c.use[1], GM_CORNER_ON, 0.0, &mesh),
+                          GM_OK);
+            const gm_position position = random_place(&seed, &c, i);
+            enum { MOST = 20000 };
+            static gm_line_load_point points[MOST];
+            gm_line_loads loads;
+            GM_ASSERT(gm_mesh_line_load_points(mesh) <= MOST);
+            GM_ASSERT_INT(gm_mesh_line_loads(mesh, &position, NULL, points,
+                                             gm_mesh_line_load_points(mesh), &loads),
+                          GM_OK);
+            gmi_engagement at;
+            gmi_corner corners[2];
+            (void)gmi_engagement_find(pair, NULL, &at);
+            (void)gmi_corners_init(pair, &at, corners);
+            const double per_width = stiffness_of_all / pair->face_width;
+            double largest = 0.0;
+            for (int k = 0; k < loads.points; ++k) {
+                /* Which of the parallel lines it is on follows from the teeth. */
+                const gm_line_load_point *point = &points[k];
+                const double sign = point->side == GM_DRIVE ? 1.0 : -1.0;
+                const double delta = sign * position.offset - 0.5 * pair->backlash;
+                const double t1 = (point->z - pair->face_start) / pair->face_width;
+                const double first = pair->phase_origin[point->side] + sign * position.phase +
+                                     sign * pair->face_advance * t1;
+                const double p = pair->transverse_base_pitch;
+                const double past = point->pinion_roll_length - at.tip_roll_length[GM_PINION];
+                int index = (int)floor((point->pinion_roll_length - first) / p + 0.5), edge = -1;
+                double f = overlap_at(&c, &at, corners, point, delta, first + index * p, &edge);
+                for (int step = -1; step <= 1 && fabs(point->gap + f) > 1e-9; step += 2) {
+                    f = overlap_at(&c, &at, corners, point, delta, first + (index + step) * p,
+                                   &edge);
+                }
+                GM_ASSERT_ABS(point->gap, -f, 1e-12 + 1e-13 * pair->center_distance);
+                GM_ASSERT_REL(point->line_load, fmax(-point->gap, 0.0) * per_width, 1e-14);
+                if (edge >= 0 && point->line_load > 0.0) {
+                    GM_ASSERT_NAN(point->pressure);
+                    GM_ASSERT(edge == GM_WHEEL || past == 0.0);
+                    ++edges;
+                } else {
+                    GM_ASSERT(point->pressure >= 0.0 &&
+                              !(point->pressure > loads.largest_pressure * (1.0 + 1e-14)));
+                }
+                largest = fmax(largest, point->line_load);
+            }
+            gm_mesh_result r;
+            GM_ASSERT_INT(gm_mesh_evaluate_at(mesh, &position, 0, NULL, &r), GM_OK);
+            GM_ASSERT_REL(loads.touching_width,
+                          pair->face_width * (r.contact.drive_contact + r.contact.coast_contact),
+                          1e-12);
+            GM_ASSERT(largest == 0.0 || (largest <= loads.largest_line_load * (1.0 + 1e-14) &&
+                                         loads.face_load_factor > 0.99));
+            ++met;
+        }
+        random_case_free(&c);
+    }
+    GM_ASSERT(met > 50);
+    GM_ASSERT(edges > 100);
+}
+
+/* Ideal spur gears: each pair bears the same all along the face, also the one that comes in at an edge. */
+static void loads_of_spur_lines_are_the_force(void) {
+    const gm_pair pair = spur_pair();
+    room where;
+    gm_mesh *mesh;
+    GM_ASSERT_INT(make_mesh(&where, &pair, NULL, NULL, GM_CORNER_ON, 0.0, &mesh), GM_OK);
+    int edges = 0, alone = 0;
+    for (int k = 0; k < 400; ++k) {
+        gm_position position;
+        gm_line_load_point points[400];
+        gm_line_loads loads;
+        gm_mesh_result r;
+        gm_test_context("place %d", k);
+        (void)gm_position_from_pinion_angle(&pair, 0.001 * k, 0.5 * pair.backlash + 10e-6, 0.0,
+                                            &position);
+        GM_ASSERT_INT(gm_mesh_evaluate_at(mesh, &position, 0, NULL, &r), GM_OK);
+        GM_ASSERT_INT(gm_mesh_line_loads(mesh, &position, NULL, points, 400, &loads), GM_OK);
+        double force = 0.0;
+        for (int n = 0; n < loads.points; n += 17) {
+            force += points[n].line_load * pair.face_width;
+            edges += isnan(points[n].pressure);
+            GM_ASSERT_REL(points[n].line_load, points[n + 16].line_load, 1e-12);
+        }
+        GM_ASSERT_REL(force, r.force, 1e-12);
+        if (r.contact.drive_pairs == 1) {
+            GM_ASSERT_REL(loads.face_load_factor, 1.0, 1e-12);
+            ++alone;
+        }
+    }
+    GM_ASSERT(edges > 10);
+    GM_ASSERT(alone > 10);
+}
+
 /* A pair of which a tip reaches to the mate's base circle, and what no corner goes with. */
 static void what_corners_do_not_go_with_is_refused(void) {
     const gm_pair pair = reference_pair(REFERENCE_FACE_WIDTH);
@@ -887,6 +1020,8 @@ int main(int argc, char **argv) {
         GM_TEST(nothing_jumps_and_helical_gears_have_no_kinks),
         GM_TEST(torques_of_friction_have_no_jumps),
         GM_TEST(equilibrium_carries_the_torque),
+        GM_TEST(lines_are_loaded_as_the_overlap_says),
+        GM_TEST(loads_of_spur_lines_are_the_force),
         GM_TEST(what_corners_do_not_go_with_is_refused),
     };
     return gm_test_main("unit.corner_mesh", tests, GM_TEST_COUNT(tests), argc, argv);

@@ -739,9 +739,6 @@ class Values(Case):
 
     def test_corners_go_with_rigid_flanks_alone(self):
         corner = ["--set", "mesh.corner_contact=on"]
-        others = ["analysis.type=static", "output.load_distribution=q.csv"]
-        self.refused("--set mesh.corner_contact: ", "must be off with output.load_distribution (got on)",
-                     arguments=corner + [word for text in others for word in ("--set", text)])
         self.refused("--set solver.lookup: ", "must be off with corner contact", arguments=[*corner, "--set", "solver.lookup=on"])
         few = ["gears.pinion_teeth=8", "gears.center_distance_mm=49", "gears.pinion_tip_diameter_mm="]
         self.refused("--set mesh.corner_contact: ", "a tip reaches to the base circle of its mate",

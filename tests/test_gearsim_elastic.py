@@ -129,6 +129,21 @@ class Elastic(unittest.TestCase):
             self.assertAlmostEqual(sum(loads) / 17 * 20, 2000, delta=1e-5 * 2000)  # even along the face
         self.assertNotIn("face_load_factor", self.table("run.csv")[0])
 
+    def test_edges_of_constant_stiffness_have_line_loads_and_no_pressure(self):
+        rows = self.rows(SPUR62 | {"mesh": {"stiffness_N_per_m": 2.8e8, "corner_contact": "on"},
+                                   "output": {"load_distribution": "load.csv"}})
+        points = self.table("load.csv")
+        edges = [point for point in points if point["pressure_N_per_mm2"] == "nan"]
+        self.assertTrue(0 < len(edges) < len(points) / 2)
+        self.assertTrue(all(float(point["line_load_N_per_mm"]) > 0 for point in edges))
+        self.assertEqual(len({point["pinion_angle_rad"] for point in points}), len(rows))
+
+        # An edge has the roll length of its tip, 64 mm above the base circle of 62 teeth, and bears by its gap less.
+        tip = math.sqrt(64 ** 2 - (62 * math.cos(math.radians(20))) ** 2)
+        for point in edges:
+            rolls = float(point["pinion_roll_length_mm"]), float(point["wheel_roll_length_mm"])
+            self.assertAlmostEqual(max(rolls), tip, delta=1e-6)
+
     def test_soft_tooth_shows_once_a_turn(self):
         with open(os.path.join(self.folder, "soft.csv"), "w", encoding="utf-8") as file:
             file.write("# a crack\ntooth,factor\n7,0.7\n")

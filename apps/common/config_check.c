@@ -180,17 +180,6 @@ static int check_outputs_are_no_inputs(const config *conf) {
     return faults;
 }
 
-/* What corners do not go with. */
-static int check_corners(const config *conf) {
-    if (!config_has_corners(conf) || conf->analysis != ANALYSIS_STATIC ||
-        conf->load_distribution == NULL) {
-        return 0;
-    }
-    config_complain(conf, "mesh.corner_contact",
-                    "must be off with output.load_distribution (got on)");
-    return 1;
-}
-
 int config_check_together(const config *conf) {
     int faults = check_profile_window(conf);
 
@@ -200,7 +189,6 @@ int config_check_together(const config *conf) {
     if (conf->model == MODEL_3D) {
         faults += modification_keys_check(conf);
     }
-    faults += check_corners(conf);
     faults += conf->analysis == ANALYSIS_STATIC ? check_static(conf) : check_dynamic(conf);
     return faults + check_outputs_are_no_inputs(conf);
 }

@@ -46,6 +46,7 @@ void gmi_corner_at(const gmi_corner *corner, double roll, gmi_corner_place *plac
  * weights; of the stiffness and of damping.
  */
 typedef struct gmi_tip_load {
+    double contact; /* touching part of the lines there (1) */
     double arm,
         arm_t1; /* times gap', what the arm of the tip's gear is shorter by, over its r_b; and times t1 (N) */
     double versine, versine_t1;         /* times that of the turn of the normal; and times t1 (N) */

@@ -326,6 +326,7 @@ static part_force force_of(const view *v, const gmi_line_sum *sum) {
 static void add_tip_load(const view *v, const gmi_beyond *beyond, const parabola *gap,
                          const gmi_line_sum *sum, gmi_tip_load *tip) {
     const part_force load = force_of(v, sum);
+    tip->contact += sum->contact;
     if (load.whole == 0.0) {
         return;
     }

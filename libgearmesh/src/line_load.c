@@ -5,6 +5,7 @@
  * The load along the lines of contact, station by station. With constant stiffness K of a pair over the common face b the
  * line load is K f / b; elastic teeth have it from their deflections.
  */
+#include "corner.h"
 #include "elastic_mesh.h"
 #include "internal.h"
 #include "penetration.h"
@@ -21,12 +22,25 @@ static int stations_of(const gm_mesh *mesh) {
     return mesh->elastic != NULL ? mesh->elastic->law.stations : STATIONS;
 }
 
+/* Lines at once with constant stiffness; with corners as far as these reach. */
+static int lines_of(const gm_mesh *mesh) {
+    const gm_pair *pair = mesh->pair;
+    const gmi_engagement *at = &mesh->engagement;
+    if (!mesh->has_corners) {
+        return gmi_elastic_lines(pair->total_contact_ratio);
+    }
+    const double way = at->tip_roll_length[GM_PINION] + at->tip_roll_length[GM_WHEEL] -
+                       at->line_of_action + mesh->corners[GM_PINION].reach +
+                       mesh->corners[GM_WHEEL].reach + fabs(pair->face_advance);
+    return 1 + gmi_elastic_lines(way / pair->transverse_base_pitch);
+}
+
 int gm_mesh_line_load_points(const gm_mesh *mesh) {
     if (mesh == NULL) {
         return 0;
     }
-    const int lines = gmi_elastic_lines(mesh->pair->total_contact_ratio);
-    return 2 * stations_of(mesh) * (mesh->elastic != NULL ? mesh->elastic->law.lines_max : lines);
+    return 2 * stations_of(mesh) *
+           (mesh->elastic != NULL ? mesh->elastic->law.lines_max : lines_of(mesh));
 }
 
 /* All that is found, and where it goes. */
@@ -47,8 +61,10 @@ typedef struct side_lines {
     double delta;           /* ideal penetration (m) */
     double reach;           /* rho_p + rho_w (m) */
     gmi_elastic_work *work; /* solved; NULL with constant stiffness */
-    gmi_elastic_tips tips;  /* of lines that go on beyond the path */
+    gmi_elastic_tips tips;  /* of lines that go on beyond the path, of elastic teeth */
     int has_tips;
+    gmi_lines
+        path; /* the lines as far as the path goes, where corners of constant stiffness touch beyond it */
 } side_lines;
 
 /*
@@ -63,10 +79,85 @@ static double pressure_of(const gm_mesh *mesh, double line_load, double roll, do
     return line_load > 0.0 ? 2.0 * line_load / (GMI_PI * half_width) : 0.0;
 }
 
+/* Where one point of a line touches with constant stiffness. */
+typedef struct place {
+    double rolls[2]; /* [enum gm_role] roll lengths, in the signs of ISO 21771 (m) */
+    double material; /* of both flanks, which end with their tables, less the gap of an edge (m) */
+    int is_edge;
+} place;
+
+static double held(double roll, double one_end, double other_end) {
+    return fmin(fmax(roll, fmin(one_end, other_end)), fmax(one_end, other_end));
+}
+
+/* With corners a tip edge touches the flank off the line of action, as in corner_line.c. */
+static void find_place(const gm_mesh *mesh, const side_lines *found, const gmi_line_flanks *flanks,
+                       double origin, double t1, place *where) {
+    const gmi_engagement *at = &mesh->engagement;
+    const double roll = origin + found->lines.advance * t1;
+    double by_roll, pinion = roll, wheel = found->reach - roll;
+    where->rolls[GM_PINION] = pinion;
+    where->rolls[GM_WHEEL] = wheel;
+    where->is_edge = 0;
+    if (!mesh->has_corners) {
+        where->material = gmi_line_flanks_at(flanks, found->side, t1, roll, found->reach, &by_roll);
+        return;
+    }
+
+    /* Beyond its ends a flank has the deviation of the end. */
+    pinion = held(pinion, mesh->pair->pinion.start_roll_length, at->tip_roll_length[GM_PINION]);
+    wheel = held(wheel, at->wheel_profile_start, at->tip_roll_length[GM_WHEEL]);
+    where->material = gmi_line_flanks_at(flanks, found->side, t1, pinion, pinion + wheel, &by_roll);
+
+    for (int role = GM_PINION; role <= GM_WHEEL; ++role) {
+        gmi_beyond beyond;
+        gmi_corner_place corner;
+        gmi_tilt_beyond(mesh->pair, at, found->side, origin, found->delta, role, &beyond);
+        const double past = beyond.at_zero + beyond.per_t1 * t1;
+        if (past > 0.0) {
+            gmi_corner_at(&mesh->corners[role], fmin(past, mesh->corners[role].reach), &corner);
+            where->material -= corner.gap;
+            where->rolls[role] = at->tip_roll_length[role];
+            where->rolls[role == GM_PINION ? GM_WHEEL : GM_PINION] = corner.mate_roll;
+            where->is_edge = 1;
+        }
+    }
+}
+
+/* Of constant stiffness: from the overlap itself. The pressure under an edge is open, as nothing says how sharp it is. */
+static gm_line_load_point point_of_overlap(const gm_mesh *mesh, const side_lines *found,
+                                           const gmi_line_flanks *flanks, int index, double t1) {
+    const gm_pair *pair = mesh->pair;
+    const double gain =
+        mesh->engagement.is_tilted ? gmi_tilt_gain(pair, &mesh->engagement, found->side) : 1.0;
+    place where;
+    find_place(mesh, found, flanks,
+               found->lines.origin + (double)index * pair->transverse_base_pitch, t1, &where);
+    const double overlap = gain * found->delta + where.material;
+    gm_line_load_point point = {
+        .side = found->side,
+        .pinion_tooth = flanks->pinion_tooth,
+        .wheel_tooth = flanks->wheel_tooth,
+        .z = pair->face_start + t1 * pair->face_width,
+        .pinion_roll_length = where.rolls[GM_PINION],
+        .wheel_roll_length = fabs(where.rolls[GM_WHEEL]),
+        .line_load = fmax(0.0, overlap) * mesh->law.stiffness / pair->face_width,
+        .gap = -overlap,
+    };
+    point.pressure = where.is_edge && point.line_load > 0.0
+                         ? gmi_nan()
+                         : pressure_of(mesh, point.line_load, where.rolls[GM_PINION],
+                                       where.rolls[GM_WHEEL], 1.0);
+    return point;
+}
+
 /* row: of the elastic workspace. */
 static gm_line_load_point point_at(const gm_mesh *mesh, const side_lines *found,
                                    const gmi_line_flanks *flanks, int index, int row, double t1) {
     const gm_pair *pair = mesh->pair;
+    if (found->work == NULL) {
+        return point_of_overlap(mesh, found, flanks, index, t1);
+    }
 
     /* Where it is, and how much material both flanks have there. */
     const double on_line = found->lines.origin + (double)index * pair->transverse_base_pitch +
@@ -94,18 +185,11 @@ static gm_line_load_point point_at(const gm_mesh *mesh, const side_lines *found,
         sharpness = edge.rate_factor;
     }
 
-    /* What presses there: from the deflections of elastic teeth, or the overlap itself. */
+    /* What presses there, from the deflections. */
     double approach;
-    if (found->work != NULL) {
-        const double z = (t1 - mesh->engagement.face_from) * pair->face_width;
-        point.line_load = gmi_elastic_load_at(&mesh->elastic->law, found->work, row, z, material,
-                                              sharpness, &approach);
-    } else {
-        const double gain =
-            mesh->engagement.is_tilted ? gmi_tilt_gain(pair, &mesh->engagement, found->side) : 1.0;
-        approach = gain * found->delta + material;
-        point.line_load = fmax(0.0, approach) * mesh->law.stiffness / pair->face_width;
-    }
+    const double z = (t1 - mesh->engagement.face_from) * pair->face_width;
+    point.line_load = gmi_elastic_load_at(&mesh->elastic->law, found->work, row, z, material,
+                                          sharpness, &approach);
     point.gap = -approach;
     point.pressure = pressure_of(mesh, point.line_load, roll, found->reach - roll, sharpness);
     return point;
@@ -116,11 +200,24 @@ static void count_point(walk *w, const gm_line_load_point *point) {
     w->load->largest_pressure = fmax(w->load->largest_pressure, point->pressure);
 }
 
+/* The part of a line within the path, where corners touch beyond it. */
+static double length_on_path(const gm_mesh *mesh, const gmi_lines *path, int index) {
+    if (index < path->first || index > path->last) {
+        return 0.0;
+    }
+    const gmi_line_ends ends = gmi_line_ends_find(mesh->pair, &mesh->engagement, path);
+    const gmi_interval part = gmi_line_clip(&ends, index);
+    return fmax(part.to - part.from, 0.0) * mesh->pair->face_width;
+}
+
 /* What of a line is to bear load: all of it within the path, and beyond it where it does. */
 static double bearing_length(const gm_mesh *mesh, const side_lines *found, int index, int row,
                              gmi_interval part) {
     const double width = mesh->pair->face_width;
     const double advance = found->lines.advance;
+    if (mesh->has_corners) { /* what touches beyond is known of the whole side */
+        return length_on_path(mesh, &found->path, index);
+    }
     if (!found->has_tips || advance == 0.0) {
         return (part.to - part.from) * width;
     }
@@ -201,15 +298,45 @@ static double touching_width(const gmi_elastic_work *work) {
     return width;
 }
 
+/* The lines of constant stiffness as far as corners touch; edges that may be there are looked at all along. */
+static void widen(const gm_mesh *mesh, side_lines *found) {
+    const gmi_engagement *at = &mesh->engagement;
+    const gmi_side *prepared = &mesh->side[found->side];
+    const double overlap = found->delta + prepared->peak, moved = prepared->tilt_reach;
+    const double lower = found->reach - at->tip_roll_length[GM_WHEEL];
+    const double upper = at->tip_roll_length[GM_PINION];
+    gmi_lines_widen(mesh->pair, lower, upper, &found->lines);
+    found->path = found->lines;
+    gmi_lines_widen(mesh->pair, lower - gmi_corner_touch(&mesh->corners[GM_WHEEL], overlap) - moved,
+                    upper + gmi_corner_touch(&mesh->corners[GM_PINION], overlap) + moved,
+                    &found->lines);
+}
+
+/* The sum of a side, and beyond the path the touching part. */
+static OWN_STACK int sum_side(const gm_mesh *mesh, int side, const gm_position *position,
+                              gm_workspace *workspace, gmi_side_sum *sum, double *beyond) {
+    *beyond = 0.0;
+    if (!mesh->has_corners) {
+        return gmi_side_sum_by_law(mesh, side, position, GMI_SUM, workspace, sum);
+    }
+    gmi_corner_sums sums;
+    gmi_side_sum_corners(mesh, side, position, GMI_SUM, 0.0, NULL, &sums);
+    *sum = sums.side;
+    *beyond = sums.tips[GM_PINION].contact + sums.tips[GM_WHEEL].contact;
+    return GM_OK;
+}
+
 static int walk_side(walk *w, int side, const gm_position *position, gm_workspace *workspace) {
     const gm_mesh *mesh = w->mesh;
     const gm_pair *pair = mesh->pair;
     const gmi_engagement *at = &mesh->engagement;
     gmi_side_sum sum;
-    int status = gmi_side_sum_by_law(mesh, side, position, GMI_SUM, workspace, &sum);
+    double beyond;
+    int status = sum_side(mesh, side, position, workspace, &sum, &beyond);
     if (status != GM_OK || sum.sum == 0.0) {
         return status;
     }
+    w->length += beyond * pair->face_width;
     w->force += mesh->law.stiffness * sum.sum;
     w->load->touching_width += mesh->elastic != NULL ? touching_width(&workspace->side[side])
                                                      : sum.contact * pair->face_width;
@@ -228,6 +355,9 @@ static int walk_side(walk *w, int side, const gm_position *position, gm_workspac
         const gmi_elastic_lines_at *lines = &found.work->at;
         gmi_lines_widen(pair, lines->lower - lines->below, lines->upper + lines->above,
                         &found.lines);
+    }
+    if (mesh->has_corners) {
+        widen(mesh, &found);
     }
     found.teeth = gmi_lines_teeth(pair, side, &lines_at, &found.lines);
     const gmi_line_ends ends = gmi_line_ends_find(pair, at, &found.lines);
@@ -254,9 +384,6 @@ int gm_mesh_line_loads(const gm_mesh *mesh, const gm_position *position, gm_work
     if (mesh->model == GM_MODEL_SIMPLE) {
         return GM_ERR_GEOMETRY;
     }
-    if (mesh->has_corners) {
-        return GM_ERR_PARAMETER;
-    }
     const gm_position posed = gmi_mesh_posed(mesh, position);
     int status = gmi_check_position(mesh->pair, &posed);
 
@@ -271,6 +398,9 @@ int gm_mesh_line_loads(const gm_mesh *mesh, const gm_position *position, gm_work
     if (found.largest_line_load > 0.0) {
         *load = found;
         load->face_load_factor = found.largest_line_load * w.length / w.force;
+        if (!(found.largest_pressure > 0.0)) { /* edges alone bear it */
+            load->largest_pressure = gmi_nan();
+        }
 
         /* What to think of it. */
         const int is_ring = mesh->elastic != NULL && mesh->pair->wheel.sign < 0.0;

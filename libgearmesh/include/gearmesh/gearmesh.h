@@ -1272,8 +1272,11 @@ typedef struct gm_line_load_point {
     /** q, normal force per length of the contact line (N/m); its integral over z is the transverse force */
     double line_load;
 
-    double pressure; /**< p_0 = 2 q / (pi a), largest Hertzian pressure there (N/m2) */
-    double gap;      /**< between the surfaces, < 0 pressed into each other (m) */
+    /** p_0 = 2 q / (pi a), largest Hertzian pressure there (N/m2); NaN under a tip edge with constant stiffness, which does
+     *  not know how sharp the edge is: elastic teeth have gm_mesh_params.tip_rounding */
+    double pressure;
+
+    double gap; /**< between the surfaces, < 0 pressed into each other (m) */
 } gm_line_load_point;
 
 /** What is doubtful about a load. */
@@ -1287,7 +1290,7 @@ enum gm_load_warning {
 /** How a mesh is loaded at one position; NaN where nothing touches. */
 typedef struct gm_line_loads {
     double largest_line_load; /**< of all points and ends of lines (N/m) */
-    double largest_pressure;  /**< likewise (N/m2) */
+    double largest_pressure;  /**< likewise, where it is known (N/m2) */
 
     /** largest line load over the mean one along the lines that touch: of a single spur pair max(q) b / F */
     double face_load_factor;
@@ -1302,7 +1305,8 @@ GM_API int gm_mesh_line_load_points(const gm_mesh *mesh);
 
 /**
  * Load along the lines of contact, without damping: at the stations of the face (17 with the constant law) that a line
- * passes, in the order of sides, lines and z.
+ * passes, in the order of sides, lines and z. With corner contact lines go on beyond the path as far as ideal edges would
+ * touch: roll lengths there are that of the tip and, of the flank it touches, that of the point where it does.
  *
  * @param[in]     mesh       the mesh, not of the simple model
  * @param[in]     position   where the gears are
@@ -1310,8 +1314,7 @@ GM_API int gm_mesh_line_load_points(const gm_mesh *mesh);
  * @param[out]    points     [capacity]; NULL: not wanted
  * @param[in]     capacity   gm_mesh_line_load_points() is always enough
  * @param[out]    load       all fields; NaN and 0 on an error
- * @return as gm_mesh_evaluate_at(); GM_ERR_GEOMETRY (simple model), GM_ERR_PARAMETER (corner contact), GM_ERR_MEMORY (more
- *         points than the capacity)
+ * @return as gm_mesh_evaluate_at(); GM_ERR_GEOMETRY (simple model), GM_ERR_MEMORY (more points than the capacity)
  *
  * Accuracy: elastic teeth as docs/elastic.md. Pressure of a line contact [Johnson], from E and nu of gm_mesh_params with
  * any law.
