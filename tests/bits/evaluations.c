@@ -8,8 +8,12 @@
  *
  *     evaluations FILE --write     writes the pair, and prints
  *     evaluations FILE             reads the pair, and prints
+ *
+ * So are elastic teeth, whose tables are made with it: the law of a mesh is replaced by that of the file.
  */
 #include "gearmesh/gearmesh.h"
+
+#include "elastic_mesh.h"
 
 #include <math.h>
 #include <stdint.h>
@@ -18,6 +22,7 @@
 #include <string.h>
 
 enum { FACE_NODES = 9, PROFILE_NODES = 13, OTHER_FACE_NODES = 6, STATES = 700, PAIRS = 4 };
+enum { ELASTIC_STATES = 150 };
 
 static const double degree = 0.017453292519943295;
 
@@ -108,11 +113,14 @@ static void make_forms(int teeth, int coast_face_nodes, uint64_t *seed, gm_flank
     forms[2] = make_flanks(teeth, coast_face_nodes, &again);
 }
 
-static gm_mesh *make_mesh(const gm_pair *pair, const gm_flanks *pinion, const gm_flanks *wheel) {
+/* Teeth of constant stiffness; or elastic ones, if the stiffness is NaN. */
+static gm_mesh *make_mesh(const gm_pair *pair, const gm_flanks *pinion, const gm_flanks *wheel,
+                          double stiffness) {
     gm_mesh_params params;
     gm_mesh *mesh;
     gm_mesh_params_default(&params);
-    params.stiffness = 1e8;
+    params.stiffness = stiffness;
+    params.law = isnan(stiffness) ? GM_LAW_ELASTIC : params.law;
     const size_t size = gm_mesh_size(&params, pair);
     check(gm_mesh_init(&mesh, &params, pair, pinion, wheel, block(size), size));
     return mesh;
@@ -138,7 +146,64 @@ static void print_result(const gm_penetration *r) {
     printf("%d %d\n", r->drive_pairs, r->coast_pairs);
 }
 
-static void print_pair(const gm_pair *pair, uint64_t *seed) {
+/* What is prepared with libm: of a pair, and of its teeth as elastic ones. */
+typedef struct prepared {
+    gm_pair pair;
+    gmi_engagement engagement;
+    gmi_law mean; /* of the mesh: its mean stiffness */
+    gmi_elastic law;
+    gmi_elastic_tips tips;
+    double body_compliance;
+} prepared;
+
+static void prepare(int number, prepared *made) {
+    made->pair = make_pair(number);
+    const gm_mesh *mesh = make_mesh(&made->pair, NULL, NULL, (double)NAN);
+    made->engagement = mesh->engagement;
+    made->mean = mesh->law;
+    made->law = mesh->elastic->law;
+    made->tips = mesh->elastic->tips;
+    made->body_compliance = mesh->elastic->body_compliance;
+}
+
+/* Elastic teeth along a few pitches: the solution before is where the next one begins. */
+static void print_elastic(const prepared *given, const gm_flanks *pinion, const gm_flanks *wheel,
+                          uint64_t *seed) {
+    const gm_pair *pair = &given->pair;
+    gm_mesh *mesh = make_mesh(pair, pinion, wheel, (double)NAN);
+    gmi_elastic_mesh *elastic = (gmi_elastic_mesh *)(uintptr_t)mesh->elastic;
+    mesh->engagement = given->engagement;
+    mesh->law = given->mean;
+    elastic->law = given->law;
+    elastic->tips = given->tips;
+    elastic->body_compliance = given->body_compliance;
+    const size_t size = gm_workspace_size(mesh);
+    gm_workspace *workspace;
+    check(gm_workspace_init(&workspace, mesh, block(size), size));
+    for (int k = 0; k < ELASTIC_STATES; ++k) {
+        const double angle = 0.005 * k;
+        gm_position position;
+        gm_mesh_result r;
+        check(gm_position_from_pinion_angle(
+            pair, angle, 0.5 * pair->backlash + uniform(seed, 0.0, 9e-6), 0.0, &position));
+        check(gm_mesh_evaluate_at(mesh, &position, GM_WANT_DERIVATIVES | GM_WANT_WRENCH, workspace,
+                                  &r));
+        const double numbers[] = {r.force,
+                                  r.pinion_torque,
+                                  r.force_by.pinion_angle,
+                                  r.force_by.wheel_angle,
+                                  r.pinion_torque_by.pinion_angle,
+                                  r.wrench.pinion_moment[0],
+                                  r.wrench.pinion_moment[1]};
+        for (size_t n = 0; n < sizeof numbers / sizeof numbers[0]; ++n) {
+            print_bits(numbers[n]);
+        }
+        printf("\n");
+    }
+}
+
+static void print_pair(const prepared *given, uint64_t *seed) {
+    const gm_pair *pair = &given->pair;
     gm_flanks *pinions[FORMS], *wheels[FORMS];
     const gm_mesh *meshes[FORMS][FORMS];
     make_forms(pair->pinion.teeth, FACE_NODES, seed, pinions);
@@ -147,7 +212,7 @@ static void print_pair(const gm_pair *pair, uint64_t *seed) {
     add_ramps(wheels[2], seed);
     for (int p = 0; p < FORMS; ++p) {
         for (int w = 0; w < FORMS; ++w) {
-            meshes[p][w] = make_mesh(pair, pinions[p], wheels[w]);
+            meshes[p][w] = make_mesh(pair, pinions[p], wheels[w], 1e8);
         }
     }
 
@@ -178,32 +243,32 @@ static void print_pair(const gm_pair *pair, uint64_t *seed) {
             printf("%d\n", status);
         }
     }
+    print_elastic(given, pinions[1], wheels[2], seed);
     while (block_count > 0) {
         free(blocks[--block_count]);
     }
 }
 
 int main(int argc, char **argv) {
-    gm_pair pairs[PAIRS];
+    static prepared pairs[PAIRS];
     uint64_t seed = 11;
     const int writes = argc == 3 && strcmp(argv[2], "--write") == 0;
     if (argc != 2 && !writes) {
         stop("usage: evaluations FILE [--write]");
     }
 
-    memset(pairs, 0, sizeof pairs);
     if (writes) {
         for (int k = 0; k < PAIRS; ++k) {
-            pairs[k] = make_pair(k);
+            prepare(k, &pairs[k]);
         }
     }
     FILE *file = fopen(argv[1], writes ? "wb" : "rb");
     if (file == NULL || (writes ? fwrite(pairs, sizeof pairs, 1, file)
                                 : fread(pairs, sizeof pairs, 1, file)) != 1) {
-        stop("the file of the pairs");
+        stop("the file of what is prepared");
     }
     if (fclose(file) != 0) {
-        stop("the file of the pairs");
+        stop("the file of what is prepared");
     }
     for (int k = 0; k < PAIRS; ++k) {
         print_pair(&pairs[k], &seed);
