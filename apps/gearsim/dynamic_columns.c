@@ -107,12 +107,17 @@ const dynamic_column dynamic_columns[] = {
 
 const int dynamic_column_count = sizeof dynamic_columns / sizeof dynamic_columns[0];
 
-column_names dynamic_column_names(const config *conf) {
-    const int is_double_helical = !isnan(conf->double_helical_gap);
-    column_names names = {.count = dynamic_column_count - !is_double_helical};
+int dynamic_column_is_there(const config *conf, int column) {
+    return dynamic_columns[column].value != apex || !isnan(conf->double_helical_gap);
+}
 
-    for (int i = 0; i < names.count; ++i) {
-        names.name[i] = dynamic_columns[i].name;
+column_names dynamic_column_names(const config *conf) {
+    column_names names = {.count = 0};
+
+    for (int i = 0; i < dynamic_column_count; ++i) {
+        if (dynamic_column_is_there(conf, i)) {
+            names.name[names.count++] = dynamic_columns[i].name;
+        }
     }
     return names;
 }

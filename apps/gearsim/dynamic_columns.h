@@ -46,7 +46,10 @@ typedef struct dynamic_column {
 extern const dynamic_column dynamic_columns[];
 extern const int dynamic_column_count; /* at most COLUMNS_MAX */
 
-/* Those of the gears, in the order of dynamic_columns: single-helical ones do not have the last. */
+/* Some belong to certain gears alone. */
+int dynamic_column_is_there(const config *conf, int column);
+
+/* Those of the gears, in the order of dynamic_columns. */
 column_names dynamic_column_names(const config *conf);
 
 #endif

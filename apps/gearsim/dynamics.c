@@ -29,6 +29,7 @@ typedef struct dynamic_run {
     int factor;              /* samples per row */
     int column_count;        /* that are asked for, */
     int column[COLUMNS_MAX]; /* which of dynamic_columns they are, */
+    int place[COLUMNS_MAX];  /* where the output has them, */
     double (*show[COLUMNS_MAX])(const dynamic_sample *sample); /* and what is taken of a sample */
     enum sample_kind mean_kind; /* of the columns that show means, SAMPLE_PLAIN: none does */
     int is_started;             /* there is a sample before */
@@ -466,7 +467,7 @@ static int take_row_period(dynamic_run *run, double row) {
             double shown[COLUMNS_MAX], values[COLUMNS_MAX];
             decimator_values(run->filter, shown);
             for (int k = 0; k < run->column_count; ++k) {
-                values[run->column[k]] = shown[k];
+                values[run->place[k]] = shown[k];
             }
             if (output_row(run->output, values) != 0) {
                 snprintf(run->why, sizeof run->why, "the disk took no more at t = %.9g s",
@@ -540,13 +541,19 @@ static enum sample_kind kind_of(const dynamic_run *run, const dynamic_column *co
 /* What is asked for decides what has to be computed, and whether there is anything to filter. */
 static int start_filter(dynamic_run *run) {
     enum sample_kind kinds[COLUMNS_MAX];
-    int any = 0;
+    int any = 0, name = 0;
 
     for (int i = 0; i < dynamic_column_count; ++i) {
-        if (output_wants(run->output, i)) {
+        /* The output counts those that these gears have. */
+        if (!dynamic_column_is_there(run->conf, i)) {
+            continue;
+        }
+        if (output_wants(run->output, name)) {
+            run->place[run->column_count] = name;
             run->column[run->column_count++] = i;
             any |= dynamic_columns[i].is_filtered;
         }
+        ++name;
     }
     run->factor = any ? run->conf->oversampling : 1;
 
