@@ -315,12 +315,13 @@ static double error_of_nodes(int side, double depth) {
  * One walk serves many nodes, to second order in their distance from it: over a kink of the flanks, the slope that it
  * adds times the way behind it. The way to a kink is as often short as long, which leaves the power of 1.5 in the mean.
  */
-static void nodes_are_exact_to_second_order(void) {
+/* To single precision (6e-8), but for the few next to which a kink that moves passes a place where f is zero: each of them is
+ * off by less than the triangle in which it does, 1e-3 of slope times the square of 20 um over the advance of 11 mm. */
+static void nodes_are_exact(void) {
     for (int side = GM_DRIVE; side <= GM_COAST; ++side) {
-        const double far = error_of_nodes(side, 20e-6), near = error_of_nodes(side, 5e-6);
-        gm_test_context("side %d: %g m, %g m", side, far, near);
-        GM_ASSERT(far < 2e-5 * sum_at_20_Nm);
-        GM_ASSERT(near * 6.0 < far);
+        const double error = error_of_nodes(side, 20e-6);
+        gm_test_context("side %d: %g m", side, error);
+        GM_ASSERT(error < 1e-6 * sum_at_20_Nm);
     }
 }
 
@@ -1075,7 +1076,7 @@ int main(int argc, char **argv) {
         GM_TEST(error_is_as_stated),
         GM_TEST(columns_of_many_walks_are_as_exact),
         GM_TEST(error_can_be_measured),
-        GM_TEST(nodes_are_exact_to_second_order),
+        GM_TEST(nodes_are_exact),
         GM_TEST(derivatives_are_those_of_the_sum),
         GM_TEST(beyond_the_depth_it_is_exact),
         GM_TEST(below_the_first_touch_it_is_zero),

@@ -799,6 +799,178 @@ static void few_evaluations_are_enough(void) {
     free(memory[1]);
 }
 
+/* ---------------------------------------------------------------------------------------------
+ * Several loads at one position
+ * ------------------------------------------------------------------------------------------- */
+
+/* Room for a mesh of any of these laws. */
+typedef union any_mesh {
+    double alignment;
+    char memory[8192];
+} any_mesh;
+
+/* 20 loads from 20 to 60 N m at positions over a turn: three walks, and one evaluation for nearly each of them. */
+static void one_evaluation_is_enough_for_each_load(void) {
+    enum { LOADS = 20, POSITIONS = 200 };
+    uint64_t seed = UINT64_C(58);
+    const gm_pair pair = reference_pair(REFERENCE_FACE_WIDTH);
+    void *memory[2];
+    const gm_flanks *pinion = measured_flanks(45, &seed, &memory[0]);
+    const gm_flanks *wheel = measured_flanks(41, &seed, &memory[1]);
+    plain_mesh room;
+    gm_mesh *mesh;
+    GM_ASSERT_INT(plain_mesh_make(&room, &pair, pinion, wheel, REFERENCE_STIFFNESS, 0.0, &mesh),
+                  GM_OK);
+    double torque[LOADS];
+    for (int k = 0; k < LOADS; ++k) {
+        torque[k] = 20.0 + 40.0 * k / (LOADS - 1.0);
+    }
+    evaluations = 0;
+    for (int i = 0; i < POSITIONS; ++i) {
+        double x[LOADS];
+        GM_ASSERT_INT(gm_rolling_equilibria(mesh, i * 6.283185307179586 / POSITIONS, 0.0, torque,
+                                            LOADS, GM_WANT_FORCE, NULL, x, NULL),
+                      GM_OK);
+    }
+    GM_ASSERT(evaluations <= (long)(1.1 * LOADS * POSITIONS));
+    free(memory[0]);
+    free(memory[1]);
+}
+
+/* Random gears in any order of loads on both sides, some not carried: as each load for itself. */
+static void several_loads_are_carried_as_each_is(void) {
+    enum { LOADS = 37 };
+    uint64_t seed = UINT64_C(59);
+    long found = 0;
+    for (int i = 0; i < 300; ++i) {
+        random_case c;
+        GM_ASSERT_INT(random_mixed_case_make(&c, &seed, i), GM_OK);
+        gm_mesh_params params;
+        gm_mesh_params_default(&params);
+        params.stiffness = 1e8;
+        params.model = i % 29 == 28 ? GM_MODEL_SIMPLE : GM_MODEL_3D;
+        params.pose.center_distance_change = i % 3 == 1 ? 1e-3 * c.params.normal_module : 0.0;
+        params.pose.axial_shift = i % 3 == 1 ? 0.1 * c.params.normal_module : 0.0;
+        params.pose.skew = i % 9 == 4 ? 1e-5 : 0.0;
+        params.friction_coefficient = i % 7 == 3 ? 0.05 : 0.0;
+        any_mesh room;
+        gm_mesh *mesh;
+        if (gm_mesh_init(&mesh, &params, &c.pair, c.use[0], c.use[1], room.memory,
+                         sizeof room.memory) != GM_OK) {
+            random_case_free(&c);
+            continue; /* tips out of mesh */
+        }
+        double torque[LOADS], x[LOADS];
+        gm_mesh_result result[LOADS];
+        for (int k = 0; k < LOADS; ++k) {
+            torque[k] = k == 5 ? 0.0 : random_torque(&c, &seed) * (k == 7 ? 1e4 : 1.0);
+        }
+        torque[9] = torque[8];
+        const int status = gm_rolling_equilibria(mesh, c.pinion_angle, 1.0, torque, LOADS,
+                                                 GM_WANT_WRENCH, NULL, x, result);
+        int first = GM_OK;
+        for (int k = 0; k < LOADS; ++k) {
+            gm_test_context("case %d, helix %g, load %d", i, c.params.helix_angle, k);
+            double alone;
+            gm_mesh_result there;
+            const int status_alone = gm_rolling_equilibrium(mesh, c.pinion_angle, 1.0, torque[k],
+                                                            (double)NAN, NULL, &alone, &there);
+            first = first == GM_OK ? status_alone : first;
+            if (status_alone != GM_OK) {
+                GM_ASSERT_NAN(x[k]);
+                GM_ASSERT_NAN(result[k].force);
+                continue;
+            }
+            ++found;
+            const double touching =
+                fmin(1.0, there.contact.drive_contact + there.contact.coast_contact);
+            const double accuracy = 2.0 * ACCURACY * c.params.center_distance / touching;
+            GM_ASSERT_ABS(x[k], alone, accuracy);
+            GM_ASSERT(isfinite(result[k].wrench.wheel_moment[2]));
+            if (fabs(c.pair.face_advance) > 0.05 * c.params.normal_module) { /* no steps */
+                const double contact =
+                    1.0 + there.contact.drive_contact + there.contact.coast_contact;
+                GM_ASSERT_ABS(result[k].wheel_torque, torque[k],
+                              1e-9 * fabs(torque[k]) +
+                                  1e8 * c.pair.wheel.base_radius * accuracy * contact);
+            }
+        }
+        GM_ASSERT_INT(status, first);
+        random_case_free(&c);
+    }
+    gm_test_context("all cases");
+    GM_ASSERT(found > 7000);
+}
+
+/* The sums of both sides of a thick tooth act against each other. */
+static void several_loads_are_carried_without_backlash(void) {
+    enum { LOADS = 9 };
+    uint64_t seed = UINT64_C(60);
+    gm_pair_params params = reference_params(REFERENCE_FACE_WIDTH);
+    params.backlash = -20e-6;
+    const gm_pair pair = make_pair(&params);
+    void *memory;
+    const gm_flanks *pinion = measured_flanks(45, &seed, &memory);
+    plain_mesh room;
+    gm_mesh *mesh;
+    GM_ASSERT_INT(plain_mesh_make(&room, &pair, pinion, NULL, REFERENCE_STIFFNESS, 0.0, &mesh),
+                  GM_OK);
+    double torque[LOADS], x[LOADS];
+    for (int k = 0; k < LOADS; ++k) {
+        torque[k] = 5.0 * (k - 4);
+    }
+    GM_ASSERT_INT(
+        gm_rolling_equilibria(mesh, 0.3, 0.0, torque, LOADS, GM_WANT_DERIVATIVES, NULL, x, NULL),
+        GM_OK);
+    for (int k = 0; k < LOADS; ++k) {
+        double alone;
+        GM_ASSERT_INT(gm_static_equilibrium(mesh, 0.3, torque[k], (double)NAN, NULL, &alone, NULL),
+                      GM_OK);
+        GM_ASSERT_ABS(x[k], alone, 2.0 * ACCURACY * pair.center_distance);
+    }
+    free(memory);
+}
+
+static void several_loads_are_refused_as_one_is(void) {
+    const gm_pair pair = reference_pair(REFERENCE_FACE_WIDTH);
+    plain_mesh room;
+    gm_mesh *mesh;
+    GM_ASSERT_INT(plain_mesh_make(&room, &pair, NULL, NULL, 1e8, 0.0, &mesh), GM_OK);
+    const double torque[2] = {1.0, 2.0};
+    double x[2] = {0.0, 0.0};
+    gm_mesh_result r[2];
+    static const double bad_number[] = {NAN, HUGE_VAL, -HUGE_VAL};
+    for (size_t k = 0; k < sizeof bad_number / sizeof bad_number[0]; ++k) {
+        gm_test_context("number %g", bad_number[k]);
+        const double bad[2] = {1.0, bad_number[k]};
+        x[0] = r[0].force = 0.0;
+        GM_ASSERT_INT(gm_rolling_equilibria(mesh, 0.1, 0.0, bad, 2, 0, NULL, x, r),
+                      GM_ERR_PARAMETER);
+        GM_ASSERT_NAN(x[0]);
+        GM_ASSERT_NAN(r[0].force);
+        x[1] = 0.0;
+        GM_ASSERT_INT(gm_rolling_equilibria(mesh, bad_number[k], 0.0, torque, 2, 0, NULL, x, r),
+                      GM_STATE_NOT_FINITE);
+        GM_ASSERT_NAN(x[1]);
+        GM_ASSERT_INT(gm_rolling_equilibria(mesh, 0.1, bad_number[k], torque, 2, 0, NULL, x, r),
+                      GM_STATE_NOT_FINITE);
+    }
+    gm_test_context("others");
+    GM_ASSERT_INT(gm_rolling_equilibria(mesh, 0.1, 2e9, torque, 2, 0, NULL, x, r),
+                  GM_STATE_OUT_OF_RANGE);
+    GM_ASSERT_INT(gm_rolling_equilibria(mesh, 0.1, 0.0, torque, -1, 0, NULL, x, r),
+                  GM_ERR_PARAMETER);
+    GM_ASSERT_INT(gm_rolling_equilibria(mesh, 0.1, 0.0, torque, 2, 8, NULL, x, r),
+                  GM_ERR_PARAMETER);
+    GM_ASSERT_INT(gm_rolling_equilibria(NULL, 0.1, 0.0, torque, 2, 0, NULL, x, r), GM_ERR_NULL);
+    GM_ASSERT_INT(gm_rolling_equilibria(mesh, 0.1, 0.0, NULL, 2, 0, NULL, x, r), GM_ERR_NULL);
+    x[0] = 0.0;
+    GM_ASSERT_INT(gm_rolling_equilibria(mesh, 0.1, 0.0, torque, 2, 0, NULL, NULL, r), GM_ERR_NULL);
+    GM_ASSERT_NAN(r[1].force);
+    GM_ASSERT_INT(gm_rolling_equilibria(mesh, 0.1, 0.0, torque, 0, 0, NULL, x, NULL), GM_OK);
+    GM_ASSERT(x[0] == 0.0);
+}
+
 /* Bounded work, whatever the flanks, the torque and the guess. */
 static void no_case_takes_many_evaluations(void) {
     uint64_t seed = UINT64_C(57);
@@ -886,6 +1058,10 @@ int main(int argc, char **argv) {
         GM_TEST(a_step_of_the_sum_is_the_answer_from_any_guess),
         GM_TEST(a_guess_beyond_the_largest_sum_finds_back),
         GM_TEST(few_evaluations_are_enough),
+        GM_TEST(one_evaluation_is_enough_for_each_load),
+        GM_TEST(several_loads_are_carried_as_each_is),
+        GM_TEST(several_loads_are_carried_without_backlash),
+        GM_TEST(several_loads_are_refused_as_one_is),
         GM_TEST(no_case_takes_many_evaluations),
     };
     return gm_test_main("unit.equilibrium", tests, GM_TEST_COUNT(tests), argc, argv);

@@ -31,6 +31,13 @@ int gear_contact_equilibrium(const gear_mesh *mesh, double pinion_angle, double 
                                          guess, offset, &floating->apex, floating->each, result);
 }
 
+int gear_contact_equilibria(const gear_mesh *mesh, double pinion_angle, double pinion_speed,
+                            const double *wheel_torque, int count, double *offset,
+                            gm_mesh_result *result) {
+    return gm_rolling_equilibria(mesh->prepared[0], pinion_angle, pinion_speed, wheel_torque, count,
+                                 GM_WANT_FORCE, mesh->workspace[0], offset, result);
+}
+
 int gear_contact_line_loads(const gear_mesh *mesh, const gm_position *position,
                             gm_line_load_point *points, int capacity, gm_line_loads *load) {
     const pinion_float *floating = mesh->floating;

@@ -20,6 +20,11 @@ int gear_contact_equilibrium(const gear_mesh *mesh, double pinion_angle, double 
 int gear_contact_line_loads(const gear_mesh *mesh, const gm_position *position,
                             gm_line_load_point *points, int capacity, gm_line_loads *load);
 
+/* As gm_rolling_equilibria() with forces and contact; not of a double-helical pair. */
+int gear_contact_equilibria(const gear_mesh *mesh, double pinion_angle, double pinion_speed,
+                            const double *wheel_torque, int count, double *offset,
+                            gm_mesh_result *result);
+
 /* Warns of a load that no material bears; the largest of a run is to be told once. */
 void gear_contact_warn(const config *conf, const gm_line_loads *load);
 int gear_contact_line_load_points(const gear_mesh *mesh);

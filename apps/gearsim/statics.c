@@ -59,6 +59,13 @@ typedef struct sweep {
     double slope;  /* its derivative by the pinion angle (m/rad) */
 } sweep;
 
+/* What of an equilibrium is kept until its row is written. */
+typedef struct found_state {
+    double offset; /* (m), NaN = not found */
+    double loss;   /* (W) */
+    gm_penetration contact;
+} found_state;
+
 /* Where rows go. */
 typedef struct static_results {
     output_file *output;
@@ -117,31 +124,45 @@ static int find_needed(static_results *results, unsigned needs, static_position 
     return status;
 }
 
-static int write_position(const config *conf, const gear_mesh *gears, double angle, sweep *before,
-                          static_results *results, int *status) {
+/* The equilibrium, from the position before. */
+static int find_position(const gear_mesh *gears, sweep *before, static_position *position) {
     const gm_pair *pair = &gears->pair;
-
-    /* The pressure of elastic teeth is looked at under each load at least once. */
-    const int is_first = isnan(before->offset) && conf->law == LAW_ELASTIC;
-    const unsigned needs = results->needs | (is_first ? 1u << TAKES_FACES : 0);
+    const double angle = position->pinion_angle;
     const double guess = before->offset + before->slope * (angle - before->angle);
-    static_position position = {
-        .conf = conf, .gears = gears, .pinion_angle = angle, .load = before->load};
-
-    *status = gear_contact_equilibrium(gears, angle, conf->start_speed, before->load, guess,
-                                       &position.offset, &position.mesh);
-    if (*status != GM_OK) {
-        return EXIT_RUN_FAILED;
-    }
-
-    position.apex = gear_contact_apex(gears);
+    const int status =
+        gear_contact_equilibrium(gears, angle, position->conf->start_speed, before->load, guess,
+                                 &position->offset, &position->mesh);
 
     /* Along the curve of constant torque, for the guess at the next position. */
     before->angle = angle;
-    before->offset = position.offset;
+    before->offset = position->offset;
     before->slope = pair->pinion.base_radius + pair->wheel.base_radius *
-                                                   position.mesh.wheel_torque_by.pinion_angle /
-                                                   position.mesh.wheel_torque_by.wheel_angle;
+                                                   position->mesh.wheel_torque_by.pinion_angle /
+                                                   position->mesh.wheel_torque_by.wheel_angle;
+    return status;
+}
+
+/* state: what has been found there; NULL = nothing yet. */
+static int write_position(const config *conf, const gear_mesh *gears, double angle,
+                          const found_state *state, sweep *before, static_results *results,
+                          int *status) {
+    /* The pressure of elastic teeth is looked at under each load at least once. */
+    const int is_first = isnan(before->offset) && conf->law == LAW_ELASTIC;
+    const unsigned needs = results->needs | (is_first ? 1u << TAKES_FACES : 0);
+    static_position position = {
+        .conf = conf, .gears = gears, .pinion_angle = angle, .load = before->load};
+
+    if (state != NULL && !isnan(state->offset)) {
+        position.offset = state->offset;
+        position.mesh.contact = state->contact;
+        position.mesh.loss = state->loss;
+    } else {
+        *status = find_position(gears, before, &position);
+        if (*status != GM_OK) {
+            return EXIT_RUN_FAILED;
+        }
+    }
+    position.apex = gear_contact_apex(gears);
 
     *status = find_needed(results, needs, &position);
     if (*status != GM_OK) {
@@ -195,9 +216,88 @@ static int interrupted(const config *conf, const static_results *results, double
     return EXIT_INTERRUPTED;
 }
 
+/*
+ * Equilibria under several loads at all positions: what all loads of a position have in common is done once, although
+ * their rows are far apart.
+ */
+typedef struct load_block {
+    int loads;              /* side by side at most; 0 = each load for itself */
+    found_state *state;     /* [loads][positions] */
+    double *torque;         /* [loads] at one position (N m) */
+    double *offset;         /* [loads] (m) */
+    gm_mesh_result *result; /* [loads] */
+} load_block;
+
+/* Loads side by side that pay, and bytes of what is kept of them at most. */
+enum { LEAST_LOADS = 4, MOST_BYTES = 1 << 24 };
+
+/* With as many loads as have room. 0, or an exit code after a message. */
+static int load_block_open(load_block *block, const config *conf, const gear_mesh *gears) {
+    const double room = (double)MOST_BYTES / ((double)conf->positions * sizeof *block->state);
+    const int loads = (int)fmin(room, conf->loads);
+
+    /* Elastic teeth begin best from the position before, and so does a pinion that floats; ideal flanks need nothing. */
+    if (loads < LEAST_LOADS || conf->law == LAW_ELASTIC || !isnan(conf->double_helical_gap) ||
+        gear_contact_is_ideal(gears)) {
+        return 0;
+    }
+    block->loads = loads;
+    block->state = allocate((size_t)loads * (size_t)conf->positions, sizeof *block->state);
+    block->torque = allocate((size_t)loads, sizeof *block->torque);
+    block->offset = allocate((size_t)loads, sizeof *block->offset);
+    block->result = allocate((size_t)loads, sizeof *block->result);
+    return block->state != NULL && block->torque != NULL && block->offset != NULL &&
+                   block->result != NULL
+               ? 0
+               : message_no_memory(conf->messages);
+}
+
+static void load_block_close(load_block *block) {
+    free(block->state);
+    free(block->torque);
+    free(block->offset);
+    free(block->result);
+}
+
+/* The block that begins with load `first`, until the run is interrupted. */
+static void load_block_fill(load_block *block, const config *conf, const gear_mesh *gears,
+                            int first) {
+    const int left = conf->loads - first;
+    const int count = left < block->loads ? left : block->loads;
+    for (int k = 0; k < count; ++k) {
+        block->torque[k] = load_of(conf, first + k);
+    }
+
+    /* What is not found here is looked for, and told, when its row is due. */
+    for (int position = 0; position < conf->positions && !interrupt_requested(); ++position) {
+        (void)gear_contact_equilibria(gears, pinion_angle(conf, &gears->pair, position),
+                                      conf->start_speed, block->torque, count, block->offset,
+                                      block->result);
+        for (int k = 0; k < count; ++k) {
+            found_state *state =
+                &block->state[(size_t)k * (size_t)conf->positions + (size_t)position];
+            state->offset = block->offset[k];
+            state->loss = block->result[k].loss;
+            state->contact = block->result[k].contact;
+        }
+    }
+}
+
+/* Those of load `index` at all positions; NULL = none. */
+static const found_state *states_under(load_block *block, const config *conf,
+                                       const gear_mesh *gears, int index) {
+    if (block->loads == 0) {
+        return NULL;
+    }
+    if (index % block->loads == 0) {
+        load_block_fill(block, conf, gears, index);
+    }
+    return block->state + (size_t)(index % block->loads) * (size_t)conf->positions;
+}
+
 /* The period under one load; 0, or an exit code and the file is closed. */
 static int write_period(const config *conf, const gear_mesh *gears, double load,
-                        static_results *results) {
+                        const found_state *states, static_results *results) {
     sweep before = {load, 0.0, (double)NAN, 0.0};
 
     for (int position = 0; position < conf->positions; ++position) {
@@ -207,15 +307,18 @@ static int write_period(const config *conf, const gear_mesh *gears, double load,
         if (interrupt_requested()) {
             return interrupted(conf, results, load, angle);
         }
-        if (write_position(conf, gears, angle, &before, results, &status) != 0) {
+        const found_state *state = states != NULL ? &states[position] : NULL;
+        if (write_position(conf, gears, angle, state, &before, results, &status) != 0) {
             return fail(conf, results, load, angle, status);
         }
     }
     return 0;
 }
 
-static int write_all(const config *conf, const gear_mesh *gears, static_results *results) {
+static int write_all(const config *conf, const gear_mesh *gears, load_block *block,
+                     static_results *results) {
     for (int index = 0; index < conf->loads; ++index) {
+        const found_state *states = states_under(block, conf, gears, index);
         if (is_no_load(conf, index)) {
             message_note(conf->messages,
                          "%s: note: no rows under the load of 0, which leaves the gears anywhere "
@@ -223,7 +326,7 @@ static int write_all(const config *conf, const gear_mesh *gears, static_results 
                          conf->path);
             continue;
         }
-        const int exit_code = write_period(conf, gears, load_of(conf, index), results);
+        const int exit_code = write_period(conf, gears, load_of(conf, index), states, results);
         if (exit_code != 0) {
             return exit_code;
         }
@@ -265,8 +368,14 @@ int statics_run(const config *conf, const gear_mesh *gears) {
         results.points = allocate((size_t)results.capacity, sizeof *results.points);
         exit_code = results.points != NULL ? 0 : message_no_memory(conf->messages);
     }
+    load_block block = {.loads = 0};
+    if (exit_code == 0) {
+        exit_code = load_block_open(&block, conf, gears);
+    }
     if (exit_code != 0) {
         load_file_close(results.distribution, "no rows");
+        load_block_close(&block);
+        free(results.points);
         return exit_code;
     }
 
@@ -274,12 +383,13 @@ int statics_run(const config *conf, const gear_mesh *gears) {
     results.output = output_open(conf, names.name, names.count, &exit_code);
     if (results.output != NULL) {
         choose_columns(&results, conf);
-        exit_code = write_all(conf, gears, &results);
+        exit_code = write_all(conf, gears, &block, &results);
         gear_contact_warn(conf, &results.worst);
     } else {
         load_file_close(results.distribution, "there is no result");
     }
     interrupt_unwatch();
+    load_block_close(&block);
     free(results.points);
     return exit_code;
 }

@@ -348,14 +348,6 @@ static void set_node(const gm_cache *cache, float *node, double value, const gmi
     node[NODE_BY_PHASE] = (float)(cache->side == GM_DRIVE ? sum->by_origin : -sum->by_origin);
 }
 
-/* Whether a walk tells of many depths: with flanks of tables and teeth of a constant stiffness. */
-static int is_walked(const gm_cache *cache) {
-    const gmi_side *side = &cache->mesh->side[cache->side];
-
-    return cache->mesh->elastic == NULL && side->ramps == 0 && !side->is_tilted &&
-           (side->pinion != NULL || side->wheel != NULL);
-}
-
 /* Walks at a delta, for nodes first .. first + count - 1 of a column that begins at `start`. */
 static void walk_at(const gm_cache *cache, gm_position *position, double delta, double start,
                     int first, int count, gmi_depths *depths) {
@@ -363,9 +355,11 @@ static void walk_at(const gm_cache *cache, gm_position *position, double delta, 
     position->offset = gmi_side_sign(cache->side) * (delta + 0.5 * mesh->engagement.backlash);
     memset(depths, 0, sizeof *depths);
     depths->count = count;
-    depths->from = start - delta + (double)first * cache->step;
-    depths->step = cache->step;
-    depths->last = count > 0 ? depths->from + (double)(count - 1) * cache->step : -HUGE_VAL;
+    for (int n = 0; n < count; ++n) {
+        depths->shift[n] = start - delta + (double)(first + n) * cache->step;
+    }
+    depths->largest = count > 0 ? depths->shift[count - 1] : -HUGE_VAL;
+    depths->per_shift = cache->per_step;
     depths->touch = HUGE_VAL;
     gmi_side_sum_depths(mesh->pair, &mesh->engagement, &mesh->side[cache->side], cache->side,
                         position, depths);
@@ -444,8 +438,9 @@ static void fill_column(gm_cache *cache, int pass, int index, gm_workspace *work
     gm_position position = {.phase = cache->phases[index]};
     set_teeth(cache, pass, &position);
 
-    const double start = is_walked(cache) ? walk_column(cache, &position, values)
-                                          : evaluate_column(cache, &position, values, workspace);
+    const double start = gmi_side_has_depths(cache->mesh, cache->side)
+                             ? walk_column(cache, &position, values)
+                             : evaluate_column(cache, &position, values, workspace);
     if (start < HUGE_VAL) {
         set_mixed(values, cache->nodes);
     }

@@ -42,11 +42,16 @@ typedef struct bracket {
     enum upper_end end;
 } bracket;
 
-/* Load less target at a travel, and the full result. Callers keep it below half a base pitch. */
-static double residual(const problem *p, double travel, gm_mesh_result *result) {
+/* What is wanted of the mesh at a travel. Callers keep it below half a base pitch. */
+static int evaluate(const problem *p, double travel, int wanted, gm_mesh_result *result) {
     gm_position position = p->position;
     position.offset = p->direction * travel;
-    (void)gmi_mesh_evaluate_exact(p->mesh, &position, GM_WANT_DERIVATIVES, p->workspace, result);
+    return gmi_mesh_evaluate_exact(p->mesh, &position, wanted, p->workspace, result);
+}
+
+/* Load less target at a travel, and the full result. */
+static double residual(const problem *p, double travel, gm_mesh_result *result) {
+    (void)evaluate(p, travel, GM_WANT_DERIVATIVES, result);
     const double sum = p->by_torque ? gmi_law_sum_of_torque(&p->mesh->law, result->wheel_torque,
                                                             p->pair->wheel.base_radius)
                                     : result->contact.penetration;
@@ -276,6 +281,38 @@ static int find(const problem *p, double guess, double *found, gm_mesh_result *r
                            : find_unloaded(p, guess, found, result);
 }
 
+/* All but the load. */
+static int begin(const gm_mesh *mesh, double pinion_angle, double pinion_speed,
+                 gm_workspace *workspace, problem *p) {
+    p->mesh = mesh;
+    p->workspace = workspace;
+    p->pair = mesh->pair;
+    p->by_torque = mesh->friction.is_on || mesh->has_corners;
+    p->resolution = DBL_EPSILON * p->pair->center_distance;
+    const int status = gm_position_from_pinion_angle(p->pair, pinion_angle, 0.0, 0.0, &p->position);
+    if (status != GM_OK) {
+        return status;
+    }
+
+    if (!(fabs(pinion_speed) <= GMI_LARGEST_SPEED)) {
+        return gmi_is_finite(pinion_speed) ? GM_STATE_OUT_OF_RANGE : GM_STATE_NOT_FINITE;
+    }
+    p->position.pinion_speed = pinion_speed;
+
+    /* From here on in the coordinates of the posed pair. */
+    if (mesh->is_posed) {
+        p->position.phase += mesh->engagement.phase_shift;
+    }
+    return GM_OK;
+}
+
+/* Torque below zero loads the coast flanks. */
+static void load(problem *p, double wheel_torque) {
+    p->direction = wheel_torque < 0.0 ? -1.0 : 1.0;
+    p->target = p->direction *
+                gmi_law_sum_of_torque(&p->mesh->law, wheel_torque, p->pair->wheel.base_radius);
+}
+
 int gm_rolling_equilibrium(const gm_mesh *mesh, double pinion_angle, double pinion_speed,
                            double wheel_torque, double guess, gm_workspace *workspace,
                            double *offset, gm_mesh_result *result) {
@@ -293,32 +330,16 @@ int gm_rolling_equilibrium(const gm_mesh *mesh, double pinion_angle, double pini
         return GM_ERR_PARAMETER;
     }
 
-    problem p = {.mesh = mesh,
-                 .workspace = workspace,
-                 .pair = mesh->pair,
-                 .by_torque = mesh->friction.is_on || mesh->has_corners};
-    int status = gm_position_from_pinion_angle(p.pair, pinion_angle, 0.0, 0.0, &p.position);
+    problem p;
+    int status = begin(mesh, pinion_angle, pinion_speed, workspace, &p);
     if (status != GM_OK) {
         return status;
     }
-
-    if (!(fabs(pinion_speed) <= GMI_LARGEST_SPEED)) {
-        return gmi_is_finite(pinion_speed) ? GM_STATE_OUT_OF_RANGE : GM_STATE_NOT_FINITE;
-    }
-    p.position.pinion_speed = pinion_speed;
-
-    /* From here on in the coordinates of the posed pair. */
+    load(&p, wheel_torque);
     const double shift = mesh->engagement.offset_shift;
     if (mesh->is_posed) {
-        p.position.phase += mesh->engagement.phase_shift;
         guess += shift;
     }
-
-    /* Torque below zero loads the coast flanks. */
-    p.direction = wheel_torque < 0.0 ? -1.0 : 1.0;
-    p.target =
-        p.direction * gmi_law_sum_of_torque(&mesh->law, wheel_torque, p.pair->wheel.base_radius);
-    p.resolution = DBL_EPSILON * p.pair->center_distance;
 
     double travel;
     gm_mesh_result at_equilibrium;
@@ -337,4 +358,115 @@ int gm_static_equilibrium(const gm_mesh *mesh, double pinion_angle, double wheel
                           gm_mesh_result *result) {
     return gm_rolling_equilibrium(mesh, pinion_angle, 0.0, wheel_torque, guess, workspace, offset,
                                   result);
+}
+
+/* ---------------------------------------------------------------------------------------------
+ * Several loads at one position
+ * ------------------------------------------------------------------------------------------- */
+
+/* Newton's method from a place so good that its slope serves all steps. Returns 0 if it is not. */
+static int settle(const problem *p, double travel, double slope, int wanted, double *found,
+                  gm_mesh_result *result) {
+    enum { STEPS = 3 };
+    const double limit = largest_offset(p);
+    for (int k = 0; k < STEPS && travel > -limit && travel < limit; ++k) {
+        (void)evaluate(p, travel, wanted, result);
+        const double value = p->direction * result->contact.penetration - p->target;
+        if (fabs(value) <= p->resolution * slope) {
+            *found = travel;
+            return 1;
+        }
+        travel -= value / slope;
+    }
+    return 0;
+}
+
+/* From a guess of any quality, and then what is wanted there beyond derivatives. */
+static int find_wanted(const problem *p, double guess, int wanted, double *found, double *slope,
+                       gm_mesh_result *result) {
+    int status = find(p, guess, found, result);
+    if (status == GM_OK) {
+        *slope = slope_of(p, result);
+        if ((wanted | GM_WANT_DERIVATIVES) != GM_WANT_DERIVATIVES) {
+            status = evaluate(p, *found, wanted, result);
+        }
+    }
+    return status;
+}
+
+/* Each from the guess that stands in its place, and the slope there. Without one it is guessed from the one before. */
+static OWN_STACK int find_each(problem *p, const double *wheel_torque, int count,
+                               const double *slope, int wanted, double *offset,
+                               gm_mesh_result *result) {
+    const double shift = p->mesh->engagement.offset_shift;
+    double before = gmi_nan(), before_target = 0.0, before_slope = gmi_nan();
+    int worst = GM_OK;
+    for (int k = 0; k < count; ++k) {
+        load(p, wheel_torque[k]);
+        gm_mesh_result here;
+        double travel = p->direction * offset[k];
+        int status = GM_OK;
+        if (p->by_torque || !settle(p, travel, slope[k], wanted, &travel, &here)) {
+            const double signed_target = p->direction * p->target;
+            const double from_before =
+                p->direction * (before + (signed_target - before_target) / before_slope);
+            status = find_wanted(p, isnan(travel) ? from_before : travel, wanted, &travel,
+                                 &before_slope, &here);
+            before = p->direction * travel;
+            before_target = signed_target;
+        }
+        offset[k] = status == GM_OK ? p->direction * travel - shift : gmi_nan();
+        if (status == GM_OK && result != NULL) {
+            result[k] = here;
+        }
+        worst = worst != GM_OK ? worst : status;
+    }
+    return worst;
+}
+
+int gm_rolling_equilibria(const gm_mesh *mesh, double pinion_angle, double pinion_speed,
+                          const double *wheel_torque, int count, int wanted,
+                          gm_workspace *workspace, double *offset, gm_mesh_result *result) {
+    if (count < 0) {
+        return GM_ERR_PARAMETER;
+    }
+    for (int k = 0; k < count && result != NULL; ++k) {
+        gmi_mesh_result_set_nan(&result[k]);
+    }
+    if (offset == NULL) {
+        return GM_ERR_NULL;
+    }
+    for (int k = 0; k < count; ++k) {
+        offset[k] = gmi_nan();
+    }
+    if (mesh == NULL || wheel_torque == NULL) {
+        return GM_ERR_NULL;
+    }
+    int is_right = (wanted & ~(GM_WANT_DERIVATIVES | GM_WANT_WRENCH | GM_WANT_PAIRS)) == 0;
+    for (int k = 0; k < count; ++k) {
+        is_right = is_right && gmi_is_finite(wheel_torque[k]);
+    }
+    if (!is_right) {
+        return GM_ERR_PARAMETER;
+    }
+
+    problem p;
+    int worst = begin(mesh, pinion_angle, pinion_speed, workspace, &p);
+    if (worst != GM_OK) {
+        return worst;
+    }
+
+    /* In blocks of the same size. */
+    double slope[GMI_LOADS_MAX];
+    const int blocks = count / GMI_LOADS_MAX + (count % GMI_LOADS_MAX != 0);
+    for (int k = 0, first = 0; k < blocks; ++k) {
+        const int size = (count - first) / (blocks - k);
+        gmi_equilibrium_guesses(mesh, &p.position, wheel_torque + first, size, offset + first,
+                                slope);
+        const int status = find_each(&p, wheel_torque + first, size, slope, wanted, offset + first,
+                                     result != NULL ? result + first : NULL);
+        worst = worst != GM_OK ? worst : status;
+        first += size;
+    }
+    return worst;
 }

@@ -509,30 +509,40 @@ static inline gmi_line gmi_line_between(const gmi_line *line, double from, doubl
     return part;
 }
 
-/* At one depth: the sum and its derivatives by delta and by the origin of the lines. */
+/* At one depth: the sum, its derivatives by delta and by the origin of the lines, and half of its second one by delta. */
 typedef struct gmi_depth_sum {
-    double sum, by_delta, by_origin;
+    double sum, by_delta, by_origin, bend;
 } gmi_depth_sum;
+
+/* One end of a line: how f changes from there on with t1 and with the shift (m). */
+typedef struct gmi_depth_end {
+    double slope, curvature; /* the latter half the second derivative */
+    double grows, grows_rate;
+} gmi_depth_end;
 
 /*
  * A side at many depths from one walk along its lines (GMI_DEPTHS): delta is that of the walk and a shift. With the shift f
- * grows by itself and by the slope of the wheel's flank, whose place moves; where the wheel sets the ends of lines these
- * move. What is left out is of second order in the shift.
+ * grows by itself and by the slope of the wheel's flank, whose place moves, and with it the kinks of its table; where the
+ * wheel sets the ends of lines these move. That is the whole of it as long as no kink or end that moves passes another one
+ * or a place where f is zero.
  */
-enum { GMI_DEPTHS_MAX = 48 };
+enum { GMI_DEPTHS_MAX = 41 };
 typedef struct gmi_depths {
     int count;
-    double from, step; /* shift n is from + n step (m) */
-    double last;       /* the last one; -infinite without any */
-    double touch;      /* least shift at which anything touches (m) */
+    double shift[GMI_DEPTHS_MAX]; /* ascending (m) */
+    double largest;               /* the last one; -infinite without any */
+    double per_shift; /* depths per shift on average; 0 if they are all the same (1/m) */
+    double touch; /* least shift at which anything touches, if it is below what it is set to (m) */
 
     /* Of pieces that touch all along from depth n on, without shift; of those that touch in part, and of the ends. */
     gmi_depth_sum whole[GMI_DEPTHS_MAX], part[GMI_DEPTHS_MAX];
+    double cube[GMI_DEPTHS_MAX]; /* by the third power of the shift, from depth n on */
 
     /* Of the line at hand, by the slopes of the table that leads and of the other one: */
     double per_place;                 /* from its places to t1 */
     double shift_first, shift_second; /* d f / d shift */
     double origin_first, origin_second;
+    gmi_depth_end from, to;
 } gmi_depths;
 
 /* Integrals over the part of a line where f > 0. */
@@ -1092,6 +1102,12 @@ void gmi_side_sum_tangent(const gm_mesh *mesh, int side, const gm_position *posi
                           const gmi_sliding *sliding, gmi_side_sum *total,
                           gmi_side_tangent *tangent, gmi_rubbing *rubbing,
                           gmi_rubbing_by *rubbing_by);
+
+/* equilibrium_guess.c: x of equilibria under several loads at a posed position without friction (m), next to exact, and the
+ * slope of the sum there; NaN = none. */
+enum { GMI_LOADS_MAX = 32 };
+void gmi_equilibrium_guesses(const gm_mesh *mesh, const gm_position *position,
+                             const double *wheel_torque, int count, double *offset, double *slope);
 
 /* As gm_mesh_evaluate_at() without the cache, of a position that has been checked and posed. GM_OK or GM_NO_CONVERGENCE. */
 int gmi_mesh_evaluate_exact(const gm_mesh *mesh, const gm_position *position, int wanted,

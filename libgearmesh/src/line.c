@@ -544,20 +544,20 @@ typedef struct hull {
     double value[3], grows[3];
 } hull;
 
-static inline double lowest_of(const hull *points, double shift) {
+SPECIALIZED double lowest_of(const hull *points, double shift) {
     return gmi_smaller(gmi_smaller(points->value[0] + shift * points->grows[0],
                                    points->value[1] + shift * points->grows[1]),
                        points->value[2] + shift * points->grows[2]);
 }
 
-static inline double highest_of(const hull *points, double shift) {
+SPECIALIZED double highest_of(const hull *points, double shift) {
     return gmi_larger(gmi_larger(points->value[0] + shift * points->grows[0],
                                  points->value[1] + shift * points->grows[1]),
                       points->value[2] + shift * points->grows[2]);
 }
 
 /* The least shift at which the piece touches: at an end, or at the top of a hump. */
-static double touch_of(const piece *part, const hull *points) {
+static OWN_STACK double touch_of(const piece *part, const hull *points) {
     const quadratic *f = &part->f;
     const double touch =
         gmi_smaller(-points->value[0] / points->grows[0], -points->value[2] / points->grows[2]);
@@ -572,25 +572,36 @@ static double touch_of(const piece *part, const hull *points) {
 
 /* A part of the piece touches at depth n. */
 static void add_part_depth(const piece *part, const hull *points, int n, gmi_depths *depths) {
-    const double shift = depths->from + (double)n * depths->step;
+    const double shift = depths->shift[n];
     const double grows_rate = (points->grows[2] - points->grows[0]) / part->length;
     piece moved = *part;
     gmi_line_sum sum = {.sum = 0.0};
     moved.f.value += shift * points->grows[0];
     moved.f.half_slope += 0.5 * shift * grows_rate;
-    add_split(&moved, GMI_DERIVATIVES, &sum);
+    add_split(&moved, GMI_DERIVATIVES | GMI_CONTACT_DERIVATIVES, &sum);
 
+    const double per_place = depths->per_place;
+    const double first = depths->shift_first, second = depths->shift_second;
     gmi_depth_sum *at = &depths->part[n];
-    at->sum += depths->per_place * sum.sum;
-    at->by_delta += depths->per_place * (sum.contact + depths->shift_first * sum.pinion +
-                                         depths->shift_second * sum.wheel);
+    at->sum += per_place * sum.sum;
+    at->by_delta += per_place * (sum.contact + first * sum.pinion + second * sum.wheel);
     at->by_origin +=
-        depths->per_place * (depths->origin_first * sum.pinion + depths->origin_second * sum.wheel);
+        per_place * (depths->origin_first * sum.pinion + depths->origin_second * sum.wheel);
+    at->bend += per_place * (0.5 * sum.roots + first * sum.roots_pinion + second * sum.roots_wheel);
 }
 
-/* The first depth behind a place between them. */
-static int depth_behind(double place, int count) {
-    return place < 0.0 ? 0 : place < (double)count ? (int)place + 1 : count;
+/* The first depth whose shift is larger: from where it would be if they were even. */
+static inline int depth_behind(double shift, const gmi_depths *depths) {
+    const double place = (shift - depths->shift[0]) * depths->per_shift;
+    const int last = depths->count - 1;
+    int n = place > 0.0 ? (place < (double)last ? (int)place : last) : 0;
+    while (n > 0 && depths->shift[n - 1] > shift) {
+        --n;
+    }
+    while (n <= last && !(depths->shift[n] > shift)) {
+        ++n;
+    }
+    return n;
 }
 
 /* The depths at which a part of the piece touches, one by one. Returns the first one at which all of it does. */
@@ -602,39 +613,27 @@ static OWN_STACK int add_part_depths(const piece *part, const hull *points, gmi_
         all = gmi_larger(all, touch);
     }
 
-    const double per_step = 1.0 / depths->step;
-    const int whole = depth_behind((all - depths->from) * per_step, depths->count);
-    for (int n = depth_behind((some - depths->from) * per_step, depths->count); n < whole; ++n) {
+    const int whole = depth_behind(all, depths);
+    for (int n = depth_behind(some, depths); n < whole; ++n) {
         add_part_depth(part, points, n, depths);
     }
     return whole;
 }
 
 /* A piece at all depths: at the small ones none of it touches, then a part, then all of it. */
-SPECIALIZED void add_depths(const piece *part, gmi_depths *depths) {
+SPECIALIZED void add_depths(const piece *part, const hull *points, gmi_depths *depths) {
     const double length = part->length;
     if (!(length > 0.0)) {
         return;
     }
-
-    /* The three points of advance(). */
-    const quadratic *f = &part->f;
-    const double control = f->value + length * f->half_slope;
-    const double end = control + length * (f->half_slope + length * f->curvature);
-    const double grows =
-        1.0 + depths->shift_first * part->first_slope + depths->shift_second * part->second_slope;
-    const double grows_by = length * (depths->shift_first * part->first_rate +
-                                      depths->shift_second * part->second_rate);
-    const hull points = {{f->value, control, end},
-                         {grows, grows + 0.5 * grows_by, grows + grows_by}};
-    if (highest_of(&points, depths->touch) > 0.0) {
-        depths->touch = gmi_smaller(depths->touch, touch_of(part, &points));
+    if (highest_of(points, depths->touch) > 0.0) {
+        depths->touch = gmi_smaller(depths->touch, touch_of(part, points));
     }
-    if (!(highest_of(&points, depths->last) > 0.0)) {
+    if (!(highest_of(points, depths->largest) > 0.0)) {
         return;
     }
     const int whole =
-        lowest_of(&points, depths->from) > 0.0 ? 0 : add_part_depths(part, &points, depths);
+        lowest_of(points, depths->shift[0]) > 0.0 ? 0 : add_part_depths(part, points, depths);
 
     /* From there on all of it does: linear in the shift. */
     if (whole < depths->count) {
@@ -642,10 +641,47 @@ SPECIALIZED void add_depths(const piece *part, gmi_depths *depths) {
         const double first = part->first_slope + 0.5 * length * part->first_rate;
         const double second = part->second_slope + 0.5 * length * part->second_rate;
         gmi_depth_sum *at = &depths->whole[whole];
-        at->sum += weight * (f->value + control + end) * (1.0 / 3.0);
-        at->by_delta += weight * points.grows[1];
+        at->sum += weight * (points->value[0] + points->value[1] + points->value[2]) * (1.0 / 3.0);
+        at->by_delta += weight * points->grows[1];
         at->by_origin += weight * (depths->origin_first * first + depths->origin_second * second);
     }
+}
+
+/* How f grows with the shift where the walk is. */
+SPECIALIZED double growth_at(const walk_state *at, const gmi_depths *depths) {
+    return 1.0 + depths->shift_first * at->first.slope + depths->shift_second * at->second.slope;
+}
+
+/*
+ * The wheel's table moves along the line by per_shift times the shift (in cells), and with it the place of a kink: between
+ * its old place and the new one f is off by a triangle, whichever way it moves. before: the trace there before the kink.
+ */
+SPECIALIZED void add_kink(const walk_state *at, const trace *path, const trace *before,
+                          double per_shift, double rate, gmi_depths *depths) {
+    const double grows = growth_at(at, depths);
+    if (per_shift == 0.0 || !(at->f.value + depths->largest * grows > 0.0)) {
+        return;
+    }
+    const int whole = at->f.value + depths->shift[0] * grows > 0.0
+                          ? 0
+                          : depth_behind(-at->f.value / grows, depths);
+    if (whole < depths->count) {
+        const double moved = per_shift / rate;
+        const double area = 0.5 * depths->per_place * per_shift * moved;
+        depths->whole[whole].bend += area * (path->slope - before->slope);
+        depths->cube[whole] -= area * moved * (1.0 / 3.0) * (path->slope_rate - before->slope_rate);
+    }
+}
+
+/* f at an end of a line, as seen from there. */
+SPECIALIZED gmi_depth_end end_at(const walk_state *at, const gmi_grid *first,
+                                 const gmi_depths *depths) {
+    const double rate = first->face_rate; /* from t1 to s */
+    const gmi_depth_end end = {2.0 * at->f.half_slope * rate, at->f.curvature * (rate * rate),
+                               growth_at(at, depths),
+                               rate * (depths->shift_first * at->first.slope_rate +
+                                       depths->shift_second * at->second.slope_rate)};
+    return end;
 }
 
 /* Integrates the piece up to `end` and goes there. walked: of a tangent. */
@@ -665,7 +701,12 @@ SPECIALIZED void advance(walk_state *at, double end, int wanted, tangent_walk *w
     /* Touching all along, which is two pieces of three; or in part; or not at all. */
     if (wanted & GMI_DEPTHS) {
         const piece part = piece_ahead(at, length, wanted);
-        add_depths(&part, split->depths);
+        const double first = split->depths->shift_first, second = split->depths->shift_second;
+        const double grows = 1.0 + first * at->first.slope + second * at->second.slope;
+        const double grows_at_end = 1.0 + first * first_slope + second * second_slope;
+        const hull points = {{value, control, end_value},
+                             {grows, 0.5 * (grows + grows_at_end), grows_at_end}};
+        add_depths(&part, &points, split->depths);
     } else if (gmi_smaller(gmi_smaller(value, control), end_value) > 0.0) {
         const double three = length * (value + control + end_value);
         at->three_sums += three;
@@ -724,7 +765,12 @@ SPECIALIZED void walk_cell(walk_state *at, const gmi_grid *first, const gmi_grid
                     break;
                 }
                 advance(at, at->first.next_profile, wanted, walked, split);
+                const trace before = at->first;
                 cross_profile(&at->first, first, at->s, wanted, &at->f);
+                if (wanted & GMI_DEPTHS) {
+                    add_kink(at, &at->first, &before, split->depths->shift_first, first->rate,
+                             split->depths);
+                }
             } else {
                 if (!(at->second.next_profile < face_line)) {
                     break;
@@ -732,7 +778,12 @@ SPECIALIZED void walk_cell(walk_state *at, const gmi_grid *first, const gmi_grid
                 advance(at, at->second.next_profile, wanted, walked, split);
                 const double p =
                     same_faces ? at->s : 1.0 - (at->second.next_face - at->s) * second->face_ratio;
+                const trace before = at->second;
                 cross_profile(&at->second, second, p, wanted, &at->f);
+                if (wanted & GMI_DEPTHS) {
+                    add_kink(at, &at->second, &before, split->depths->shift_second, second->rate,
+                             split->depths);
+                }
             }
         }
 
@@ -807,6 +858,9 @@ SPECIALIZED void walk(walk_state at, const gmi_grid *first, const gmi_grid *seco
         result->roots_pinion *= per_rate * first->direction;
         result->roots_wheel *= per_rate * second->direction;
     }
+    if (wanted & GMI_DEPTHS) {
+        result->depths->to = end_at(&at, first, result->depths);
+    }
     result->at_to = at.f.value;
 }
 
@@ -869,6 +923,7 @@ static OWN_STACK void walk_tangent(const walk_state *at, const gmi_grid *first,
 static OWN_STACK void walk_depths(walk_state at, const gmi_grid *first, const gmi_grid *second,
                                   double end, int same_faces, gmi_line_sum *result) {
     enum { AT_DEPTHS = GMI_DEPTHS | GMI_DERIVATIVES };
+    result->depths->from = end_at(&at, first, result->depths);
     if (same_faces) {
         walk(at, first, second, end, AT_DEPTHS, 1, NULL, result);
     } else {
@@ -1025,7 +1080,9 @@ void gmi_line_integrate_depths(const gmi_line *line, const gmi_grid *pinion, con
         const quadratic f = {line->overlap, 0.0, 0.0};
         const piece whole = {0.0, line->to - line->from, f, 0.0, 0.0, 0.0, 0.0};
         depths->per_place = 1.0;
-        add_depths(&whole, depths);
+        depths->from = depths->to = (gmi_depth_end){0.0, 0.0, 1.0, 0.0};
+        const hull points = {{f.value, f.value, f.value}, {1.0, 1.0, 1.0}};
+        add_depths(&whole, &points, depths);
         result->at_from = result->at_to = line->overlap;
     }
 }

@@ -442,19 +442,19 @@ SPECIALIZED void add_line_in_parts(side_view *view, const gmi_line *line, double
  * All lines of a side
  * ------------------------------------------------------------------------------------------- */
 
-SPECIALIZED gmi_line line_between(const side_view *view, const gmi_flank *pinion,
+SPECIALIZED gmi_line line_between(const gm_pair *pair, const gmi_side *prepared, double delta,
+                                  double wheel_reach, const gmi_flank *pinion,
                                   const gmi_flank *wheel, double rho_origin, gmi_interval part) {
-    const gmi_side *prepared = view->prepared;
     const gmi_line line = {
         part.from,
         part.to,
-        view->lines.delta + pinion->pitch + wheel->pitch,
+        delta + pinion->pitch + wheel->pitch,
         0.0,
         0.0,
         pinion->values,
         wheel->values,
-        (rho_origin - view->pair->pinion.start_roll_length) * prepared->pinion_grid.per_rho,
-        (view->wheel_reach - rho_origin) * prepared->wheel_grid.per_rho,
+        (rho_origin - pair->pinion.start_roll_length) * prepared->pinion_grid.per_rho,
+        (wheel_reach - rho_origin) * prepared->wheel_grid.per_rho,
         NULL,
     };
     return line;
@@ -471,7 +471,8 @@ SPECIALIZED void add_line(side_view *view, const gmi_flank *pinion, const gmi_fl
     /* The line in the terms of the tables it runs through. */
     const gm_pair *pair = view->pair;
     const double rho_origin = view->lines.origin + (double)k * pair->transverse_base_pitch;
-    gmi_line line = line_between(view, pinion, wheel, rho_origin, part);
+    gmi_line line = line_between(pair, prepared, view->lines.delta, view->wheel_reach, pinion,
+                                 wheel, rho_origin, part);
     if (is_tilted && !tilt_line(view, rho_origin, wanted, &line)) {
         return;
     }
@@ -567,21 +568,67 @@ SPECIALIZED void follow_lines(const gm_pair *pair, const gmi_engagement *at,
 }
 
 /*
+ * An end of a line that the shift has moved outwards: f there at the depth of the walk. Adds what the line has gained, and
+ * returns f at the new end.
+ */
+static double add_end_depth(const gmi_depth_end *end, double f, double shift, double moved,
+                            double outwards, gmi_depth_sum *at) {
+    const double slope = end->slope + shift * end->grows_rate;
+    f += shift * end->grows;
+    const double mean = f + moved * (0.5 * slope + moved * (1.0 / 3.0) * end->curvature);
+    if (mean > 0.0) {
+        at->sum += outwards * moved * mean;
+        at->by_delta += outwards * moved * (end->grows + 0.5 * moved * end->grows_rate);
+    }
+    return gmi_larger(f + moved * (slope + moved * end->curvature), 0.0);
+}
+
+/* The lines of a side at many depths. */
+typedef struct depths_view {
+    const gm_pair *pair;
+    const gmi_engagement *at;
+    gmi_lines lines; /* at the depth of the walk */
+} depths_view;
+
+/* The ends of lines at a shift, and of one of them. */
+static gmi_interval line_at_depth(const depths_view *view, int k, double shift,
+                                  gmi_line_ends *ends) {
+    gmi_lines lines = view->lines;
+    gmi_lines_limit(view->at, view->lines.delta + shift, &lines);
+    *ends = gmi_line_ends_find(view->pair, view->at, &lines);
+    return gmi_line_clip(ends, k);
+}
+
+/*
  * Ends that the wheel sets move with the shift and take f there along. Which gear sets an end may change with delta: at
  * delta = 0 limits often coincide.
  */
-static void add_end_depths(const side_view *view, int k, gmi_interval part,
+static void add_end_depths(const depths_view *view, int k, gmi_interval part,
                            const gmi_line_sum *line, gmi_depths *depths) {
-    gmi_lines lines = view->lines;
+    if (depths->count == 0) {
+        return;
+    }
+
+    /* Most lines end in the same places at all depths, some of them at both faces. */
+    gmi_line_ends ends;
+    const gmi_interval least = line_at_depth(view, k, depths->shift[0], &ends);
+    gmi_interval moved = line_at_depth(view, k, depths->largest, &ends);
+    const int moves = least.from != part.from || least.to != part.to || moved.from != part.from ||
+                      moved.to != part.to;
+    if (!moves && part.from == ends.face_from && part.to == ends.face_to) {
+        return;
+    }
+
     for (int n = 0; n < depths->count; ++n) {
-        const double shift = depths->from + (double)n * depths->step;
-        gmi_lines_limit(view->at, view->lines.delta + shift, &lines);
-        const gmi_line_ends ends = gmi_line_ends_find(view->pair, view->at, &lines);
-        const gmi_interval moved = gmi_line_clip(&ends, k);
-        const double f_from = fmax(line->at_from + shift, 0.0);
-        const double f_to = fmax(line->at_to + shift, 0.0);
+        const double shift = depths->shift[n];
+        if (moves) {
+            moved = line_at_depth(view, k, shift, &ends);
+        }
         gmi_depth_sum *at = &depths->part[n];
-        at->sum += f_from * (part.from - moved.from) + f_to * (moved.to - part.to);
+        const double f_from =
+            add_end_depth(&depths->from, line->at_from, shift, moved.from - part.from, -1.0, at);
+        const double f_to =
+            add_end_depth(&depths->to, line->at_to, shift, moved.to - part.to, 1.0, at);
         if (moved.from > ends.face_from) {
             at->by_origin += f_from * ends.per_advance;
             at->by_delta -= f_from * ends.per_advance * ends.enter_by_delta;
@@ -595,24 +642,22 @@ static void add_end_depths(const side_view *view, int k, gmi_interval part,
 
 void gmi_side_sum_depths(const gm_pair *pair, const gmi_engagement *at, const gmi_side *prepared,
                          int side, const gm_position *position, gmi_depths *depths) {
-    side_view view;
-    view.pair = pair;
-    view.at = at;
-    view.prepared = prepared;
+    depths_view view = {.pair = pair, .at = at};
     gmi_lines_find(pair, at, side, position, &view.lines);
-    view.ends = gmi_line_ends_find(pair, at, &view.lines);
-    view.wheel_reach = at->line_of_action + view.lines.delta - at->wheel_profile_start;
-    const gmi_line_ends *ends = &view.ends;
+    const gmi_line_ends ends = gmi_line_ends_find(pair, at, &view.lines);
+    const double delta = view.lines.delta;
+    const double wheel_reach = at->line_of_action + delta - at->wheel_profile_start;
 
     /* All lines: what does not touch at this depth may touch at another one. */
     gmi_teeth teeth = gmi_lines_teeth(pair, side, position, &view.lines);
     for (int k = view.lines.first; k <= view.lines.last; ++k) {
         const gmi_flank pinion = gmi_flank_of(prepared->pinion, teeth.pinion);
         const gmi_flank wheel = gmi_flank_of(prepared->wheel, teeth.wheel);
-        const gmi_interval part = gmi_line_clip(ends, k);
+        const gmi_interval part = gmi_line_clip(&ends, k);
         if (part.from < part.to) {
             const double rho_origin = view.lines.origin + (double)k * pair->transverse_base_pitch;
-            const gmi_line line = line_between(&view, &pinion, &wheel, rho_origin, part);
+            const gmi_line line =
+                line_between(pair, prepared, delta, wheel_reach, &pinion, &wheel, rho_origin, part);
             gmi_line_sum sum;
             gmi_line_integrate_depths(&line, &prepared->pinion_grid, &prepared->wheel_grid, depths,
                                       &sum);
@@ -623,15 +668,20 @@ void gmi_side_sum_depths(const gm_pair *pair, const gmi_engagement *at, const gm
     }
 
     /* What touches all along does so at every larger depth. */
-    gmi_depth_sum whole = {0.0, 0.0, 0.0};
+    gmi_depth_sum whole = {0.0, 0.0, 0.0, 0.0};
+    double cube = 0.0;
     for (int n = 0; n < depths->count; ++n) {
-        const double shift = depths->from + (double)n * depths->step;
+        const double shift = depths->shift[n];
+        gmi_depth_sum *part = &depths->part[n];
         whole.sum += depths->whole[n].sum;
         whole.by_delta += depths->whole[n].by_delta;
         whole.by_origin += depths->whole[n].by_origin;
-        depths->part[n].sum += whole.sum + shift * whole.by_delta;
-        depths->part[n].by_delta += whole.by_delta;
-        depths->part[n].by_origin += whole.by_origin;
+        whole.bend += depths->whole[n].bend;
+        cube += depths->cube[n];
+        part->sum += whole.sum + shift * (whole.by_delta + shift * (whole.bend + shift * cube));
+        part->by_delta += whole.by_delta + shift * (2.0 * whole.bend + shift * 3.0 * cube);
+        part->by_origin += whole.by_origin;
+        part->bend += whole.bend;
     }
 }
 

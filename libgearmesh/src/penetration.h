@@ -16,6 +16,14 @@ static inline int gmi_side_is_clear(const gmi_engagement *at, const gmi_side *pr
     return gmi_ideal_penetration(at, side, offset) + prepared->peak <= 0.0;
 }
 
+/* Whether one walk tells of many depths: flanks of tables between parallel axes, with teeth of a constant stiffness. */
+static inline int gmi_side_has_depths(const gm_mesh *mesh, int side) {
+    const gmi_side *prepared = &mesh->side[side];
+    return mesh->model != GM_MODEL_SIMPLE && mesh->elastic == NULL && !mesh->has_corners &&
+           mesh->pair->face_advance != 0.0 && prepared->ramps == 0 && !prepared->is_tilted &&
+           (prepared->pinion != NULL || prepared->wheel != NULL);
+}
+
 /* The integral along a line or a part of it, with the grids that it runs through. */
 static inline void gmi_flanks_integrate(const gmi_side *prepared, const gmi_grid *pinion_grid,
                                         const gmi_grid *wheel_grid, const gmi_line *line,

@@ -406,6 +406,19 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size) {
         claim_numbers(again, &offset, 1);
         claim_penetration(again, &whole.contact);
 
+        /* Several at once: a number where there is one. */
+        const double torques[] = {torque, 0.5 * torque, -torque, fuzz_any(&bytes), 0.999 * torque};
+        enum { TORQUES = sizeof torques / sizeof torques[0] };
+        double offsets[TORQUES];
+        const int several = gm_rolling_equilibria(mesh, state.pinion_angle, 0.0, torques, TORQUES,
+                                                  all, NULL, offsets, NULL);
+        int carried = 0;
+        for (int k = 0; k < TORQUES; ++k) {
+            carried += !isnan(offsets[k]);
+            FUZZ_CLAIM(!isinf(offsets[k]));
+        }
+        FUZZ_CLAIM((several == GM_OK) == (carried == TORQUES));
+
         /* There is one for any guess or for none, unless it hangs on the rounding of the lengths, or teeth are
          * pressed together or deviate by so much that the sum may fall again. */
         const double length = fabs(torque) / (law.stiffness * pair.wheel.base_radius);

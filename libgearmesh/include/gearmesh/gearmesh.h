@@ -1260,6 +1260,30 @@ GM_API int gm_rolling_equilibrium(const gm_mesh *mesh, double pinion_angle, doub
                                   double wheel_torque, double guess, gm_workspace *workspace,
                                   double *offset, gm_mesh_result *result);
 
+/**
+ * As gm_rolling_equilibrium(), under several loads at one pinion angle: the same equilibria, to the accuracy of each, with
+ * less work. Helical gears with tables, a constant stiffness and parallel axes, without corner contact, friction and linear
+ * reliefs: three walks along the lines of contact tell of up to 32 loads at once, and each takes one evaluation more. All
+ * others: each load is guessed from the one before, so that loads in order save the most.
+ *
+ * @param[in]     mesh          the mesh
+ * @param[in]     pinion_angle  phi_p (rad)
+ * @param[in]     pinion_speed  d phi_p / dt, 0 at rest (rad/s)
+ * @param[in]     wheel_torque  [count] loads on the wheel, in any order (N m)
+ * @param[in]     count         how many, >= 0
+ * @param[in]     wanted        a sum of enum gm_wanted, of the results, in which derivatives may be there without being wanted
+ * @param[in,out] workspace     as gm_mesh_evaluate()
+ * @param[out]    offset        [count] x; NaN where there is no equilibrium, and everywhere on an error of the call (m)
+ * @param[out]    result        [count] there, likewise; may be NULL
+ * @return GM_OK, or the status of the first load that has no equilibrium, see gm_rolling_equilibrium(); GM_ERR_PARAMETER
+ *         too for `count` or `wanted`
+ *
+ * Accuracy: as gm_static_equilibrium(). Cost: docs/performance.md.
+ */
+GM_API int gm_rolling_equilibria(const gm_mesh *mesh, double pinion_angle, double pinion_speed,
+                                 const double *wheel_torque, int count, int wanted,
+                                 gm_workspace *workspace, double *offset, gm_mesh_result *result);
+
 /** The load at one point of a line of contact. */
 typedef struct gm_line_load_point {
     int side;                  /**< GM_DRIVE or GM_COAST */
