@@ -662,6 +662,42 @@ static void either_tip_may_meet_a_root(void) {
     gm_test_context("%s", "");
 }
 
+/* Its one pair touches at mid-face, wherever the axes tilt to: prepared so or moved there, on both sides. */
+static void the_simple_model_knows_no_tilts(void) {
+    const gm_pair pair = reference_pair(17.5e-3);
+    for (int i = 0; i < 8; ++i) {
+        gm_test_context("case %d", i);
+        const double tilt = (i & 1 ? 1.0 : -1.0) * 1e-3;
+        const double x = (i & 4 ? -1.0 : 1.0) * (0.5 * pair.backlash + 0.2e-6);
+        gm_motion motion = {
+            .pose = {.skew = i & 2 ? tilt : 0.0, .inclination = i & 2 ? 0.0 : tilt}};
+        GM_ASSERT_INT(gm_position_from_pinion_angle(&pair, 0.3, x, 0.0, &motion.position), GM_OK);
+        plain_mesh rooms[2];
+        gm_mesh *mesh, *tilted;
+        gm_mesh_params law;
+        gm_mesh_params_default(&law);
+        law.stiffness = 1e8;
+        law.model = GM_MODEL_SIMPLE;
+        GM_ASSERT_INT(gm_mesh_init(&mesh, &law, &pair, NULL, NULL, &rooms[0], sizeof rooms[0]),
+                      GM_OK);
+        law.pose = motion.pose;
+        GM_ASSERT_INT(gm_mesh_init(&tilted, &law, &pair, NULL, NULL, &rooms[1], sizeof rooms[1]),
+                      GM_OK);
+
+        gm_mesh_result plain, prepared, moved;
+        GM_ASSERT_INT(gm_mesh_evaluate_at(mesh, &motion.position, 0, NULL, &plain), GM_OK);
+        GM_ASSERT_INT(gm_mesh_evaluate_at(tilted, &motion.position, 0, NULL, &prepared), GM_OK);
+        GM_ASSERT_INT(gm_mesh_evaluate_posed(mesh, &motion, 0, NULL, &moved), GM_OK);
+        GM_ASSERT(fabs(plain.force) > 1.0);
+        GM_ASSERT(prepared.force == plain.force);
+        GM_ASSERT(moved.force == plain.force);
+        for (int side = GM_DRIVE; side <= GM_COAST; ++side) {
+            GM_ASSERT(gm_mesh_clearance(tilted, side) == gm_mesh_clearance(mesh, side));
+        }
+    }
+    gm_test_context("%s", "");
+}
+
 int main(int argc, char **argv) {
     static const gm_test tests[] = {
         GM_TEST(transmission_error_is_that_of_displaced_helicoids),
@@ -677,6 +713,7 @@ int main(int argc, char **argv) {
         GM_TEST(either_tip_may_meet_a_root),
         GM_TEST(a_shifted_face_is_another_drawing),
         GM_TEST(a_shorter_common_face_carries_less),
+        GM_TEST(the_simple_model_knows_no_tilts),
     };
     return gm_test_main("unit.pose", tests, GM_TEST_COUNT(tests), argc, argv);
 }

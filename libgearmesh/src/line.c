@@ -218,12 +218,12 @@ typedef struct straight_sums {
     double by_rate;   /* of the cube of the length times how fast it grows */
 } straight_sums;
 
-SPECIALIZED void add_straight(double length, double twice_middle, double from, double rate,
-                              straight_sums *sums) {
-    const double twice = length * (from + sums->to);
+/* Goes on to `to` over a length. */
+SPECIALIZED void add_straight(double length, double twice_middle, double to, straight_sums *sums) {
+    const double twice = length * (sums->to + to);
     sums->twice += twice;
     sums->at_middle += twice_middle * twice;
-    sums->by_rate += length * length * length * rate;
+    sums->to = to;
 }
 
 /* Its integral over t1, and the first moment about t1 = 0, times a factor. */
@@ -277,14 +277,11 @@ SPECIALIZED void follow_slopes(const gmi_grid *grid, const double *table, double
             const double stop = crosses ? next : face_line;
             const double length = stop - p;
             const double twice_middle = twice_behind + (p + stop);
-            const double slope = d.to;
-            d.to += mixed * length;
-            add_straight(length, twice_middle, slope, mixed, &d);
+            const double growth = mixed * length;
+            add_straight(length, twice_middle, d.to + growth, &d);
+            d.by_rate += growth * (length * length);
             if (has_face) {
-                const double face_slope = c.to;
-                const double face_rate = mixed * rate;
-                c.to += face_rate * length;
-                add_straight(length, twice_middle, face_slope, face_rate, &c);
+                add_straight(length, twice_middle, c.to + growth * rate, &c);
             }
             p = stop;
             if (!crosses) {
@@ -314,6 +311,7 @@ SPECIALIZED void follow_slopes(const gmi_grid *grid, const double *table, double
         faces -= 1;
         c.to = face_behind - mixed * (last * rate);
     }
+    c.by_rate = d.by_rate * rate; /* both follow what is mixed in each cell */
     *along = d;
     *across = c;
 }

@@ -211,6 +211,11 @@ static int make_elastic(gm_mesh *mesh, gmi_elastic_mesh *elastic, gm_mesh_params
     return status;
 }
 
+/* The pair of the simple model touches at mid-face, wherever the axes tilt to. */
+static int knows_tilts(const gm_mesh *mesh) {
+    return mesh->model != GM_MODEL_SIMPLE;
+}
+
 /* Which way its evaluations go. */
 static void set_kind(gm_mesh *mesh) {
     const gmi_engagement *at = &mesh->engagement;
@@ -264,6 +269,7 @@ int gm_mesh_init(gm_mesh **mesh, const gm_mesh_params *params, const gm_pair *pa
 
     /* What its evaluations have in common. */
     made->engagement = engagement;
+    made->engagement.is_tilted = engagement.is_tilted && knows_tilts(made);
     gm_mesh_params law = *params;
     if (params->law == GM_LAW_ELASTIC) {
         status = make_elastic(made, (gmi_elastic_mesh *)(own_pair + 1), &law);
@@ -1034,6 +1040,7 @@ static int move_mesh(const gm_mesh *mesh, const gm_pose *pose, gm_mesh *moved) {
     if (status != GM_OK) {
         return status;
     }
+    moved->engagement.is_tilted = moved->engagement.is_tilted && knows_tilts(mesh);
     if (mesh->has_corners && !gmi_corners_init(mesh->pair, &moved->engagement, moved->corners)) {
         return GM_POSE_OUT_OF_MESH;
     }

@@ -12,6 +12,7 @@
  *     and turns e by dO.t / T, so that the tilt along it grows by its part across times that, and the one across falls.
  */
 #include "internal.h"
+#include "penetration.h"
 
 #include <math.h>
 #include <string.h>
@@ -230,6 +231,9 @@ static OWN_STACK void add_side(const gm_mesh *moved, const gm_position *position
                                gm_tangent *tangent, gm_wrench *wrench) {
     const gm_pair *pair = moved->pair;
     const gmi_engagement *at = &moved->engagement;
+    if (gmi_side_is_clear(at, &moved->side[side], side, position->offset)) {
+        return;
+    }
     followed_side followed;
     follow(moved, position, rates, side, &followed);
     if (followed.force.force > 0.0) {
@@ -243,11 +247,7 @@ static OWN_STACK void add_side(const gm_mesh *moved, const gm_position *position
     }
 }
 
-int gm_mesh_tangent(const gm_mesh *mesh, const gm_motion *motion, gm_tangent *tangent) {
-    if (tangent == NULL) {
-        return GM_ERR_NULL;
-    }
-    set_tangent(tangent, gmi_nan());
+static int find_tangent(const gm_mesh *mesh, const gm_motion *motion, gm_tangent *tangent) {
     if (mesh == NULL || motion == NULL) {
         return GM_ERR_NULL;
     }
@@ -284,4 +284,12 @@ int gm_mesh_tangent(const gm_mesh *mesh, const gm_motion *motion, gm_tangent *ta
         gmi_wrench_turn(&tangent->wrench_by_rate[k], axis);
     }
     return GM_OK;
+}
+
+int gm_mesh_tangent(const gm_mesh *mesh, const gm_motion *motion, gm_tangent *tangent) {
+    const int status = tangent == NULL ? GM_ERR_NULL : find_tangent(mesh, motion, tangent);
+    if (status != GM_OK && tangent != NULL) {
+        set_tangent(tangent, gmi_nan());
+    }
+    return status;
 }
