@@ -966,6 +966,57 @@ static void loads_of_spur_lines_are_the_force(void) {
     GM_ASSERT(alone > 10);
 }
 
+/* Between tilted axes the load of a spur line is next to a parabola: Simpson's rule over the 17 stations has its integral,
+ * up to what the tilt moves the ends of the wheel's face by. And the force acts where it is. */
+static void loads_of_tilted_spur_lines_are_the_force(void) {
+    const gm_pair pair = spur_pair();
+    gm_mesh_params params = params_with(GM_CORNER_ON, 0.0);
+    params.pose.skew = 0.5e-4;
+    params.pose.inclination = -0.3e-4;
+    room where;
+    gm_mesh *mesh;
+    GM_ASSERT_INT(
+        gm_mesh_init(&mesh, &params, &pair, NULL, NULL, where.memory, sizeof where.memory), GM_OK);
+    int compared = 0, edges = 0;
+    for (int k = 0; k < 400; ++k) {
+        gm_position position;
+        gm_line_load_point points[400];
+        gm_line_loads loads;
+        gm_mesh_result r;
+        gm_test_context("place %d", k);
+        (void)gm_position_from_pinion_angle(&pair, 0.001 * k, 0.5 * pair.backlash + 10e-6, 0.0,
+                                            &position);
+        GM_ASSERT_INT(gm_mesh_evaluate_at(mesh, &position, GM_WANT_WRENCH, NULL, &r), GM_OK);
+        GM_ASSERT_INT(gm_mesh_line_loads(mesh, &position, NULL, points, 400, &loads), GM_OK);
+        double force = 0.0, moment = 0.0;
+        int is_whole = loads.points % 17 == 0, has_edge = 0;
+        for (int n = 0; n < loads.points; ++n) {
+            const int at = n % 17;
+            const int is_pressed = points[n].line_load > 0.0;
+            is_whole = is_whole && is_pressed == (points[n - at].line_load > 0.0);
+            has_edge += isnan(points[n].pressure);
+            const double weight = (at == 0 || at == 16 ? 1.0 : at % 2 != 0 ? 4.0 : 2.0) / 48.0;
+            force += points[n].line_load * pair.face_width * weight;
+            moment += points[n].line_load * pair.face_width * weight * points[n].z;
+        }
+        if (is_whole) {
+            const double moved = 0.8e-4 * pair.wheel.tip_radius / pair.face_width;
+            GM_ASSERT_REL(force, r.force, moved);
+            if (has_edge == 0) {
+                const double *f = r.wrench.wheel_force, *m = r.wrench.wheel_moment;
+                const double squared = f[0] * f[0] + f[1] * f[1];
+                const double z = (m[1] * f[0] - m[0] * f[1]) / squared;
+                GM_ASSERT_ABS(moment / force, z, 2.0 * moved * pair.face_width);
+                GM_ASSERT(fabs(z - 0.5 * pair.face_width) > 10.0 * moved * pair.face_width);
+            }
+            ++compared;
+            edges += has_edge > 0;
+        }
+    }
+    GM_ASSERT(compared > 100);
+    GM_ASSERT(edges > 10);
+}
+
 /* A pair of which a tip reaches to the mate's base circle, and what no corner goes with. */
 static void what_corners_do_not_go_with_is_refused(void) {
     const gm_pair pair = reference_pair(REFERENCE_FACE_WIDTH);
@@ -1022,6 +1073,7 @@ int main(int argc, char **argv) {
         GM_TEST(equilibrium_carries_the_torque),
         GM_TEST(lines_are_loaded_as_the_overlap_says),
         GM_TEST(loads_of_spur_lines_are_the_force),
+        GM_TEST(loads_of_tilted_spur_lines_are_the_force),
         GM_TEST(what_corners_do_not_go_with_is_refused),
     };
     return gm_test_main("unit.corner_mesh", tests, GM_TEST_COUNT(tests), argc, argv);

@@ -286,6 +286,35 @@ static void claim_elastic(fuzz_bytes *bytes, int how, const gm_pair *pair, const
     free(memory);
 }
 
+/* As many points as are promised are enough, and each has a load. */
+static void claim_line_loads(const gm_mesh *mesh, const gm_state *state) {
+    const int most = gm_mesh_line_load_points(mesh);
+    gm_position position;
+    gm_line_loads loads;
+    if (most > 100000 || gm_position_from_state(gm_mesh_pair(mesh), state, &position) != GM_OK) {
+        return;
+    }
+    gm_line_load_point *points = malloc((size_t)most * sizeof *points);
+    const int loaded = gm_mesh_line_loads(mesh, &position, NULL, points, most, &loads);
+    FUZZ_CLAIM(loaded != GM_ERR_MEMORY);
+    for (int k = 0; loaded == GM_OK && k < loads.points; ++k) {
+        FUZZ_CLAIM(points[k].line_load >= 0.0 && isfinite(points[k].line_load));
+        FUZZ_CLAIM(isfinite(points[k].gap));
+    }
+    free(points);
+}
+
+/* All derivatives are numbers, or there are none. */
+static void claim_tangent(const gm_mesh *mesh, const gm_state *state) {
+    gm_motion motion = {.pose = {0.0, 0.0, 0.0, 0.0, 0.0}};
+    if (gm_position_from_state(gm_mesh_pair(mesh), state, &motion.position) == GM_OK) {
+        gm_tangent tangent;
+        const int known = gm_mesh_tangent(mesh, &motion, &tangent);
+        claim_numbers(known, tangent.force_by, GM_COORDINATES);
+        claim_numbers(known, tangent.wrench_by_rate[GM_SKEW].wheel_moment, 3);
+    }
+}
+
 /* Tip corners of constant stiffness, with friction of any law: refused, or every answer is a number or has a status. */
 static void claim_corners(fuzz_bytes *bytes, int how, const gm_pair *pair, const gm_flanks *pinion,
                           const gm_flanks *wheel, const gm_state *state, const gm_pose *pose) {
@@ -318,6 +347,13 @@ static void claim_corners(fuzz_bytes *bytes, int how, const gm_pair *pair, const
         FUZZ_CLAIM(evaluated != GM_OK || whole.loss >= 0.0);
         FUZZ_CLAIM(evaluated == gm_mesh_evaluate(mesh, state, GM_WANT_FORCE, NULL, &alone));
         FUZZ_CLAIM(evaluated != GM_OK || (alone.loss >= 0.0 && isfinite(alone.wheel_torque)));
+        claim_line_loads(mesh, state);
+    }
+
+    /* And without corners the tangent. */
+    law.corner_contact = GM_CORNER_OFF;
+    if (gm_mesh_init(&mesh, &law, pair, pinion, wheel, memory, size) == GM_OK) {
+        claim_tangent(mesh, state);
     }
     free(memory);
 }
