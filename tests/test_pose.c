@@ -508,6 +508,57 @@ static void a_cache_of_a_posed_mesh_is_as_good(void) {
     GM_ASSERT(errors[1] > 0.0 && errors[1] < 3.0 * errors[0] + 1e-10);
 }
 
+/* The touching part of one pair in the middle of its path, pressed by more than faces of 15 mm lean by 1 mrad. */
+static double leaning_contact(const gm_pair *pair, int side, double inclination, double skew) {
+    plain_mesh room;
+    gm_mesh *mesh;
+    gm_mesh_params law;
+    gm_mesh_result result;
+    gm_mesh_params_default(&law);
+    law.stiffness = 1e8;
+    law.pose.inclination = inclination;
+    law.pose.skew = skew;
+    GM_ASSERT_INT(gm_mesh_init(&mesh, &law, pair, NULL, NULL, room.memory, sizeof room.memory),
+                  GM_OK);
+
+    const double sign = side == GM_DRIVE ? 1.0 : -1.0;
+    const double middle = 0.5 * (pair->path_start + pair->path_end);
+    const double angle = sign * (middle - pair->phase_origin[side]) / pair->pinion.base_radius;
+    const double offset = sign * (0.5 * pair->backlash + 60e-6);
+    gm_position position;
+    GM_ASSERT_INT(gm_position_from_pinion_angle(pair, angle, offset, 0.0, &position), GM_OK);
+    GM_ASSERT_INT(gm_mesh_evaluate_at(mesh, &position, GM_WANT_FORCE, NULL, &result), GM_OK);
+    return side == GM_DRIVE ? result.contact.drive_contact : result.contact.coast_contact;
+}
+
+/*
+ * The faces of a leaning wheel move along z by its lean times their height, those of the pinion stay. On a pinion wider on
+ * both sides lines keep their length. Gears shifted against each other end at a face of each: what is lost at the wheel's
+ * when it is shifted one way is won when it is shifted the other way. All to second order, 1e-6.
+ */
+static void faces_end_the_lines_of_a_leaning_wheel(void) {
+    static const double lean[4] = {1e-3, -1e-3, 0.0, 0.0}, skew[4] = {0.0, 0.0, 1e-3, -1e-3};
+    gm_pair_params drawn = spur_pair_params();
+    drawn.pinion_face_width = 19e-3;
+    drawn.wheel_face_width = 15e-3;
+    const gm_pair wider = make_pair(&drawn);
+    drawn.pinion_face_width = 15e-3;
+    drawn.axial_offset = 5e-3;
+    const gm_pair behind = make_pair(&drawn);
+    drawn.axial_offset = -5e-3;
+    const gm_pair before = make_pair(&drawn);
+    for (int side = GM_DRIVE; side <= GM_COAST; ++side) {
+        for (int i = 0; i < 4; ++i) {
+            gm_test_context("side %d, lean %g, skew %g", side, lean[i], skew[i]);
+            GM_ASSERT_REL(leaning_contact(&wider, side, lean[i], skew[i]), 1.0, 5e-6);
+            const double of_one = leaning_contact(&behind, side, lean[i], skew[i]);
+            GM_ASSERT_REL(of_one + leaning_contact(&before, side, lean[i], skew[i]), 2.0, 2e-5);
+            GM_ASSERT(skew[i] != 0.0 || fabs(of_one - 1.0) > 5e-4); /* the shift is there */
+        }
+        GM_ASSERT_ABS(leaning_contact(&wider, side, 0.0, 0.0), 1.0, 1e-15);
+    }
+}
+
 /* ---------------------------------------------------------------------------------------------
  * What is refused, and what changes nothing
  * ------------------------------------------------------------------------------------------- */
@@ -708,6 +759,7 @@ int main(int argc, char **argv) {
         GM_TEST(only_the_common_face_takes_part),
         GM_TEST(tables_begin_where_their_own_faces_do),
         GM_TEST(a_cache_of_a_posed_mesh_is_as_good),
+        GM_TEST(faces_end_the_lines_of_a_leaning_wheel),
         GM_TEST(no_pose_is_the_drawing_to_the_last_bit),
         GM_TEST(poses_out_of_mesh_are_refused),
         GM_TEST(either_tip_may_meet_a_root),
