@@ -210,6 +210,17 @@ static void the_first_place_that_carries_counts_next_to_spur(void) {
                 GM_OK);
             GM_ASSERT_ABS(sign * x, low - 0.5 * step, 0.51 * step);
         }
+        /* The same among several loads, which take their walks together. */
+        plain_mesh room;
+        gm_mesh *mesh;
+        gm_mesh_result results[3];
+        const double torques[3] = {0.4 * torque, torque, 0.9 * torque};
+        double offsets[3];
+        GM_ASSERT_INT(plain_mesh_make(&room, &pair, flanks, NULL, 1e8, 0.0, &mesh), GM_OK);
+        GM_ASSERT_INT(gm_rolling_equilibria(mesh, angle, 0.0, torques, 3, GM_WANT_FORCE, NULL,
+                                            offsets, results),
+                      GM_OK);
+        GM_ASSERT_ABS(sign * offsets[1], low - 0.5 * step, 0.51 * step);
         falling += fell > 0;
     }
     gm_test_context("all cases");
