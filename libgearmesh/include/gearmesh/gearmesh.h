@@ -824,7 +824,8 @@ typedef struct gm_mesh_params {
     int stations; /**< along the face, 2 .. 97; docs/elastic.md has the error of each number [17] */
 
     /** enum gm_corner_contact [GM_CORNER_BY_LAW]. GM_CORNER_ON: 3D model, no tip that reaches to the mate's base
-     *  circle. Start radii then end no line. */
+     *  circle. Start radii then end no line. With constant stiffness gm_mesh_tangent() and gm_cache_init() refuse it, and
+     *  line loads have no pressure under an edge. */
     int corner_contact;
 
     /** radius of the tip edges of elastic teeth in modules, 0.001 .. 1 [0.05] */
@@ -1110,9 +1111,9 @@ typedef struct gm_tangent {
  * @return as gm_mesh_evaluate_posed(); GM_ERR_PARAMETER with corner contact, and for elastic teeth: take the derivatives by
  *         both angles of gm_mesh_evaluate(), and differences for the pose
  *
- * The wrench contains friction, of which the rate of the pinion's angle changes sliding speeds alone where x stays as it
- * is. Accuracy: roundings. Cost: some four evaluations with tables, with friction seven; docs/performance.md. Source:
- * docs/equations.md.
+ * The wrench contains friction; the rates of both angles change how fast the flanks approach and how fast they slide.
+ * Accuracy: roundings. Cost: some four evaluations with tables, and more with friction, as lines are cut into parts;
+ * docs/performance.md. Source: docs/equations.md.
  */
 GM_API int gm_mesh_tangent(const gm_mesh *mesh, const gm_motion *motion, gm_tangent *tangent);
 
