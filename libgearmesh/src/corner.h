@@ -17,18 +17,20 @@ typedef struct gmi_corner_place {
     double by_roll_twice; /* and the second (1/m) */
     double by_length;     /* its derivative by T (1) */
     double mate_roll;     /* roll length of the flank touched, its radius of curvature there (m) */
-    double across,
-        along; /* of the corner from the point of the line of action with the same roll, away from the mate's
-                             axis and along the line (m) */
-    double
-        versine; /* 1 - cos of the turn of the normal from the line of action, with the axes held */
+
+    /* From the point of the line of action with the same roll: away from the mate's axis, and along the line (m). */
+    double across, along;
+
+    /* Turn of the normal from the line of action, with the axes held: the angle (rad), and 1 - cos of it. */
+    double turn, versine;
     double versine_by_roll;
-    double turn; /* that turn (rad) */
-    double
-        gain; /* what roll lengths of the flank touched are longer by than on the line of action (m) */
+
+    /* By how much roll lengths of the flank touched are longer than on the line of action (m). */
+    double gain;
     double gain_by_roll;
-    double
-        tip_arm; /* of that normal about the axis of the tip: d overlap / d angle (m); about the other: mate_base */
+
+    /* Of that normal about the axis of the tip: d overlap / d angle (m). About the other axis it is mate_base. */
+    double tip_arm;
 } gmi_corner_place;
 
 /*
