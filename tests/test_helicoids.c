@@ -182,6 +182,7 @@ static void compare_line(const gm_pair *p, const gm_pose *pose, const gmi_engage
     gmi_tilt_cuts cuts;
     gmi_line_part part;
     gmi_tilt_line(p, at, side, origin, &tilted);
+    GM_ASSERT_REL(gmi_tilt_gain(p, at, side), tilted.gain, 4.0 * DBL_EPSILON);
     gmi_tilt_cuts_find(p, at, side, delta, 0, &cuts);
     if (!gmi_tilt_cut_line(&cuts, origin, &part)) {
         return;
