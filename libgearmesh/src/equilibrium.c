@@ -406,6 +406,8 @@ static OWN_STACK int find_each(problem *p, const double *wheel_torque, int count
         gm_mesh_result here;
         double travel = p->direction * offset[k];
         int status = GM_OK;
+
+        /* Searched where the guess is not that good, from the load before if there is none. */
         if (p->by_torque || !settle(p, travel, slope[k], wanted, &travel, &here)) {
             const double signed_target = p->direction * p->target;
             const double from_before =
@@ -415,6 +417,8 @@ static OWN_STACK int find_each(problem *p, const double *wheel_torque, int count
             before = p->direction * travel;
             before_target = signed_target;
         }
+
+        /* In the coordinates of the drawing. */
         offset[k] = status == GM_OK ? p->direction * travel - shift : gmi_nan();
         if (status == GM_OK && result != NULL) {
             result[k] = here;

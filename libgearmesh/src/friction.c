@@ -257,6 +257,8 @@ static void differentiate_share(const gmi_sliding *s, const gmi_point_friction *
                                 const gmi_load *load, const gmi_load_by *load_by, double rho_p,
                                 double t1, double by[GMI_VARIABLES]) {
     const double by_speed = at->by_speed;
+
+    /* By what the load changes with: its middle slides at another speed, and its size changes the coefficient. */
     for (int k = 0; k < GMI_LOAD_VARIABLES; ++k) {
         const double *force_by = load_by->force[k];
         const double rho_by = force_by[GMI_BY_RHO] - rho_p * force_by[GMI_WHOLE];
@@ -268,6 +270,8 @@ static void differentiate_share(const gmi_sliding *s, const gmi_point_friction *
     for (int k = 0; k < GMI_COORDINATES; ++k) {
         by[k] -= at->by_load * load_by->contact[k] / load->contact;
     }
+
+    /* By the line of action and the speeds of both gears, which roll and slide. */
     const gmi_rolling_by rolling = gmi_rolling_differentiate(s);
     by[GMI_BY_LENGTH] += at->by_rolling * rolling.length - by_speed * s->wheel_speed;
     by[GMI_BY_PINION_SPEED] = at->by_rolling * rolling.pinion_speed + by_speed * rho_p;

@@ -259,6 +259,8 @@ SPECIALIZED void follow_slopes(const gmi_grid *grid, const double *table, double
     double end = p + (to - from) * grid->face_rate;
     double twice_behind = 2.0 * (double)face;
     int faces = grid->last_face - face, profiles = grid->last_profile - cell;
+
+    /* Slopes along the profile, d, and across the face, c, where the line begins; mixed: what both change by. */
     double face_behind = node[row] - node[0];
     double mixed = (node[row + step] - node[step]) - face_behind;
     straight_sums d = {0.0, (node[step] - node[0]) + mixed * p, 0.0, 0.0, 0.0};
@@ -268,6 +270,8 @@ SPECIALIZED void follow_slopes(const gmi_grid *grid, const double *table, double
     if (profiles <= 0) {
         next = NO_CROSSING;
     }
+
+    /* From face line to face line, and between them from profile line to profile line. */
     for (;;) {
         const int is_last = !(end > 1.0) || faces <= 0;
         const double face_line = is_last ? end : 1.0;
@@ -406,6 +410,7 @@ static void go_on_touching(const piece *part, double begin, double end, double m
 
 /* The integrals of a part become those of d f / d coordinate. */
 static void finish_tangent(gmi_line_tangent *tangent) {
+    /* Of 1 and of t1: what the polynomials give over the touching part, and the slopes of the flanks. */
     for (int weight = 0; weight < 2; ++weight) {
         const double *contact = &tangent->part_contact[weight];
         double by[GMI_COORDINATES];
@@ -419,6 +424,8 @@ static void finish_tangent(gmi_line_tangent *tangent) {
             tangent->sum_by[k][weight] += by[k];
         }
     }
+
+    /* The next part begins anew. */
     for (int power = 0; power < 4; ++power) {
         tangent->contact[power] += tangent->part_contact[power];
         tangent->part_contact[power] = 0.0;

@@ -128,12 +128,16 @@ static void find_place(const gm_mesh *mesh, const side_lines *found, const gmi_l
 static gm_line_load_point point_of_overlap(const gm_mesh *mesh, const side_lines *found,
                                            const gmi_line_flanks *flanks, int index, double t1) {
     const gm_pair *pair = mesh->pair;
+
+    /* The overlap there, which a tilt lets grow by other than x. */
     const double gain =
         mesh->engagement.is_tilted ? gmi_tilt_gain(pair, &mesh->engagement, found->side) : 1.0;
     place where;
     find_place(mesh, found, flanks,
                found->lines.origin + (double)index * pair->transverse_base_pitch, t1, &where);
     const double overlap = gain * found->delta + where.material;
+
+    /* The stiffness is spread evenly over the face. */
     gm_line_load_point point = {
         .side = found->side,
         .pinion_tooth = flanks->pinion_tooth,

@@ -756,6 +756,7 @@ void gmi_side_sum_tangent(const gm_mesh *mesh, int side, const gm_position *posi
                           const gmi_sliding *sliding, gmi_side_sum *total,
                           gmi_side_tangent *tangent, gmi_rubbing *rubbing,
                           gmi_rubbing_by *rubbing_by) {
+    /* Nothing yet but the rates, which are the caller's. */
     const gmi_rates rates = tangent->rates;
     memset(tangent, 0, sizeof *tangent);
     tangent->rates = rates;
@@ -764,11 +765,15 @@ void gmi_side_sum_tangent(const gm_mesh *mesh, int side, const gm_position *posi
         memset(rubbing, 0, sizeof *rubbing);
         memset(rubbing_by, 0, sizeof *rubbing_by);
     }
+
+    /* The simple model has one pair of teeth and no friction. */
     if (mesh->model == GM_MODEL_SIMPLE) {
         gmi_side_sum_simple(mesh->pair, &mesh->engagement, side, position->offset, total);
         set_simple_tangent(mesh->pair, &mesh->engagement, &mesh->law, total, tangent);
         return;
     }
+
+    /* Line by line, where the flanks can touch at all. */
     if (gmi_side_is_clear(&mesh->engagement, &mesh->side[side], side, position->offset)) {
         return;
     }
