@@ -204,11 +204,14 @@ static void warn_without_table(const config *conf, const char *file, const char 
 void config_warn_of_unused(const config *conf) {
     const char *reason;
 
+    /* Keys that belong to another situation. */
     for (int i = 0; i < gearsim_keys.count; ++i) {
         if (conf->entries[i].text != NULL && !key_is_used(&gearsim_keys.keys[i], conf, &reason)) {
             config_warn(conf, gearsim_keys.keys[i].full_name, "not used with %s", reason);
         }
     }
+
+    /* Keys that say nothing without others, or beside them. */
     if (conf->analysis == ANALYSIS_STATIC && conf->loads == 1 && !isnan(conf->end_load)) {
         config_warn(conf, "load.end_Nm", "not used with analysis.loads = 1");
     }

@@ -33,6 +33,8 @@ static flank_task task_of(const config *conf, const gm_pair *pair, enum gm_role 
                        .pitch = files->pitch,
                        .gear = gear,
                        .teeth = is_pinion ? pair->pinion.teeth : pair->wheel.teeth};
+
+    /* Files of the second half stand in for those of the first. */
     const flank_files *second =
         is_pinion ? &conf->pinion_second_flanks : &conf->wheel_second_flanks;
     if (half == 1 && second->deviations != NULL) {

@@ -112,6 +112,8 @@ static void print_law(const gear_mesh *mesh, const config *conf, const listing *
         print_value(to, "iso_mesh_stiffness_N_per_mm_um",
                     1e-9 * gm_iso6336_mesh_stiffness(pair, factor));
     }
+
+    /* Elastic teeth, at the mean load; of both halves together. */
     gm_mesh_stiffness elastic;
     if (gm_mesh_elastic_stiffness(mesh->prepared[0], &elastic) == GM_OK) {
         const double per_um = 1e-6 * mesh->halves;

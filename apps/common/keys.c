@@ -309,6 +309,8 @@ int key_is_used(const key_spec *key, const config *conf, const char **reason) {
     if (key->target == offsetof(config, start_speed) && config_has_friction(conf)) {
         lacking &= ~(unsigned)FOR_DYNAMIC;
     }
+
+    /* The setting that says most about why it is not used. */
     if (lacking & (FOR_DYNAMIC | FOR_STATIC)) {
         *reason = conf->analysis == ANALYSIS_DYNAMIC ? "analysis.type = dynamic"
                                                      : "analysis.type = static";

@@ -100,11 +100,14 @@ int result_file_check(result_file *file, const char *path) {
     if (obstacle != NULL) {
         return refuse(file, file->path, obstacle, EXIT_BAD_INPUT);
     }
-    obstacle =
-        path_obstacle(path); /* a link of the system may lead to what has no name: /dev/stdout */
+
+    /* A link of the system may lead to what has no name, such as /dev/stdout. */
+    obstacle = path_obstacle(path);
     if (obstacle != NULL) {
         return refuse(file, path, obstacle, EXIT_BAD_INPUT);
     }
+
+    /* The growing file: it would be written through a link. */
     if (path_kind(file->part) == PATH_LINK) {
         return refuse(file, file->part, "is a symbolic link; remove it", EXIT_BAD_INPUT);
     }

@@ -60,6 +60,7 @@ static int read_numbers(const char *text, size_t length, double number[FIELDS]) 
     return 0;
 }
 
+/* One `ORDER:AMPLITUDE:PHASE_DEG`, added to what is there. */
 static int read_harmonic(ripple *made, const char *text, size_t length, char *fault, size_t size) {
     double number[FIELDS];
 

@@ -658,6 +658,7 @@ static void judge_modifications(const config *conf, const usual_gear *usual) {
  * ------------------------------------------------------------------------------------------- */
 
 static void judge_run(const config *conf, const usual_gear *usual) {
+    /* The mesh. */
     judge_stiffness(conf, "mesh.stiffness_N_per_m", conf->stiffness, usual);
     judge_stiffness(conf, "mesh.simple_stiffness_N_per_m", conf->simple_stiffness, usual);
     judge_modulus(conf, "mesh.pinion_youngs_modulus_GPa", conf->pinion_youngs_modulus);
@@ -666,12 +667,14 @@ static void judge_run(const config *conf, const usual_gear *usual) {
     judge_roughness(conf);
     judge_pose(conf);
 
+    /* What turns. */
     const double pinion =
         judge_inertia(conf, "bodies.pinion_inertia_kg_m2", conf->pinion_inertia, usual, 0);
     const double wheel =
         judge_inertia(conf, "bodies.wheel_inertia_kg_m2", conf->wheel_inertia, usual, 1);
     judge_damping(conf, mesh_mass(conf, usual, pinion, wheel));
 
+    /* What drives and loads it. */
     judge_torque(conf, "drive.torque_Nm", conf->drive_torque, usual, 0);
     judge_torque(conf, "load.mean_Nm", conf->mean_load, usual, 1);
     judge_torque(conf, "load.end_Nm", conf->end_load, usual, 1);
@@ -679,6 +682,8 @@ static void judge_run(const config *conf, const usual_gear *usual) {
     judge_speed(conf, "drive.start_rpm", conf->start_speed);
     judge_speed(conf, "drive.end_rpm", conf->end_speed);
     judge_speed(conf, "analysis.stop_rpm", conf->stop_speed);
+
+    /* What only some runs have. */
     if (conf->analysis == ANALYSIS_DYNAMIC) {
         judge_torque_over_speed(conf, "bodies.wheel_drag_Nms", conf->wheel_drag, usual);
         judge_torque_over_speed(conf, "load.per_speed_Nms", conf->load_per_speed, usual);

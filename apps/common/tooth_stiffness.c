@@ -115,6 +115,8 @@ int tooth_stiffness_load(double **factors, const config *conf, enum gm_role gear
         config_complain(conf, from.key, "names this file");
         return EXIT_BAD_INPUT;
     }
+
+    /* Teeth that the file does not name are whole. */
     char *named = allocate((size_t)teeth, 1);
     *factors = allocate((size_t)teeth, sizeof **factors);
     int status = EXIT_RUN_FAILED;

@@ -58,6 +58,7 @@ static int perform(const arguments *args, const config *conf, const gear_mesh *m
     return status != 0 ? status : run(conf, mesh);
 }
 
+/* Reads the INI file and what it names, and does what the command line asks of it. */
 static int load_and_perform(const arguments *args) {
     config conf;
     int status = config_load(&conf, &args->request);
@@ -65,6 +66,7 @@ static int load_and_perform(const arguments *args) {
         return status;
     }
 
+    /* Gears and flanks, what there is to say of them, tables over time; each stage only if those before went well. */
     gear_mesh mesh;
     status = gear_mesh_open(&mesh, &conf);
     if (status == 0) {

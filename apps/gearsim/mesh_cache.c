@@ -123,9 +123,12 @@ static int is_wanted(const config *conf, const gear_mesh *gears) {
 int mesh_cache_check(const config *conf, const gear_mesh *gears) {
     const double deepest = 0.25 * gears->pair.transverse_base_pitch;
 
+    /* Only who asks for it is told why it cannot be had; `auto` does without. */
     if (conf->lookup != LOOKUP_ON || !is_wanted(conf, gears)) {
         return 0;
     }
+
+    /* Meshes that are not smooth in both angles, or have more in them than the tables. */
     if (gears->pair.face_advance == 0.0) {
         config_complain(conf, "solver.lookup",
                         "must be off for spur gears, whose sum of penetrations jumps (got on)");
@@ -146,6 +149,8 @@ int mesh_cache_check(const config *conf, const gear_mesh *gears) {
                         "must be off with corner contact, which the tables do not hold (got on)");
         return EXIT_BAD_INPUT;
     }
+
+    /* What the library takes: deeper than that no tooth is pressed. */
     if (conf->lookup_depth > deepest) {
         config_complain(conf, "solver.lookup_depth_um",
                         "must be at most a quarter of the base pitch, %.9g (got %.9g)",

@@ -218,6 +218,8 @@ static int check_span(const table_reader *reader, int repeats) {
     if (first->time == last->time) {
         return refuse(reader, 0, two_times, NULL);
     }
+
+    /* From the begin of the run to its end. */
     if (first->time > 0.0) {
         snprintf(got, sizeof got, "%.9g s", first->time);
         return refuse(reader, first->line, "must begin at a time of 0 or before", got);
@@ -230,6 +232,8 @@ static int check_span(const table_reader *reader, int repeats) {
                  reader->conf->duration);
         return refuse(reader, last->line, must, got);
     }
+
+    /* Bodies cannot jump from one speed to another. */
     if (repeats && reader->is_speed && first->value != last->value) {
         snprintf(got, sizeof got, "%.9g and %.9g rpm", first->value / rad_per_s,
                  last->value / rad_per_s);
@@ -364,12 +368,16 @@ static time_table *make_table(const table_reader *reader, int is_cubic, int repe
             table->total += piece_integral(part, part->length);
         }
     }
+
+    /* Where it goes on from its end, and how large it gets. */
     table->kink_at_end =
         repeats ? is_kink(&pieces[table->count - 1], &pieces[0], reader->is_speed) : 1;
     table->largest = fabs(table->last);
     for (int i = 0; i < table->count; ++i) {
         table->largest = fmax(table->largest, piece_largest(&pieces[i]));
     }
+
+    /* Integrals count from the time 0, which may lie within the table. */
     table->zero = 0.0;
     table->zero = time_table_integral(table, 0.0);
     return table;

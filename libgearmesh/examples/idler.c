@@ -93,6 +93,8 @@ static int derivatives(sunrealtype t, N_Vector state, N_Vector rates, void *data
     double moment[GEARS] = {torque, 0.0, -load};
     double loss = 0.0, bearing[2] = {0.0, 0.0};
     (void)t;
+
+    /* Both meshes: their moments turn the gears, their forces meet in the bearing of the idler. */
     row->stored = 0.0;
     for (int k = 0; k < 2; ++k) {
         const gm_body pinion = body_of(row, k, y), wheel = body_of(row, k + 1, y);
@@ -109,6 +111,8 @@ static int derivatives(sunrealtype t, N_Vector state, N_Vector rates, void *data
         bearing[1] += on[1 - k].force[1];
         row->stored += energy_of(&result.contact, &loss);
     }
+
+    /* Angles, speeds, and what is summed over time. */
     for (int k = 0; k < GEARS; ++k) {
         rate[k] = y[GEARS + k];
         rate[GEARS + k] = moment[k] / inertia[k];
@@ -154,10 +158,13 @@ int main(void) {
     if (row.mesh[0] == NULL || row.mesh[1] == NULL || !assemble(&row)) {
         return 1;
     }
+
+    /* All gears turn at their steady speeds. */
     for (int k = 0; k < GEARS; ++k) {
         y[GEARS + k] = (k % 2 == 0 ? speed : -speed) * teeth[DRIVER] / teeth[k];
     }
 
+    /* The solver: implicit, as meshes are stiff. */
     SUNContext context;
 #if SUNDIALS_VERSION_MAJOR < 7
     SUNContext_Create(NULL, &context);
@@ -170,16 +177,17 @@ int main(void) {
     SUNLinearSolver solver = SUNLinSol_Dense(state, matrix, context);
     void *cvode = CVodeCreate(CV_BDF, context);
     sunrealtype time = 0.0;
-    double energy = 0.0;
     int failed = CVodeInit(cvode, derivatives, 0.0, state) ||
                  CVodeSStolerances(cvode, 1e-9, 1e-10) || CVodeSetUserData(cvode, &row) ||
                  CVodeSetMaxNumSteps(cvode, 1000000) || CVodeSetLinearSolver(cvode, solver, matrix);
+
+    /* Behind the start the means are taken and the energies counted. */
     failed = failed || CVode(cvode, settled, state, &time, CV_NORMAL) < 0 ||
              derivatives(time, state, unused, &row);
     for (int k = 0; k < STATES; ++k) {
         before[k] = y[k];
     }
-    energy = kinetic(y) + row.stored;
+    const double energy = kinetic(y) + row.stored;
     failed = failed || CVode(cvode, end, state, &time, CV_NORMAL) < 0 ||
              derivatives(time, state, unused, &row);
 
@@ -190,9 +198,11 @@ int main(void) {
     const double known = 2.0 * force * fabs(cos(pair->working_pressure_angle + 0.5 * bend));
     const double bearing =
         hypot(y[BEARING_X] - before[BEARING_X], y[BEARING_Y] - before[BEARING_Y]) / (end - settled);
+    printf("bearing of the idler: %.1f N, by two forces %.1f N\n", bearing, known);
+
+    /* What came in has gone out, been lost or been stored. */
     const double in = y[IN] - before[IN], out = y[OUT] - before[OUT], loss = y[LOSS] - before[LOSS];
     const double open = in - out - loss - (kinetic(y) + row.stored - energy);
-    printf("bearing of the idler: %.1f N, by two forces %.1f N\n", bearing, known);
     printf("energy: %.3f J in, %.3f J out, %.2g J lost, %.2g %% open\n", in, out, loss,
            100.0 * open / in);
 

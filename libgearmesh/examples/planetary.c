@@ -97,6 +97,8 @@ static int derivatives(sunrealtype t, N_Vector state, N_Vector rates, void *data
     gearbox *box = (gearbox *)data;
     const double *y = N_VGetArrayPointer(state);
     double *rate = N_VGetArrayPointer(rates);
+
+    /* Sun and ring turn about the middle; the load of the carrier grows with its speed. */
     const gm_body sun = body_at(0.0, 0.0, 0.0, y[0], y[TURNS]);
     const gm_body ring = body_at(0.0, 0.0, 0.0, box->ring_angle, 0.0);
     const double load =
@@ -120,6 +122,8 @@ static int derivatives(sunrealtype t, N_Vector state, N_Vector rates, void *data
         if (status != GM_OK) {
             return status; /* > 0: a smaller step may help */
         }
+
+        /* The force on the pin has a moment about the middle: that of the carrier. */
         const double *p = planet.position;
         const double f[2] = {from_sun.force[0] + from_ring.force[0],
                              from_sun.force[1] + from_ring.force[1]};
@@ -130,6 +134,7 @@ static int derivatives(sunrealtype t, N_Vector state, N_Vector rates, void *data
         box->stored += energy_of(&inner.contact, &loss) + energy_of(&outer.contact, &loss);
     }
 
+    /* Angles, speeds, and what is summed over time. */
     for (int k = 0; k < TURNS; ++k) {
         rate[k] = y[TURNS + k];
         rate[TURNS + k] = torque[k] / inertia[k];

@@ -95,6 +95,8 @@ static int derivatives(sunrealtype t, N_Vector state, N_Vector rates, void *data
     /* Both stages turn the sense around; the load grows with the speed of the output. */
     const double ratio = (double)teeth[LARGE] / teeth[INPUT] * teeth[OUTPUT] / teeth[SMALL];
     const double load = torque * ratio * y[GEARS + OUTPUT] / (speed / ratio);
+
+    /* The intermediate shaft, a spring with a damper. */
     const double twist = y[LARGE] - y[SMALL];
     const double untwisting = y[GEARS + LARGE] - y[GEARS + SMALL];
     const double shaft = shaft_stiffness * twist + shaft_damping * untwisting;
@@ -102,6 +104,8 @@ static int derivatives(sunrealtype t, N_Vector state, N_Vector rates, void *data
     double loss = shaft_damping * untwisting * untwisting, axial = 0.0;
     (void)t;
     box->stored = 0.5 * shaft_stiffness * twist * twist;
+
+    /* Both meshes: their moments turn the gears, their axial forces meet on the intermediate shaft. */
     for (int stage = 0; stage < STAGES; ++stage) {
         const int driver = 2 * stage, driven = driver + 1;
         const gm_body pinion = body_of(box, driver, y), wheel = body_of(box, driven, y);
@@ -117,6 +121,8 @@ static int derivatives(sunrealtype t, N_Vector state, N_Vector rates, void *data
         axial += on[1 - stage].force[2];
         box->stored += energy_of(&result.contact, &loss);
     }
+
+    /* Angles, speeds, and what is summed over time. */
     for (int k = 0; k < GEARS; ++k) {
         rate[k] = y[GEARS + k];
         rate[GEARS + k] = moment[k] / inertia[k];
@@ -134,6 +140,8 @@ static int assemble(gearbox *box) {
     for (int stage = 0; stage < STAGES; ++stage) {
         const int driver = 2 * stage, driven = driver + 1;
         const gm_pair *pair = gm_mesh_pair(box->mesh[stage]);
+
+        /* Where the gears stand: the small one on the shaft of the large one. */
         if (stage > 0) {
             box->place[driver][0] = box->place[driver - 1][0];
             box->place[driver][1] = box->place[driver - 1][1];
@@ -143,6 +151,7 @@ static int assemble(gearbox *box) {
         box->place[driven][1] = box->place[driver][1] + pair->center_distance * sin(bend * stage);
         box->place[driver][2] = box->place[driven][2] = stage_z[stage];
 
+        /* Turn the driven gear by its distance from the middle of the backlash. */
         gm_motion motion;
         const gm_body pinion = body_of(box, driver, y), wheel = body_of(box, driven, y);
         if (gm_motion_of_bodies(box->mesh[stage], &pinion, &wheel, &motion, NULL) != GM_OK) {
@@ -169,10 +178,13 @@ int main(void) {
     if (box.mesh[0] == NULL || box.mesh[1] == NULL || !assemble(&box)) {
         return 1;
     }
+
+    /* All gears turn at their steady speeds. */
     y[GEARS + INPUT] = speed;
     y[GEARS + LARGE] = y[GEARS + SMALL] = -speed * teeth[INPUT] / teeth[LARGE];
     y[GEARS + OUTPUT] = -y[GEARS + SMALL] * teeth[SMALL] / teeth[OUTPUT];
 
+    /* The solver: implicit, as meshes are stiff. */
     SUNContext context;
 #if SUNDIALS_VERSION_MAJOR < 7
     SUNContext_Create(NULL, &context);
@@ -207,9 +219,11 @@ int main(void) {
     const double known =
         -first_force * tan(first->base_helix_angle) - second_force * tan(second->base_helix_angle);
     const double axial = (y[AXIAL] - before[AXIAL]) / (end - settled);
+    printf("axial force of the shaft: %.1f N, by both helices %.1f N\n", axial, known);
+
+    /* What came in has gone out, been lost or been stored. */
     const double in = y[IN] - before[IN], out = y[OUT] - before[OUT], loss = y[LOSS] - before[LOSS];
     const double open = in - out - loss - (kinetic(y) + box.stored - energy);
-    printf("axial force of the shaft: %.1f N, by both helices %.1f N\n", axial, known);
     printf("energy: %.3f J in, %.3f J out, %.2g J lost, %.2g %% open\n", in, out, loss,
            100.0 * open / in);
 

@@ -606,10 +606,13 @@ static OWN_STACK void tilt_line(const view *v, whole_line *whole) {
     line->curvature = shift[2];
 }
 
+/* Adds what line k has of flanks and of edges, between the cuts at which one takes over from the other. */
 static void add_line(view *v, const gmi_flank *pinion, const gmi_flank *wheel, int k) {
     const gm_mesh *mesh = v->mesh;
     const gm_pair *pair = mesh->pair;
     const gmi_engagement *at = &mesh->engagement;
+
+    /* The line as if both flanks went on beyond their tips. */
     whole_line whole;
     whole.origin = v->lines.origin + (double)k * pair->transverse_base_pitch;
     const double delta = v->lines.delta;

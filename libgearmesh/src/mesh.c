@@ -37,14 +37,20 @@ void gm_mesh_params_default(gm_mesh_params *params) {
         .wheel_youngs_modulus = 206e9,
         .pinion_poisson_ratio = 0.3,
         .wheel_poisson_ratio = 0.3,
+
+        /* Elastic teeth: bodies do not wind up, and all teeth are whole. */
         .pinion_bore_radius = gmi_nan(),
         .wheel_bore_radius = gmi_nan(),
         .pinion_tooth_stiffness = NULL,
         .wheel_tooth_stiffness = NULL,
         .reference_torque = gmi_nan(),
         .stations = 17,
+
+        /* Edges. */
         .corner_contact = GM_CORNER_BY_LAW,
         .tip_rounding = 0.05,
+
+        /* No friction. */
         .friction_law = GM_FRICTION_CONSTANT,
         .friction_coefficient = 0.0,
         .friction_speed = 0.01,

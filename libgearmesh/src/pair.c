@@ -586,12 +586,16 @@ static problem interference_problem(enum gmi_interference found) {
 static problem derive_path(gm_pair *pair) {
     gmi_meshing nominal;
     const int meshes = gmi_meshing_find(pair, pair->center_distance, &nominal);
+
+    /* Lengths and ratios along the path. */
     pair->path_start = nominal.path_start;
     pair->path_end = nominal.path_end;
     pair->transverse_contact_ratio = nominal.transverse_contact_ratio;
     pair->total_contact_ratio = pair->transverse_contact_ratio + pair->overlap_ratio;
     pair->phase_origin[GM_DRIVE] = nominal.phase_origin[GM_DRIVE];
     pair->phase_origin[GM_COAST] = nominal.phase_origin[GM_COAST];
+
+    /* Circles. */
     pair->pinion_working_pitch_radius = nominal.working_pitch_radius[GM_PINION];
     pair->wheel_working_pitch_radius = nominal.working_pitch_radius[GM_WHEEL];
     pair->pinion_tip_clearance = nominal.tip_clearance[GM_PINION];
@@ -623,18 +627,23 @@ static problem check_place(const gm_pair *pair, const gm_pair_params *p) {
 /* Finite parameters of absurd sizes overflow where they meet. */
 static problem check_finite(const gm_pair *pair) {
     const double derived[] = {
+        /* Teeth of each gear. */
+        pair->pinion.profile_shift,
+        pair->wheel.profile_shift,
+        pair->pinion.normal_thickness,
+        pair->wheel.normal_thickness,
         pair->pinion.base_half_thickness,
         pair->wheel.base_half_thickness,
+
+        /* Tips. */
         pair->pinion.tip_alteration,
         pair->wheel.tip_alteration,
         pair->pinion.tip_thickness,
         pair->wheel.tip_thickness,
         pair->pinion.tip_roll_length,
         pair->wheel.tip_roll_length,
-        pair->pinion.normal_thickness,
-        pair->wheel.normal_thickness,
-        pair->pinion.profile_shift,
-        pair->wheel.profile_shift,
+
+        /* Both gears together. */
         pair->line_of_action,
         pair->face_advance,
         pair->backlash,
@@ -666,6 +675,7 @@ static problem check_distance(const gm_pair *pair, const gm_pair_params *p) {
                                 : "a distance larger than the sum of the base radii");
 }
 
+/* All of a drawing, in the order in which one follows from the other. Stops at the first problem. */
 static problem derive(gm_pair *pair, const gm_pair_params *params) {
     problem found = check_fields(params);
     if (found.field != NULL) {
@@ -693,12 +703,16 @@ static problem derive(gm_pair *pair, const gm_pair_params *params) {
     derive_angles(pair, params->center_distance);
     derive_shifts(pair, params);
     found = derive_thickness(pair, params);
+
+    /* Tips first: the active flank of a gear starts where the tip of its mate reaches. */
     for (enum gm_role role = GM_PINION; found.field == NULL && role <= GM_WHEEL; ++role) {
         found = derive_tip(pair, params, role);
     }
     for (enum gm_role role = GM_PINION; found.field == NULL && role <= GM_WHEEL; ++role) {
         found = derive_start(pair, params, role);
     }
+
+    /* How they mesh, and whether it makes sense as a whole. */
     if (found.field == NULL) {
         found = derive_path(pair);
     }

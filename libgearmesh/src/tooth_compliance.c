@@ -267,6 +267,8 @@ static double parameter_at(const gmi_tooth *tooth, enum part part, double y, dou
     return parameter;
 }
 
+/* Sums of the beam from the foot up to y_p, where the line of action meets the centre line: on the involute, on the fillet,
+ * or below the root. */
 static void integrate_beam(const gmi_tooth *tooth, double roll_length, beam *sums) {
     const double begin = tooth->fillet_begin;
     const double end_of_involute = tooth->fillet_roll_length;
@@ -283,6 +285,7 @@ static void integrate_beam(const gmi_tooth *tooth, double roll_length, beam *sum
         integrate(tooth, FILLET, tooth->foot_angle, top, sums);
         sums->top = fillet_point(tooth, top).x;
     } else {
+        /* What lies between the root and y_p counts negative, with the thickness at the root. */
         integrate(tooth, FILLET, tooth->foot_angle, 0.5 * GMI_PI, sums);
         const double chord = 2.0 * tooth->root_half_thickness;
         const double length = sums->y_p - tooth->root_y; /* < 0 */

@@ -95,6 +95,7 @@ static int state_reference(int state) {
 static void print_values(const fmu_variable *variable, int derivative_of) {
     const void *address = (const char *)&start + variable->offset;
     if (variable->kind == KIND_REAL) {
+        /* Where there is a start, it has all its digits; NaN stands for what is derived if nobody gives it. */
         double value;
         memcpy(&value, address, sizeof value);
         if (has_start((int)variable->role) && isnan(value)) {
@@ -102,6 +103,8 @@ static void print_values(const fmu_variable *variable, int derivative_of) {
         } else if (has_start((int)variable->role)) {
             printf(" start=\"%.17g\"", value);
         }
+
+        /* What it is measured in, and how large it usually is. */
         if (variable->unit[0] != '\0') {
             printf(" unit=\"%s\"", variable->unit);
         }
@@ -126,6 +129,7 @@ static void print_units(void) {
     printf("  </UnitDefinitions>\n");
 }
 
+/* FMI 2 has an element around that of the kind; in FMI 3 the kind is the element. */
 static void print_variable(int place, int version) {
     const fmu_variable *variable = &model.variables[place];
     static const char *const kinds[2][3] = {{"Real", "Integer", "String"},
@@ -167,7 +171,9 @@ static void print_dependencies(int role, int base) {
     printf("\"");
 }
 
+/* ModelStructure: outputs, derivatives and what is known only after initialization; in FMI 3 event indicators too. */
 static void print_structure(int version) {
+    /* FMI 2 counts variables from 1 and groups them in lists; FMI 3 names value references, each in an element of its kind. */
     const int base = version == 2 ? 1 : 0;
     const char *reference = version == 2 ? "index" : "valueReference";
     static const char *const open[2][3] = {
@@ -177,11 +183,14 @@ static void print_structure(int version) {
     static const char *const element[2][3] = {
         {"Unknown", "Unknown", "Unknown"},
         {"Output", "ContinuousStateDerivative", "InitialUnknown"}};
+
     printf("  <ModelStructure>\n");
     for (int part = 0; part < 3; ++part) {
         if (part == 1 && model.states == 0) {
             continue;
         }
+
+        /* The variables that belong here: states are known from the start, so that they are no unknowns. */
         fputs(open[version - 2][part], stdout);
         for (int k = 0; k < model.variable_count; ++k) {
             const int role = (int)model.variables[k].role;
@@ -199,6 +208,8 @@ static void print_structure(int version) {
         }
         fputs(close[version - 2][part], stdout);
     }
+
+    /* FMI 2 has their number in the head. */
     if (version == 3) {
         for (int k = 0; k < model.variable_count; ++k) {
             if (model.variables[k].role == ROLE_INDICATOR) {
@@ -217,6 +228,7 @@ int main(int argc, char **argv) {
     const int version = argv[1][0] - '0';
     fmu_defaults(&start);
 
+    /* The head. */
     printf("<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<fmiModelDescription fmiVersion=\"%d.0\" "
            "modelName=\"%s\" ",
            version, model.name);
@@ -241,6 +253,8 @@ int main(int argc, char **argv) {
     printf("  <CoSimulation modelIdentifier=\"%s\" canHandleVariableCommunicationStepSize=\"true\" "
            "%s/>\n",
            model.name, can);
+
+    /* What variables are measured in, what they are, and how they depend on each other. */
     print_units();
     printf("  <LogCategories><Category name=\"logStatusError\"/></LogCategories>\n");
     printf("  <DefaultExperiment startTime=\"0\" stopTime=\"0.1\" stepSize=\"1e-4\"/>\n");

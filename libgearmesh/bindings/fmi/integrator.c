@@ -84,6 +84,7 @@ void fmu_integrator_free(fmu_integrator *integrator) {
     free(integrator);
 }
 
+/* An integrator that begins at the time and the states of the instance; NULL without memory. */
 static fmu_integrator *start(const fmu_instance *instance) {
     fmu_integrator *integrator = calloc(1, sizeof *integrator);
     if (integrator == NULL || SUNContext_Create(NULL, &integrator->context) != 0) {
@@ -95,6 +96,7 @@ static fmu_integrator *start(const fmu_instance *instance) {
     integrator->workspace = instance->made.workspace;
     integrator->end = instance->values.time;
 
+    /* Few states and stiff contacts: BDF with the exact Jacobian, dense. */
     SUNContext context = integrator->context;
     integrator->state = N_VNew_Serial(model.states, context);
     integrator->matrix = SUNDenseMatrix(model.states, model.states, context);
@@ -104,6 +106,8 @@ static fmu_integrator *start(const fmu_instance *instance) {
                (size_t)model.states * sizeof(double));
         integrator->solver = SUNLinSol_Dense(integrator->state, integrator->matrix, context);
     }
+
+    /* Its own messages go nowhere: the importer is told by a status. */
     if (integrator->solver == NULL || integrator->cvode == NULL ||
         CVodeInit(integrator->cvode, right_hand_side, instance->values.time, integrator->state) !=
             CV_SUCCESS ||
@@ -121,7 +125,7 @@ static fmu_integrator *start(const fmu_instance *instance) {
 }
 
 int fmu_integrate(fmu_instance *instance, double end) {
-    /* Inputs that have changed have freed it; it never steps beyond the end, as they may change there. */
+    /* Inputs that have changed have freed the integrator. */
     if (instance->integrator == NULL) {
         instance->integrator = start(instance);
     }
@@ -129,6 +133,8 @@ int fmu_integrate(fmu_instance *instance, double end) {
     if (integrator == NULL) {
         return -1;
     }
+
+    /* It never steps beyond the end, as inputs may change there. */
     if (end > integrator->end) {
         double time;
         if (CVodeSetStopTime(integrator->cvode, end) != CV_SUCCESS ||

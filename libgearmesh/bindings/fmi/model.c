@@ -300,7 +300,10 @@ int fmu_step(fmu_instance *instance, double end) {
     return fmu_events(instance) == 0 ? 0 : -1;
 }
 
-/* Row or column of the Jacobian that belongs to a variable; -1 = none. */
+/*
+ * Row or column of the Jacobian that belongs to a variable; -1 = none. Rows: derivatives of the states, then outputs; columns:
+ * states, then inputs.
+ */
 static int place_of(unsigned reference, int is_row) {
     if (reference >= (unsigned)model.variable_count) {
         return -1;

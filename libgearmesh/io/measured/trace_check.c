@@ -190,6 +190,7 @@ static double hollow_limit(int count) {
 enum { LEAST_TRACES_OF_BOTH = 8 };
 
 static int check_probe_sign(const gmi_measured *traces, int count, gm_io_error *error) {
+    /* How many traces of each flank stand out at their ends. One that is neither says nothing of any. */
     int hollow[2] = {0, 0}; /* left, right */
     int judged[2] = {0, 0};
     for (int i = 0; i < count; ++i) {
@@ -203,6 +204,8 @@ static int check_probe_sign(const gmi_measured *traces, int count, gm_io_error *
             hollow[flank == GM_RIGHT] += height > 0.0;
         }
     }
+
+    /* All of one flank and none of the other, with enough traces. */
     const int left = hollow[0] == judged[0] && hollow[1] == 0;
     const int right = hollow[1] == judged[1] && hollow[0] == 0;
     if (judged[0] == 0 || judged[1] == 0 || judged[0] + judged[1] < LEAST_TRACES_OF_BOTH ||

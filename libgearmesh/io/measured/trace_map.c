@@ -174,6 +174,7 @@ static int fail_chamfer(const gmi_mapping *map, const gm_trace *trace) {
 
 /* Points of a trace as t and deviation along the normal. */
 static int map_points(const gmi_mapping *map, const gm_trace *trace, gmi_measured *to) {
+    /* Material added is > 0, whatever the sign of the probe; transverse deviations are turned into normal ones. */
     const double sign = map->options->probe_sign && trace->flank == GM_LEFT ? -1.0 : 1.0;
     const double scale =
         sign * (map->measurement->transverse ? 1.0 / map->pair->normal_to_transverse : 1.0);
@@ -183,6 +184,7 @@ static int map_points(const gmi_mapping *map, const gm_trace *trace, gmi_measure
         return fail_chamfer(map, trace);
     }
 
+    /* Each point must lie on the active flank; t grows from the start to the tip and from face I to face II. */
     for (int i = 0; i < to->count; ++i) {
         const double position = trace->position[i];
         const int place = to->turned ? trace->count - 1 - i : i;
