@@ -660,6 +660,7 @@ class Values(Case):
                 ("solver", "absolute_tolerance_um", ["0", "-1", "1e300"], "from 1e-12 to 1000000"),
                 ("solver", "max_step_s", ["-1", "1e300"], "from 0 to 1e+09"),
                 ("solver", "lookup_depth_um", ["0", "-20", "0.9e-3", "1e300"], "from 0.001 to 1000000"),
+                ("solver", "lookup_threads", ["-1", "65"], "from 0 to 64"),
                 ("output", "rate_Hz", ["0", "-1", "1e300"], "from 1e-09 to 1e+12"),
                 ("output", "oversampling", ["0", "65"], "from 1 to 64"),
                 ("output", "digits", ["2", "18"], "from 3 to 17")]:

@@ -184,9 +184,10 @@ class Elastic(unittest.TestCase):
             self.assertIn("# mesh.law = elastic\n", file.read())
 
         # And the same from look-up tables.
-        cached = self.rows(gears, "--set", "solver.lookup=on")
-        for a, b in zip(rows, cached):
-            self.assertAlmostEqual(float(a["dte_um"]), float(b["dte_um"]), delta=0.1)
+        for threads in ("0", "3"):
+            cached = self.rows(gears, "--set", "solver.lookup=on", "--set", f"solver.lookup_threads={threads}")
+            for a, b in zip(rows, cached):
+                self.assertAlmostEqual(float(a["dte_um"]), float(b["dte_um"]), delta=0.1)
 
     def test_listing_states_the_stiffness_at_the_load(self):
         for key in ("off", "on"):

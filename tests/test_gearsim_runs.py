@@ -898,6 +898,13 @@ class Lookup(Case):
         exact = self.run_columns([*self.LOADED, "output.columns=dte_um"])
         self.assertLess(largest_difference(self.run_columns(shallow)["dte_um"], exact["dte_um"]), 1e-6)
 
+    def test_threads_that_fill_it_change_nothing(self):
+        """No column depends on another one, nor on who fills it. Of the pinion alone, 45 tooth passes."""
+        one = [*MEASURED[:2], "solver.lookup=on", "output.columns=contact_force_N"]
+        met, filled, shared = [self.run_columns([*one, f"solver.lookup_threads={count}"]) for count in (0, 1, 50)]
+        self.assertEqual(met, filled)
+        self.assertEqual(met, shared)
+
     def test_result_says_so(self):
         self.run_columns(["solver.lookup=on", "solver.lookup_depth_um=15"])
         self.assertIn("# solver.lookup = on\n# solver.lookup_depth_um = 15\n", self.text("run.csv"))
@@ -1299,27 +1306,39 @@ class Progress(Case):
     def test_quiet_says_nothing(self):
         self.assertEqual(self.gearsim([], "--quiet", "--output", "run.csv").stderr, "")
 
+    def shown(self, settings, *options):
+        """What a terminal shows one after the other, of a run that is interrupted after 1.5 s."""
+        master, slave = pty.openpty()
+        process = subprocess.Popen(self.command(settings, "--output", "run.csv", *options), cwd=self.folder,
+                                   stderr=slave, stdin=subprocess.DEVNULL, preexec_fn=listen_to_interrupts)
+        os.close(slave)
+        time.sleep(1.5)
+        process.send_signal(signal.SIGINT)
+        text = b""
+        while True:
+            try:
+                chunk = os.read(master, 65536)
+            except OSError:
+                break
+            if not chunk:
+                break
+            text += chunk
+        os.close(master)
+        self.assertEqual(process.wait(timeout=60), 130)
+        return text.decode().split("\r")
+
+    def test_terminal_shows_how_far_the_look_up_is_filled(self):
+        """42435 columns take longer than the fifth of a second until something is shown."""
+        filling = [*Ends.ENDLESS, *MEASURED, "solver.lookup=on", "solver.lookup_threads=2"]
+        updates = [part for part in self.shown(filling) if "look-up" in part]
+        self.assertRegex(updates[0], r"filling the look-up, [0-9]{1,2} %")
+        self.assertLessEqual(len(updates), 10)
+        self.assertEqual([part for part in self.shown(filling[:-1]) if "look-up" in part], [])
+
     def test_terminal_shows_time_speed_steps_and_time_left(self):
         """At most about five times a second."""
         for options, shown in [((), True), (("--quiet",), False)]:
-            master, slave = pty.openpty()
-            process = subprocess.Popen(self.command(Ends.ENDLESS, "--output", "run.csv", *options), cwd=self.folder,
-                                       stderr=slave, stdin=subprocess.DEVNULL, preexec_fn=listen_to_interrupts)
-            os.close(slave)
-            time.sleep(1.5)
-            process.send_signal(signal.SIGINT)
-            text = b""
-            while True:
-                try:
-                    chunk = os.read(master, 65536)
-                except OSError:
-                    break
-                if not chunk:
-                    break
-                text += chunk
-            os.close(master)
-            self.assertEqual(process.wait(timeout=60), 130)
-            updates = [part for part in text.decode().split("\r") if "rpm" in part]
+            updates = [part for part in self.shown(Ends.ENDLESS, *options) if "rpm" in part]
             if shown:
                 self.assertRegex(updates[0], r"[0-9.]+ of 30000 s, 1000 rpm, [0-9]+ steps, [0-9]+ s left")
                 self.assertLessEqual(len(updates), 10)

@@ -141,6 +141,7 @@ typedef struct config {
     double max_step;           /* s, 0 = none */
     enum lookup_use lookup;    /* in place of the 3D model */
     double lookup_depth;       /* m; NaN: from the loads */
+    int lookup_threads;        /* that fill it before the run; 0: filled on the way */
 
     char *output_file;  /* as it can be opened from the working folder */
     double output_rate; /* Hz */

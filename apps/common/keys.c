@@ -262,6 +262,9 @@ static const key_spec keys[] = {
     {NAME("solver", "lookup_depth_um"), NUMBER(UNIT_UM, BETWEEN(1e-3, 1e6)), INTO(lookup_depth),
      .derived = "from the loads", .used = FOR_DYNAMIC | FOR_3D,
      .help = "penetration up to which the tables reach, exact beyond"},
+    {NAME("solver", "lookup_threads"), COUNT(0, 64), INTO(lookup_threads),
+     .standard = "0", .used = FOR_DYNAMIC | FOR_3D,
+     .help = "threads that fill the tables before the run; 0: what a run meets is filled as it meets it"},
 
     {NAME("output", "file"), .kind = KEY_PATH, INTO(output_file),
      .derived = "name of the INI file, .csv", .help = "result; HDF5 if it ends in .h5 or .hdf5"},

@@ -36,6 +36,13 @@ void interrupt_unwatch(void);
 
 int interrupt_requested(void);
 
+/*
+ * Calls work(of, 0) to work(of, count - 1), count <= THREADS_MAX, each in a thread of its own, the first one here; one
+ * for which there is no thread is called here as well. Returns when all are done.
+ */
+enum { THREADS_MAX = 64 };
+void threads_run(int count, void (*work)(void *of, int which), void *of);
+
 /* Seconds of a clock that nobody sets, from an arbitrary origin. */
 double wall_clock(void);
 

@@ -7,6 +7,7 @@
 
 #include <errno.h>
 #include <fcntl.h>
+#include <pthread.h>
 #include <signal.h>
 #include <string.h>
 #include <sys/file.h>
@@ -86,6 +87,47 @@ void interrupt_unwatch(void) {
 
 int interrupt_requested(void) {
     return requested != 0;
+}
+
+/* One call of many. */
+typedef struct thread_task {
+    void (*work)(void *of, int which);
+    void *of;
+    int which;
+} thread_task;
+
+static void *run_task(void *argument) {
+    const thread_task *task = argument;
+    task->work(task->of, task->which);
+    return NULL;
+}
+
+void threads_run(int count, void (*work)(void *of, int which), void *of) {
+    thread_task tasks[THREADS_MAX];
+    pthread_t threads[THREADS_MAX];
+    int started[THREADS_MAX] = {0};
+
+    /* Signals are for the thread of main(). */
+    sigset_t all, before;
+    sigfillset(&all);
+    (void)pthread_sigmask(SIG_SETMASK, &all, &before);
+    for (int k = 1; k < count; ++k) {
+        tasks[k] = (thread_task){work, of, k};
+        started[k] = pthread_create(&threads[k], NULL, run_task, &tasks[k]) == 0;
+    }
+    (void)pthread_sigmask(SIG_SETMASK, &before, NULL);
+
+    /* Here: the first one, and those that got no thread. */
+    for (int k = 0; k < count; ++k) {
+        if (!started[k]) {
+            work(of, k);
+        }
+    }
+    for (int k = 1; k < count; ++k) {
+        if (started[k]) {
+            (void)pthread_join(threads[k], NULL);
+        }
+    }
 }
 
 double wall_clock(void) {

@@ -86,6 +86,42 @@ int interrupt_requested(void) {
     return requested != 0;
 }
 
+/* One call of many. */
+typedef struct thread_task {
+    void (*work)(void *of, int which);
+    void *of;
+    int which;
+} thread_task;
+
+static DWORD WINAPI run_task(void *argument) {
+    const thread_task *task = argument;
+    task->work(task->of, task->which);
+    return 0;
+}
+
+void threads_run(int count, void (*work)(void *of, int which), void *of) {
+    thread_task tasks[THREADS_MAX];
+    HANDLE threads[THREADS_MAX] = {NULL};
+
+    for (int k = 1; k < count; ++k) {
+        tasks[k] = (thread_task){work, of, k};
+        threads[k] = CreateThread(NULL, 0, run_task, &tasks[k], 0, NULL);
+    }
+
+    /* Here: the first one, and those that got no thread. */
+    for (int k = 0; k < count; ++k) {
+        if (threads[k] == NULL) {
+            work(of, k);
+        }
+    }
+    for (int k = 1; k < count; ++k) {
+        if (threads[k] != NULL) {
+            (void)WaitForSingleObject(threads[k], INFINITE);
+            (void)CloseHandle(threads[k]);
+        }
+    }
+}
+
 double wall_clock(void) {
     LARGE_INTEGER count, frequency;
 

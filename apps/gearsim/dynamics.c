@@ -10,6 +10,7 @@
 #include "dynamic_columns.h"
 #include "gear_contact.h"
 #include "integrate.h"
+#include "mesh_cache.h"
 #include "model.h"
 #include "output.h"
 #include "platform.h"
@@ -596,7 +597,15 @@ static int start_run(dynamic_run *run, const gear_mesh *gears) {
 
     const column_names names = dynamic_column_names(run->conf);
     run->output = output_open(run->conf, names.name, names.count, &exit_code);
-    return exit_code != 0 ? exit_code : start_filter(run);
+    if (exit_code == 0) {
+        exit_code = start_filter(run);
+    }
+    if (exit_code != 0) {
+        return exit_code;
+    }
+    return mesh_cache_fill(run->model.cache, run->conf, gears, &run->progress) == 0
+               ? 0
+               : message_no_memory(run->conf->messages);
 }
 
 static void summarize(const dynamic_run *run) {

@@ -47,6 +47,17 @@ void progress_update(progress *line, const progress_state *state) {
     message_show(line->messages, text);
 }
 
+void progress_tell(progress *line, const char *what, double share) {
+    char text[160];
+
+    if (!line->shown || wall_clock() - line->updated < seconds_between_updates) {
+        return;
+    }
+    line->updated = wall_clock();
+    snprintf(text, sizeof text, "%s, %.0f %%", what, 100.0 * share);
+    message_show(line->messages, text);
+}
+
 void progress_clear(const progress *line) {
     if (line->shown) {
         message_show(line->messages, "");

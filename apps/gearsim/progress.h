@@ -30,6 +30,9 @@ void progress_start(progress *line, double end, message_sink *messages);
 int progress_due(progress *line);
 void progress_update(progress *line, const progress_state *state);
 
+/* What comes before the run itself: what it is, and which share of it is done. Rare calls. */
+void progress_tell(progress *line, const char *what, double share);
+
 /* Clears the line. Has to come before any other message. */
 void progress_clear(const progress *line);
 
