@@ -122,6 +122,8 @@ static void find_knots(const gm_cache *cache, double knots[KNOTS]) {
     int count = 0;
     insert_knot(knots, &count, 0.0);
     insert_knot(knots, &count, p_bt);
+
+    /* Each corner of the field of action: lower or upper end of the path, one end of the face or the other. */
     for (int corner = 0; corner < CORNERS; ++corner) {
         const double origin =
             at->phase_origin[cache->side] +
@@ -140,6 +142,8 @@ static int place_columns(const gm_cache *cache, int cells, double *phases) {
     const double p_bt = cache->pair->transverse_base_pitch;
     double knots[KNOTS];
     find_knots(cache, knots);
+
+    /* From knot to knot; those that lie together are one. */
     int columns = 0;
     double from = 0.0;
     for (int i = 1; i < KNOTS; ++i) {
@@ -148,6 +152,8 @@ static int place_columns(const gm_cache *cache, int cells, double *phases) {
         if (width < 0.5 * kink_margin * p_bt && i < KNOTS - 1) {
             continue;
         }
+
+        /* Columns at the begin of each step, the first one at the knot itself. */
         const int steps = (int)ceil(width / p_bt * (double)cells);
         for (int k = 0; k < steps; ++k, ++columns) {
             if (phases != NULL) {

@@ -33,6 +33,8 @@ typedef struct load_block {
 static void walk(load_block *block, const double *places, int count, gmi_depths *depths) {
     const gm_mesh *mesh = block->mesh;
     const double middle = 0.5 * (places[0] + places[count - 1]);
+
+    /* How far each place is from there, and about how many there are to a length: where to look first. */
     memset(depths, 0, sizeof *depths);
     depths->count = count;
     for (int n = 0; n < count; ++n) {
@@ -42,6 +44,7 @@ static void walk(load_block *block, const double *places, int count, gmi_depths 
     const double range = depths->largest - depths->shift[0];
     depths->per_shift = range > 0.0 ? (double)(count - 1) / range : 0.0;
     depths->touch = -HUGE_VAL; /* not wanted */
+
     block->position.offset = gmi_side_sign(block->side) * middle;
     gmi_side_sum_depths(mesh->pair, &mesh->engagement, &mesh->side[block->side], block->side,
                         &block->position, depths);
@@ -87,6 +90,7 @@ static void place_loads(load_block *block, gmi_depths *depths) {
     }
     walk(block, places, COARSE_PLACES, depths);
 
+    /* Loads ascend as the sums do, so that each is looked for from the one before. */
     int n = 0;
     for (int k = 0; k < block->count; ++k) {
         while (n < COARSE_PLACES - 1 && !(depths->part[n + 1].sum > block->target[k])) {

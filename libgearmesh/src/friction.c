@@ -132,12 +132,16 @@ static gmi_varying sliding_speed(const gmi_sliding *s, const gmi_part_force *par
     const double rho_w = s->line_of_action - rho_p;
     const double t1 = part->force_t1.value / part->force.value;
     gmi_varying speed = {.value = sliding_at(s, rho_p, t1)};
+
+    /* The place of the mean moves with the load along the line. */
     for (int k = 0; k < GMI_MOTIONS; ++k) {
         const double force_by = part->force.by[k];
         const double rho_by = (part->moment.by[k] - rho_p * force_by) / part->force.value;
         const double t1_by = (part->force_t1.by[k] - t1 * force_by) / part->force.value;
         speed.by[k] = (s->pinion_speed + s->wheel_speed) * rho_by - s->sideways[1] * t1_by;
     }
+
+    /* And the speeds of the gears count by themselves. */
     speed.by[GMI_PINION_SPEED] += rho_p;
     speed.by[GMI_WHEEL_SPEED] -= s->wheel_sign * rho_w;
     return speed;
@@ -152,10 +156,14 @@ static gmi_varying tip_sliding_speed(const gmi_sliding *s, const gmi_part_force 
     const double t1 = part->force_t1.value / part->force.value;
     const double sideways = s->sideways[0] + s->sideways[1] * t1;
     const double forward = s->forward[0] + s->forward[1] * t1;
+
+    /* On the flank, and what the edge adds. */
     gmi_varying speed = sliding_speed(s, part);
     const double both = s->pinion_speed + s->wheel_speed;
     speed.value += both * place->lead.value - s->wheel_speed * place->longer.value +
                    sideways * place->versine.value - forward * place->sine.value;
+
+    /* As the edge moves on the flank, and the mean along the face. */
     for (int k = 0; k < GMI_MOTIONS; ++k) {
         const double t1_by = (part->force_t1.by[k] - t1 * part->force.by[k]) / part->force.value;
         speed.by[k] +=
@@ -163,6 +171,8 @@ static gmi_varying tip_sliding_speed(const gmi_sliding *s, const gmi_part_force 
             sideways * place->versine.by[k] - forward * place->sine.by[k] +
             (s->sideways[1] * place->versine.value - s->forward[1] * place->sine.value) * t1_by;
     }
+
+    /* Longer arms turn the speeds of the gears into more. */
     speed.by[GMI_PINION_SPEED] += place->lead.value;
     speed.by[GMI_WHEEL_SPEED] -= s->wheel_sign * (place->longer.value - place->lead.value);
     return speed;
@@ -186,6 +196,8 @@ static coefficient coefficient_of(const gmi_sliding *s, double load, double spee
     if (s->friction->law != GM_FRICTION_BENEDICT_KELLEY) {
         return mu;
     }
+
+    /* A sliding speed of 0 has a finite logarithm by the creep speed. */
     const double squared = speed * speed + s->friction->creep_squared;
     const double factor = 0.0127 * per_ln_10;
     mu.value = factor * log(s->friction->factor * load /
@@ -194,6 +206,7 @@ static coefficient coefficient_of(const gmi_sliding *s, double load, double spee
         mu.value = 0.0;
         return mu;
     }
+
     mu.by_speed = -factor * speed / squared;
     mu.by_load = factor;
     mu.by_rolling = -2.0 * factor;

@@ -17,6 +17,8 @@ gmi_law gmi_law_of(const gm_mesh_params *params, const gm_pair *pair) {
             ? pair->face_width * gm_iso6336_single_stiffness(pair, params->iso_blank_factor)
             : params->stiffness;
     gmi_law law = {stiffness, params->damping, stiffness * contact_ratio};
+
+    /* The simple model has no lines: its spring is the mean of theirs. */
     if (params->model == GM_MODEL_SIMPLE) {
         law.damping = params->damping * contact_ratio;
         law.stiffness =

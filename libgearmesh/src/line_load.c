@@ -248,6 +248,8 @@ static int walk_line(walk *w, const side_lines *found, int index, int row, gmi_i
     const gmi_engagement *at = &mesh->engagement;
     const gmi_line_flanks flanks =
         gmi_line_flanks_of(mesh, found->side, &found->lines, &found->teeth, index);
+
+    /* At equal steps along the common face. */
     const int stations = stations_of(mesh);
     const double spacing = (at->face_to - at->face_from) / (double)(stations - 1);
     int touches = 0;
@@ -261,6 +263,8 @@ static int walk_line(walk *w, const side_lines *found, int index, int row, gmi_i
         const gm_line_load_point point = point_at(mesh, found, &flanks, index, row, t1);
         count_point(w, &point);
         touches = touches || point.line_load > 0.0;
+
+        /* Counted in any case, also for a caller who asks only how many there are. */
         if (w->points != NULL) {
             if (w->load->points == w->capacity) {
                 return GM_ERR_MEMORY;
@@ -330,6 +334,7 @@ static OWN_STACK int sum_side(const gm_mesh *mesh, int side, const gm_position *
     return GM_OK;
 }
 
+/* All lines of one side, and what that side carries as a whole. */
 static int walk_side(walk *w, int side, const gm_position *position, gm_workspace *workspace) {
     const gm_mesh *mesh = w->mesh;
     const gm_pair *pair = mesh->pair;
@@ -340,6 +345,8 @@ static int walk_side(walk *w, int side, const gm_position *position, gm_workspac
     if (status != GM_OK || sum.sum == 0.0) {
         return status;
     }
+
+    /* The sums of the side. Edges beyond the path bear along their width. */
     w->length += beyond * pair->face_width;
     w->force += mesh->law.stiffness * sum.sum;
     w->load->touching_width += mesh->elastic != NULL ? touching_width(&workspace->side[side])
@@ -353,6 +360,8 @@ static int walk_side(walk *w, int side, const gm_position *position, gm_workspac
     if (found.work != NULL) {
         lines_at.offset = gmi_side_sign(side) * 0.5 * at->backlash;
     }
+
+    /* The lines that can touch; edges carry some of them on beyond the path. */
     gmi_lines_find(pair, at, side, &lines_at, &found.lines);
     found.has_tips = found.work != NULL && gmi_elastic_tips_of(mesh, &found.tips);
     if (found.has_tips) {
@@ -363,6 +372,8 @@ static int walk_side(walk *w, int side, const gm_position *position, gm_workspac
     if (mesh->has_corners) {
         widen(mesh, &found);
     }
+
+    /* Line by line, within the face and the path. */
     found.teeth = gmi_lines_teeth(pair, side, &lines_at, &found.lines);
     const gmi_line_ends ends = gmi_line_ends_find(pair, at, &found.lines);
     for (int k = found.lines.first; k <= found.lines.last && status == GM_OK; ++k) {

@@ -364,12 +364,16 @@ int gm_mesh_elastic_stiffness(const gm_mesh *mesh, gm_mesh_stiffness *stiffness)
     if (stiffness == NULL) {
         return GM_ERR_NULL;
     }
+
+    /* NaN unless there is an answer. */
     const double nan = gmi_nan();
     const gm_mesh_stiffness none = {nan, nan, nan, nan, nan, nan};
     *stiffness = none;
     if (mesh == NULL) {
         return GM_ERR_NULL;
     }
+
+    /* Known since the mesh was prepared. */
     if (mesh->elastic == NULL) {
         return GM_ERR_PARAMETER;
     }
@@ -1061,6 +1065,8 @@ static int move_mesh(const gm_mesh *mesh, const gm_pose *pose, gm_mesh *moved) {
     if (mesh->friction.is_on) {
         gmi_friction_place(mesh->pair, &moved->engagement, &moved->friction);
     }
+
+    /* Which evaluation it has now, and where its sides begin and end. */
     set_kind(moved);
     for (int side = GM_DRIVE; side <= GM_COAST; ++side) {
         gmi_side_move(&moved->side[side], mesh->pair, &moved->engagement, side);

@@ -213,6 +213,8 @@ static int move_axes(const gm_pair *pair, double along_x, double along_y, gmi_en
     const double sign = pair->wheel.sign;
     const double apart = pair->center_distance + sign * along_x;
     const double distance = sqrt(apart * apart + along_y * along_y);
+
+    /* Gears that no longer reach each other, or whose teeth are in each other's way. */
     gmi_meshing moved;
     if (!gmi_meshing_find(pair, distance, &moved)) {
         return GM_POSE_OUT_OF_MESH;
@@ -230,6 +232,7 @@ static int move_axes(const gm_pair *pair, double along_x, double along_y, gmi_en
         }
     }
 
+    /* What follows from the distance: angles, line of action, backlash, and where active flanks start. */
     at->center_distance = distance;
     at->working_pressure_angle = moved.working_pressure_angle;
     at->sin_pressure_angle = moved.line_of_action / distance;
@@ -306,6 +309,8 @@ int gmi_engagement_find(const gm_pair *pair, const gm_pose *pose, gmi_engagement
         give_signs(pair, engagement);
         return GM_OK;
     }
+
+    /* Poses of finite numbers alone. */
     const double along_x = pose->center_distance_change;
     const double along_y = pose->offset;
     const double along_z = pose->axial_shift;

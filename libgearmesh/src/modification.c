@@ -83,13 +83,15 @@ static double length_of(const gm_modifications *of, const gm_modification *m) {
     if (m->kind == GM_MOD_PROFILE_CROWNING) {
         return 0.5 * roll_of(of);
     }
+
+    /* Along one direction, or across a corner: the height of its triangle. */
     if (!has_face_range(m->kind)) {
         return profile_length(of, m);
     }
     if (!has_profile_range(m->kind)) {
         return m->face_range;
     }
-    const double along_profile = profile_length(of, m); /* height of the triangle */
+    const double along_profile = profile_length(of, m);
     return m->face_range * along_profile / hypot(m->face_range, along_profile);
 }
 
@@ -158,6 +160,8 @@ static problem check_shape(const gm_modifications *of, const gm_modification *m)
     if (m->shape < GM_SHAPE_LINEAR || m->shape > GM_SHAPE_CIRCULAR) {
         return problem_of("shape", "GM_SHAPE_LINEAR, GM_SHAPE_PARABOLIC or GM_SHAPE_CIRCULAR");
     }
+
+    /* At half of its length a circle already falls by 4 in 3 where it ends: R = 1.25 L. */
     if (m->shape == GM_SHAPE_CIRCULAR && fabs(m->amount) > 0.5 * length_of(of, m)) {
         return problem_of("amount", "at most half of the length that a circular shape runs over");
     }

@@ -296,6 +296,8 @@ static problem check_common_width(const gm_pair *pair, const gm_pair_params *p) 
     if (isnan(p->face_width)) {
         return no_problem;
     }
+
+    /* Wider than a gear, or narrower without being what both share. */
     if (p->face_width > narrower + rounding) {
         return geometry_problem("face_width",
                                 "a common width, no larger than the face of either gear");
@@ -391,6 +393,8 @@ static problem derive_rack(gm_gear *gear, const gm_pair_params *params, enum gm_
     gear->rack_addendum = or_else(p.rack_addendum, RACK_ADDENDUM);
     gear->rack_dedendum = or_else(p.rack_dedendum, RACK_DEDENDUM);
     gear->rack_fillet_radius = or_else(p.rack_fillet_radius, RACK_FILLET_RADIUS);
+
+    /* The fault is with what was given. */
     if (straight_rack_depth(gear, params->normal_pressure_angle) >= 0.0) {
         return no_problem;
     }

@@ -835,6 +835,8 @@ static int simple(const gm_pair *pair, const gm_state *state, gm_penetration *re
     if (status == GM_OK) {
         status = gmi_check_offset(position.offset, position.offset_rate);
     }
+
+    /* Both sides of the pair as drawn: a spring with backlash. */
     if (status == GM_OK) {
         gmi_engagement at;
         gmi_side_sum drive, coast;

@@ -119,6 +119,7 @@ static void add_ramp_slopes(gmi_line_tangent *tangent, double pinion, double whe
     }
 }
 
+/* Adds what is wanted of a part of the line to that of the whole. */
 SPECIALIZED void add_part(const gmi_line_sum *part, int wanted, gmi_line_sum *result) {
     result->sum += part->sum;
     result->contact += part->contact;

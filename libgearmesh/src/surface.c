@@ -100,11 +100,14 @@ void gmi_surface_add_ramps(const gmi_surface_points *at, const gmi_surface_gear 
     const gmi_grid *grid = gear->grid;
     for (int r = 0; r < gear->tables->ramp_count; ++r) {
         const gm_flank_ramp *ramp = &gear->tables->ramps[r];
+
+        /* Its height is straight in t1 and roll length, so that it is in the place between stations and in the roll. */
         const double per_t1 = ramp->per_t1 * grid->face_scale;
         const double per_own_roll = ramp->per_t2 / grid->profile_cells * grid->per_rho;
         const double from = ramp->offset + ramp->per_t1 * grid->face_origin + per_t1 * at->t1_from +
                             per_own_roll * gear->roll_from;
         const double per_place = per_t1 * at->per_place, per_roll = per_own_roll * gear->per_roll;
+
         for (int k = 0; k < at->count; ++k) {
             const double height = from + per_place * at->place[k] + per_roll * at->roll[k];
             if (height > 0.0) {

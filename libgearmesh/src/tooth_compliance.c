@@ -162,10 +162,14 @@ static int set_ring_fillet(gmi_tooth *tooth) {
     tooth->fillet_roll_length = along - tooth->rounding_radius;
     tooth->fillet_begin =
         tooth->fillet_roll_length / tooth->base_radius - tooth->base_half_thickness;
+
+    /* Both fillets of a space lie beside each other. */
     const double from_tooth = tooth->fillet_begin - atan(along / tooth->base_radius);
     if (!(from_tooth <= -tooth->half_pitch_angle)) {
         return GMI_TOOTH_SPACE;
     }
+
+    /* The foot is where the tangent stands at its angle to the tooth's axis; it must lie on the circle. */
     tooth->circle_x = -radius * sin(from_tooth);
     tooth->circle_y = radius * cos(from_tooth);
     tooth->foot_angle = RING_FOOT_TANGENT;
