@@ -460,8 +460,9 @@ enum gmi_coordinate {
  * what the tables have at the points looked up. In the result integrals over the touching part.
  */
 typedef struct gmi_line_tangent {
-    double by[GMI_COORDINATES][3]; /* beside the tables */
-    double speed[2];               /* of approach (m/s); line.c leaves it and the next to others */
+    double by[GMI_COORDINATES]
+             [3];    /* beside the tables; of second order by the length and along alone */
+    double speed[2]; /* of approach (m/s); line.c leaves it and the next to others */
 
     /* u of tilt.c: the speed of approach falls by it times that of the tilt across (m) */
     double arm[2];
@@ -628,6 +629,11 @@ int gmi_tilt_cut_line(const gmi_tilt_cuts *cuts, double rho_origin, gmi_line_par
 void gmi_tilt_move_ends(const gm_pair *pair, const gmi_engagement *at, int side, double rho_origin,
                         double delta, gmi_line_part *part);
 
+/* One of both ends alone; 0 where it does not move. */
+int gmi_tilt_move_end(const gm_pair *pair, const gmi_engagement *at, int side, double rho_origin,
+                      double delta, const gmi_line_part *part, int is_beginning,
+                      double by[GMI_COORDINATES]);
+
 /* How far a line is beyond the tip of a gear: at_zero + per_t1 t1 (m), and how it moves. */
 typedef struct gmi_beyond {
     double at_zero, per_t1;
@@ -749,6 +755,8 @@ typedef struct gmi_side_tangent {
     double flow;     /* integral of the speed of approach over what touches (m/s) */
     gmi_load load;
     gmi_load_by by;
+    double arm
+        [GMI_WEIGHTS]; /* integrals of gmi_line_tangent.arm over what touches, but for friction (m) */
     gmi_line_tangent line; /* at hand */
 } gmi_side_tangent;
 
@@ -1037,19 +1045,20 @@ void gmi_wrench_add_friction(const gm_pair *pair, const gmi_engagement *at,
                              const gmi_friction_sum *friction, int side_of_teeth,
                              gm_wrench *wrench);
 
-/* And its derivative: of the friction, and where alpha_wt and T move under it. */
-void gmi_wrench_add_friction_by(const gm_pair *pair, const gmi_engagement *at,
-                                const double friction_by[GMI_WEIGHTS],
-                                const double friction[GMI_WEIGHTS], int side_of_teeth,
-                                double angle_by, double length_by, gm_wrench *wrench);
+/* The wrench of a force of one side in the frame of the drawing, by its weights. */
+typedef struct gmi_wrench_map {
+    double force[3];            /* on the wheel by the force (1) */
+    double by_t1[2], by_rho[3]; /* moments by the two others, about both axes (m, 1) */
+    double pinion[3], wheel[3]; /* moments by the force, about either axis (m) */
+} gmi_wrench_map;
 
-/* Its derivative where alpha_wt and the centre distance move, the forces being what they are. */
-void gmi_wrench_add_by_direction(const gm_pair *pair, const gmi_engagement *at,
-                                 const gmi_side_force *side, int side_of_teeth, double angle_by,
-                                 double distance_by, gm_wrench *wrench);
-
-/* And where all of it turns about z. */
-void gmi_wrench_add_by_turn(const gm_wrench *wrench, double turn_by, gm_wrench *by);
+/* Of the normal force, and of friction; by: how it changes as the wheel's axis moves along x and y. */
+void gmi_wrench_map_force(const gm_pair *pair, const gmi_engagement *at, int side,
+                          gmi_wrench_map *map, gmi_wrench_map by[2]);
+void gmi_wrench_map_friction(const gm_pair *pair, const gmi_engagement *at, int side,
+                             gmi_wrench_map *map, gmi_wrench_map by[2]);
+void gmi_wrench_map_add(const gmi_wrench_map *map, const double force[GMI_WEIGHTS],
+                        gm_wrench *wrench);
 
 /* From the frame in which the posed wheel's axis is on +x to that of the drawing: where that axis is there. */
 void gmi_wrench_turn(gm_wrench *wrench, const double axis[2]);

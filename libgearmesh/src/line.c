@@ -203,121 +203,125 @@ static inline void add_moments(const piece *part, double begin, double end, gmi_
  * The tangent of a line: a walk finds stretches along which the flanks touch, and each table is followed along them
  * ------------------------------------------------------------------------------------------- */
 
-/* What is found along a line with its tangent; places are counted from the first face line of the table that leads. */
+/*
+ * What is found along a line with its tangent; places are counted from the first face line of the table that leads. Where a
+ * piece ends the flanks touch if f is above 0 there, so that pieces along which f has one sign change nothing.
+ */
 typedef struct tangent_walk {
     double touching_from; /* where the flanks touch since, or NOWHERE */
     double from_moves;    /* d place / d f there if that is a root of f, else 0 */
-    double moment;        /* twelve times the first moment of f */
 } tangent_walk;
 
-/* What is straight piece by piece: integrals of it over v1, in the terms that the pieces give. */
+/* Integrals over v1 of what is straight between its kinks; and times the distance from the end of the stretch. */
 typedef struct straight_sums {
-    double from, to;  /* it, at both ends of the stretch */
-    double twice;     /* sum of length times both ends */
-    double at_middle; /* of that times twice the middle */
-    double by_rate;   /* of the cube of the length times how fast it grows */
+    double whole, by_distance;
 } straight_sums;
 
-/* Goes on to `to` over a length. */
-SPECIALIZED void add_straight(double length, double twice_middle, double to, straight_sums *sums) {
-    const double twice = length * (sums->to + to);
-    sums->twice += twice;
-    sums->at_middle += twice_middle * twice;
-    sums->to = to;
-}
-
-/* Its integral over t1, and the first moment about t1 = 0, times a factor. */
-static void add_over_t1(const gmi_grid *grid, double factor, const straight_sums *sums,
+/* Its integral over t1, and the first moment about t1 = 0, times a factor; to: t1 of the end. */
+static void add_over_t1(const gmi_grid *grid, double factor, double to, const straight_sums *sums,
                         double integral[2]) {
     const double per_rate = 1.0 / grid->face_rate;
-    const double over_v1 = 0.5 * sums->twice;
-    const double moment = 0.25 * sums->at_middle + (1.0 / 12.0) * sums->by_rate;
-    integral[0] += factor * per_rate * over_v1;
-    integral[1] += factor * per_rate * per_rate * (moment - grid->face_base * over_v1);
+    const double whole = factor * per_rate * sums->whole;
+    integral[0] += whole;
+    integral[1] += to * whole - factor * per_rate * per_rate * sums->by_distance;
+}
+
+/* A point of a line in one table: its cell, the place in it, and the slopes there by u along the profile and by v1 across. */
+typedef struct table_point {
+    const double *node;
+    int face, cell;
+    double p, q;
+    double along, across, mixed; /* the last one: what both change by within the cell */
+} table_point;
+
+SPECIALIZED table_point point_at(const gmi_grid *grid, const double *table, double profile,
+                                 double t1) {
+    const double v1 = t1 * grid->face_rate + grid->face_base;
+    const double u = grid->base + (grid->direction * profile + t1 * grid->climb);
+    const ptrdiff_t row = grid->row, step = grid->step;
+    table_point at;
+    at.face = cell_of(v1, grid->last_face);
+    at.cell = cell_of(u, grid->last_profile);
+    at.node = table + (at.face * row + at.cell * step + grid->corner);
+    at.p = v1 - (double)at.face;
+    at.q = u - (double)at.cell;
+    const double across = at.node[row] - at.node[0];
+    at.mixed = (at.node[row + step] - at.node[step]) - across;
+    at.along = (at.node[step] - at.node[0]) + at.mixed * at.p;
+    at.across = across + at.mixed * at.q;
+    return at;
 }
 
 /*
- * Follows one table from t1 to t1, from cell to cell, and its slopes by u along the profile and by v1 across the face. In a
- * cell w is bilinear: along the line both slopes are straight. That along the profile goes on across a face line, that
- * across the face goes on across a profile line. has_face: a constant at each call.
+ * Follows one table from t1 to t1, and its slopes by u along the profile and by v1 across the face. In a cell w is bilinear:
+ * along the line both slopes are straight. At a profile line the one along has a step, at a face line the one across, and
+ * at both the rate at which they change, what is mixed, has another one. A step J and a step K of the rate at the distance x
+ * from the end add J x + K x^2 / 2 to the integral, and J x^2 / 2 + K x^3 / 6 to that times the distance: so does the
+ * beginning. Of the second differences beside the nodes. has_face: a constant at each call.
  */
-SPECIALIZED void follow_slopes(const gmi_grid *grid, const double *table, double profile,
-                               double from, double to, int has_face, straight_sums *along,
-                               straight_sums *across) {
-    const double v1 = from * grid->face_rate + grid->face_base;
-    const double u = grid->base + (grid->direction * profile + from * grid->climb);
-    const int face = cell_of(v1, grid->last_face);
-    const int cell = cell_of(u, grid->last_profile);
+SPECIALIZED void follow_slopes(const gmi_grid *grid, const table_point *at, double length,
+                               int has_face, straight_sums *along, straight_sums *across) {
     const ptrdiff_t row = grid->row, step = grid->step;
-    const double *node = table + (face * row + cell * step + grid->corner);
-    const double rate = grid->rate;
+    const double rate = grid->rate, spacing = grid->profile_spacing;
+    int faces = grid->last_face - at->face, profiles = grid->last_profile - at->cell;
 
-    /* Places are counted from the face line behind: of the point, of the profile lines around it, and of the end. */
-    double p = v1 - (double)face;
-    double last = p - (u - (double)cell) * grid->profile_spacing;
-    double next = last + grid->profile_spacing;
-    double end = p + (to - from) * grid->face_rate;
-    double twice_behind = 2.0 * (double)face;
-    int faces = grid->last_face - face, profiles = grid->last_profile - cell;
+    /* Sums of J x and J x^2 of both slopes, and of K x^2 and K x^3, which they share. */
+    double along_1 = at->along * length, along_2 = along_1 * length;
+    double across_1 = at->across * length, across_2 = across_1 * length;
+    double rates_2 = at->mixed * (length * length), rates_3 = rates_2 * length;
 
-    /* Slopes along the profile, d, and across the face, c, where the line begins; mixed: what both change by. */
-    double face_behind = node[row] - node[0];
-    double mixed = (node[row + step] - node[step]) - face_behind;
-    straight_sums d = {0.0, (node[step] - node[0]) + mixed * p, 0.0, 0.0, 0.0};
-    straight_sums c = {0.0, face_behind + mixed * ((p - last) * rate), 0.0, 0.0, 0.0};
-    d.from = d.to;
-    c.from = c.to;
-    if (profiles <= 0) {
-        next = NO_CROSSING;
-    }
-
-    /* From face line to face line, and between them from profile line to profile line. */
+    /* From face line to face line, and between them from profile line to profile line: how far each is from the end. */
+    const double *ahead = at->node + step;
+    double face_line = length - (1.0 - at->p);
+    double x = length - (1.0 - at->q) * spacing;
     for (;;) {
-        const int is_last = !(end > 1.0) || faces <= 0;
-        const double face_line = is_last ? end : 1.0;
-        for (;;) {
-            /* To the profile line ahead, or the face line. */
-            const int crosses = next < face_line;
-            const double stop = crosses ? next : face_line;
-            const double length = stop - p;
-            const double twice_middle = twice_behind + (p + stop);
-            const double growth = mixed * length;
-            add_straight(length, twice_middle, d.to + growth, &d);
-            d.by_rate += growth * (length * length);
-            if (has_face) {
-                add_straight(length, twice_middle, c.to + growth * rate, &c);
-            }
-            p = stop;
-            if (!crosses) {
-                break;
-            }
-
-            /* Into the cell behind the profile line. */
-            node += step;
-            mixed = (node[row + step] - node[step]) - (node[row] - node[0]);
-            d.to = (node[step] - node[0]) + mixed * p;
-            last = next;
-            next = --profiles > 0 ? next + grid->profile_spacing : NO_CROSSING;
+        const int is_last = !(face_line > 0.0) || faces <= 0;
+        const double stop = is_last ? 0.0 : face_line;
+        for (; x > stop && profiles > 0; --profiles) {
+            const double beyond = ahead[row + GMI_NODE_PROFILE];
+            const double change = beyond - ahead[GMI_NODE_PROFILE];
+            const double kink_x = (beyond - change * (x - face_line)) * x;
+            const double change_x2 = change * x * x;
+            along_1 += kink_x;
+            along_2 += kink_x * x;
+            rates_2 += change_x2;
+            rates_3 += change_x2 * x;
+            ahead += step;
+            x -= spacing;
         }
         if (is_last) {
             break;
         }
 
-        /* Into the cell behind the face line. */
-        node += row;
-        face_behind = node[row] - node[0];
-        mixed = (node[row + step] - node[step]) - face_behind;
-        p = 0.0;
-        last -= 1.0;
-        next -= 1.0;
-        end -= 1.0;
-        twice_behind += 2.0;
+        /* Across the face line, interpolated between the profile lines behind and ahead. */
+        ahead += row;
+        const double on_line = ahead[GMI_NODE_FACE];
+        const double back = ahead[GMI_NODE_FACE - step] - on_line;
+        const double back_x2 = back * face_line * face_line;
+        rates_2 -= back_x2;
+        rates_3 -= back_x2 * face_line;
+        if (has_face) {
+            const double kink_x = (on_line + (face_line - x) * rate * back) * face_line;
+            across_1 += kink_x;
+            across_2 += kink_x * face_line;
+        }
+        face_line -= 1.0;
         faces -= 1;
-        c.to = face_behind - mixed * (last * rate);
     }
-    c.by_rate = d.by_rate * rate; /* both follow what is mixed in each cell */
-    *along = d;
-    *across = c;
+    along->whole = along_1 + 0.5 * rates_2;
+    along->by_distance = 0.5 * along_2 + (1.0 / 6.0) * rates_3;
+    across->whole = across_1 + rate * (0.5 * rates_2);
+    across->by_distance = 0.5 * across_2 + rate * ((1.0 / 6.0) * rates_3);
+}
+
+/* The polynomials with these in place of the powers of t1: only two of them are of second order. */
+static inline void sum_powers(const gmi_line_tangent *tangent, const double powers[3],
+                              double by[GMI_COORDINATES]) {
+    for (int k = 0; k < GMI_COORDINATES; ++k) {
+        by[k] = tangent->by[k][0] * powers[0] + tangent->by[k][1] * powers[1];
+    }
+    by[GMI_BY_LENGTH] += tangent->by[GMI_BY_LENGTH][2] * powers[2];
+    by[GMI_BY_ALONG] += tangent->by[GMI_BY_ALONG][2] * powers[2];
 }
 
 /* Where f passes zero the touching part moves by d f / |d f / d t1|; moves: d place / d f, 0 where there is no root. */
@@ -328,16 +332,14 @@ static void add_tangent_root(double t1, double moves, const double slopes[3],
     }
     moves *= tangent->per_place;
     double by[GMI_COORDINATES];
-    for (int k = 0; k < GMI_COORDINATES; ++k) {
-        const double *powers = tangent->by[k];
-        by[k] = powers[0] + t1 * (powers[1] + t1 * powers[2]);
-    }
+    const double powers_of_t1[3] = {1.0, t1, t1 * t1};
+    sum_powers(tangent, powers_of_t1, by);
     gmi_line_add_slopes(tangent, slopes[0], slopes[1], slopes[2], by);
     for (int k = 0; k < GMI_COORDINATES; ++k) {
         const double moved = moves * by[k];
         tangent->contact_by[k][0] += moved;
         tangent->contact_by[k][1] += moved * t1;
-        tangent->contact_by[k][2] += moved * t1 * t1;
+        tangent->contact_by[k][2] += moved * powers_of_t1[2];
     }
 }
 
@@ -356,26 +358,34 @@ static OWN_STACK void add_stretch(double from_place, double to_place, double fro
     tangent->part_contact[2] += length * (middle * middle + spread);
     tangent->part_contact[3] += length * middle * (middle * middle + 3.0 * spread);
 
-    /* The slopes of both tables. */
+    /* The slopes of both tables, and what they are at roots. */
     const gmi_line *line = tangent->line;
     double at_from[3] = {0.0, 0.0, 0.0}, at_to[3] = {0.0, 0.0, 0.0};
     straight_sums along, across;
     if (line->pinion != NULL) {
         const gmi_grid *grid = tangent->pinion;
-        follow_slopes(grid, line->pinion, line->pinion_profile, from, to, 0, &along, &across);
-        add_over_t1(grid, grid->direction, &along, tangent->part_slopes[0]);
-        at_from[0] = grid->direction * along.from;
-        at_to[0] = grid->direction * along.to;
+        const table_point at = point_at(grid, line->pinion, line->pinion_profile, from);
+        follow_slopes(grid, &at, length * grid->face_rate, 0, &along, &across);
+        add_over_t1(grid, grid->direction, to, &along, tangent->part_slopes[0]);
+        at_from[0] = grid->direction * at.along;
+        if (to_moves > 0.0) {
+            const table_point end = point_at(grid, line->pinion, line->pinion_profile, to);
+            at_to[0] = grid->direction * end.along;
+        }
     }
     if (line->wheel != NULL) {
         const gmi_grid *grid = tangent->wheel;
-        follow_slopes(grid, line->wheel, line->wheel_profile, from, to, 1, &along, &across);
-        add_over_t1(grid, grid->direction, &along, tangent->part_slopes[1]);
-        add_over_t1(grid, 1.0, &across, tangent->part_slopes[2]);
-        at_from[1] = grid->direction * along.from;
-        at_from[2] = across.from;
-        at_to[1] = grid->direction * along.to;
-        at_to[2] = across.to;
+        const table_point at = point_at(grid, line->wheel, line->wheel_profile, from);
+        follow_slopes(grid, &at, length * grid->face_rate, 1, &along, &across);
+        add_over_t1(grid, grid->direction, to, &along, tangent->part_slopes[1]);
+        add_over_t1(grid, 1.0, to, &across, tangent->part_slopes[2]);
+        at_from[1] = grid->direction * at.along;
+        at_from[2] = at.across;
+        if (to_moves > 0.0) {
+            const table_point end = point_at(grid, line->wheel, line->wheel_profile, to);
+            at_to[1] = grid->direction * end.along;
+            at_to[2] = end.across;
+        }
     }
     add_tangent_root(from, from_moves, at_from, tangent);
     add_tangent_root(to, to_moves, at_to, tangent);
@@ -414,10 +424,7 @@ static void finish_tangent(gmi_line_tangent *tangent) {
     for (int weight = 0; weight < 2; ++weight) {
         const double *contact = &tangent->part_contact[weight];
         double by[GMI_COORDINATES];
-        for (int k = 0; k < GMI_COORDINATES; ++k) {
-            const double *powers = tangent->by[k];
-            by[k] = powers[0] * contact[0] + powers[1] * contact[1] + powers[2] * contact[2];
-        }
+        sum_powers(tangent, contact, by);
         gmi_line_add_slopes(tangent, tangent->part_slopes[0][weight],
                             tangent->part_slopes[1][weight], tangent->part_slopes[2][weight], by);
         for (int k = 0; k < GMI_COORDINATES; ++k) {
@@ -512,14 +519,16 @@ static void add_split(const piece *part, int wanted, gmi_line_sum *total) {
     split_piece(part, wanted, NULL, total);
 }
 
-/* The same with the stretches of a tangent. */
-static void add_split_tangent(const piece *part, int wanted, tangent_walk *walked,
+/* The same with the stretches of a tangent; end_value: f at the end, where rounding may have put a root on either side. */
+static void add_split_tangent(const piece *part, double end_value, int wanted, tangent_walk *walked,
                               gmi_line_sum *total) {
-    if (part->f.value <= 0.0) {
-        end_stretch(walked, part->s, 0.0,
-                    total->tangent); /* a root that rounding has put just behind it */
-    }
     split_piece(part, wanted, walked, total);
+    const double end = part->s + part->length;
+    if (!(end_value > 0.0)) {
+        end_stretch(walked, end, 0.0, total->tangent);
+    } else if (walked->touching_from == NOWHERE) {
+        begin_stretch(walked, end, 0.0);
+    }
 }
 
 /* A walk along a line: where it is, f there, and the sums over whole pieces so far. */
@@ -527,14 +536,23 @@ typedef struct walk_state {
     double s;
     quadratic f;
     trace first, second; /* through the tables of both flanks; the first one's face lines lead */
-    double faces;        /* face lines behind that one (GMI_MOMENTS) */
+    double faces;        /* face lines behind that one (GMI_MOMENTS without GMI_TANGENT) */
     double three_sums;   /* three times the sum */
     double contact;
     double two_first, two_second; /* twice the sums of d deviation / d u of both flanks */
+
+    /* Sums over pieces of three_sums times both ends, and of the square of the length times the change of f (GMI_TANGENT). */
+    double six_moments, twelve_moments;
+    double two_faces; /* twice the face lines behind (GMI_TANGENT) */
 } walk_state;
 
+/* Where it is, counted from the first face line on. */
+SPECIALIZED double place_of(const walk_state *at, int wanted) {
+    return (wanted & GMI_TANGENT ? 0.5 * at->two_faces : at->faces) + at->s;
+}
+
 SPECIALIZED piece piece_ahead(const walk_state *at, double length, int wanted) {
-    const piece part = {wanted & GMI_MOMENTS ? at->faces + at->s : 0.0,
+    const piece part = {wanted & GMI_MOMENTS ? place_of(at, wanted) : 0.0,
                         length,
                         at->f,
                         at->first.slope,
@@ -715,18 +733,16 @@ SPECIALIZED void advance(walk_state *at, double end, int wanted, tangent_walk *w
     } else if (gmi_smaller(gmi_smaller(value, control), end_value) > 0.0) {
         const double three = length * (value + control + end_value);
         at->three_sums += three;
-        at->contact += length;
+        if (!(wanted & GMI_TANGENT)) { /* whose stretches tell */
+            at->contact += length;
+        }
         if (wanted & GMI_DERIVATIVES) {
             at->two_first += length * (at->first.slope + first_slope);
             at->two_second += length * (at->second.slope + second_slope);
         }
-        if (wanted & GMI_TANGENT) {
-            const double place = at->faces + at->s;
-            if (walked->touching_from == NOWHERE) {
-                begin_stretch(walked, place, 0.0);
-            }
-            walked->moment +=
-                4.0 * place * three + length * length * (value + 2.0 * control + 3.0 * end_value);
+        if (wanted & GMI_TANGENT) { /* about the middle of the piece */
+            at->six_moments += three * (at->s + end + at->two_faces);
+            at->twelve_moments += length * length * (end_value - value);
         } else if (wanted & GMI_MOMENTS) {
             const piece part = piece_ahead(at, length, wanted);
             add_moments(&part, 0.0, length, split);
@@ -734,12 +750,10 @@ SPECIALIZED void advance(walk_state *at, double end, int wanted, tangent_walk *w
     } else if (gmi_larger(gmi_larger(value, control), end_value) > 0.0) {
         const piece part = piece_ahead(at, length, wanted);
         if (wanted & GMI_TANGENT) {
-            add_split_tangent(&part, wanted, walked, split);
+            add_split_tangent(&part, end_value, wanted, walked, split);
         } else {
             add_split(&part, wanted, split);
         }
-    } else if (wanted & GMI_TANGENT) {
-        end_stretch(walked, at->faces + at->s, 0.0, split->tangent);
     }
 
     /* Go there. */
@@ -807,7 +821,9 @@ SPECIALIZED void walk_cell(walk_state *at, const gmi_grid *first, const gmi_grid
 SPECIALIZED void enter_next_cell(walk_state *at, const gmi_grid *first, const gmi_grid *second,
                                  int wanted, int same_faces) {
     at->s = 0.0;
-    if (wanted & GMI_MOMENTS) {
+    if (wanted & GMI_TANGENT) {
+        at->two_faces += 2.0;
+    } else if (wanted & GMI_MOMENTS) {
         at->faces += 1.0;
     }
 
@@ -831,6 +847,13 @@ SPECIALIZED void enter_next_cell(walk_state *at, const gmi_grid *first, const gm
  */
 SPECIALIZED void walk(walk_state at, const gmi_grid *first, const gmi_grid *second, double end,
                       int wanted, int same_faces, tangent_walk *walked, gmi_line_sum *result) {
+    if (wanted & GMI_TANGENT) {
+        at.six_moments = at.twelve_moments = 0.0;
+        at.two_faces = 2.0 * at.faces;
+        if (at.f.value > 0.0) {
+            begin_stretch(walked, place_of(&at, wanted), 0.0);
+        }
+    }
     const double end_in_last = end - (double)at.first.faces;
     for (;;) {
         const int is_last = at.first.faces <= 0;
@@ -843,8 +866,8 @@ SPECIALIZED void walk(walk_state at, const gmi_grid *first, const gmi_grid *seco
     }
 
     if (wanted & GMI_TANGENT) {
-        end_stretch(walked, at.faces + at.s, 0.0, result->tangent);
-        result->sum_t1 += walked->moment * (1.0 / 12.0);
+        end_stretch(walked, place_of(&at, wanted), 0.0, result->tangent);
+        result->sum_t1 += (2.0 * at.six_moments + at.twelve_moments) * (1.0 / 12.0);
     }
     const double per_rate = 1.0 / first->face_rate; /* from s to t1 */
     result->sum = per_rate * (result->sum + at.three_sums * (1.0 / 3.0));
@@ -880,8 +903,8 @@ static void integrate_ideal(const gmi_line *line, int wanted, gmi_line_sum *resu
         const quadratic f = {line->overlap, line->half_slope, line->curvature};
         const piece part = {line->from, length, f, 0.0, 0.0, 0.0, 0.0};
         if (wanted & GMI_TANGENT) {
-            tangent_walk walked = {NOWHERE, 0.0, 0.0};
-            add_split_tangent(&part, wanted, &walked, result);
+            tangent_walk walked = {NOWHERE, 0.0};
+            add_split_tangent(&part, result->at_to, wanted, &walked, result);
             end_stretch(&walked, line->to, 0.0, result->tangent);
         } else {
             add_split(&part, wanted, result);
@@ -913,7 +936,7 @@ static OWN_STACK void walk_tangent(const walk_state *at, const gmi_grid *first,
                                    gmi_line_sum *result) {
     enum { TANGENT = GMI_TANGENT | GMI_MOMENTS };
     gmi_line_tangent *tangent = result->tangent;
-    tangent_walk walked = {NOWHERE, 0.0, 0.0};
+    tangent_walk walked = {NOWHERE, 0.0};
     tangent->per_place = 1.0 / first->face_rate;
     tangent->t1_zero = -first->face_base * tangent->per_place;
     if (same_faces) {
@@ -921,6 +944,7 @@ static OWN_STACK void walk_tangent(const walk_state *at, const gmi_grid *first,
     } else {
         walk(*at, first, second, end, TANGENT, 0, &walked, result);
     }
+    result->contact = tangent->part_contact[0];
     result->contact_t1 = tangent->part_contact[1];
 }
 

@@ -211,7 +211,7 @@ static int tilt_line(side_view *view, double rho_origin, int wanted, gmi_line *l
     if (!gmi_tilt_cut_line(&view->cuts, rho_origin, part)) {
         return 0;
     }
-    if ((wanted & ~GMI_MOMENTS) != 0) {
+    if ((wanted & ~(GMI_MOMENTS | GMI_TANGENT)) != 0) {
         move_ends(view, rho_origin);
     }
 
@@ -261,75 +261,131 @@ static void add_end(gmi_line_tangent *line, double sign, double t1, double f,
     }
 }
 
+/* Of a whole line: most of them do not touch at their ends, and some end at the pinion's face, which stays. */
+static OWN_STACK void add_touching_end(const side_view *view, double rho_origin, int is_beginning,
+                                       double f) {
+    const gmi_line_part *part = &view->tilted_part;
+    double end_by[GMI_COORDINATES];
+    if (gmi_tilt_move_end(view->pair, view->at, view->side, rho_origin, view->lines.delta, part,
+                          is_beginning, end_by)) {
+        add_end(&view->tangent->line, is_beginning ? -1.0 : 1.0,
+                is_beginning ? part->from : part->to, f, end_by);
+    }
+}
+
 /* The third weight, rho_p = rho_origin + advance t1, from the first two. */
 static inline void weigh(double row[GMI_WEIGHTS], double rho_origin, double advance) {
     row[GMI_BY_RHO] = rho_origin * row[GMI_WHOLE] + advance * row[GMI_BY_T1];
 }
 
-/* The force of a line or of a part of one, from its sums and its tangent; returns the integral of the speed of approach. */
-static double find_load(const side_view *view, double rho_origin, const gmi_line_sum *sum,
-                        gmi_load *load, gmi_load_by *by) {
+/*
+ * What a line or a part of one adds to how the force moves with the coordinates, and to the moments of the arm of a tilt
+ * across: but for what finish_load() knows of all that touches.
+ */
+SPECIALIZED void add_rows(const side_view *view, double rho_origin,
+                          double by[GMI_COORDINATES][GMI_WEIGHTS], double arm[GMI_WEIGHTS]) {
     const gmi_line_tangent *line = &view->tangent->line;
-    const double k = view->law->stiffness, d = view->law->damping;
     const double advance = view->lines.advance;
-    const double *c = line->contact, *speed = line->speed, *arm = line->arm;
-    const double tau =
-        gmi_side_sign(view->side) * view->pair->face_advance / view->pair->face_width;
-    const double of_along = -tau * view->at->wheel_base_radius;
-    const double across = view->tangent->rates.across;
-    const double sums[2] = {sum->sum, sum->sum_t1};
-    for (int weight = 0; weight < 2; ++weight) {
-        const double flow = speed[0] * c[weight] + speed[1] * c[weight + 1];
-        load->force[weight] = k * sums[weight] + d * flow;
-
-        /* By the coordinates, and what the speed of approach changes by where the line is. */
-        for (int of = 0; of < GMI_COORDINATES; ++of) {
-            const double *contact = &line->contact_by[of][weight];
-            by->force[of][weight] =
-                k * line->sum_by[of][weight] + d * (speed[0] * contact[0] + speed[1] * contact[1]);
-        }
-        by->force[GMI_BY_ORIGIN][weight] -= d * across * tau * c[weight];
-        by->force[GMI_BY_LENGTH][weight] += d * across * tau * c[weight];
-        by->force[GMI_BY_AXIAL][weight] += d * across * c[weight];
-
-        /* By the rates. */
-        by->force[GMI_BY_DELTA_RATE][weight] = d * c[weight];
-        by->force[GMI_BY_ALONG_RATE][weight] = d * of_along * c[weight];
-        by->force[GMI_BY_ACROSS_RATE][weight] = -d * (arm[0] * c[weight] + arm[1] * c[weight + 1]);
-    }
-
-    /* The moment over rho_p, which moves with the origin. */
-    weigh(load->force, rho_origin, advance);
-    for (int of = 0; of < GMI_LOAD_VARIABLES; ++of) {
-        weigh(by->force[of], rho_origin, advance);
-    }
-    by->force[GMI_BY_ORIGIN][GMI_BY_RHO] += load->force[GMI_WHOLE];
-
-    load->contact = c[0];
+    const double k = view->law->stiffness, d = view->law->damping;
+    const double speed[2] = {d * line->speed[0], d * line->speed[1]};
     for (int of = 0; of < GMI_COORDINATES; ++of) {
-        by->contact[of] = line->contact_by[of][0];
+        const double *sum = line->sum_by[of], *contact = line->contact_by[of];
+        double row[GMI_WEIGHTS];
+        row[GMI_WHOLE] = k * sum[0] + (speed[0] * contact[0] + speed[1] * contact[1]);
+        row[GMI_BY_T1] = k * sum[1] + (speed[0] * contact[1] + speed[1] * contact[2]);
+        weigh(row, rho_origin, advance);
+        for (int weight = 0; weight < GMI_WEIGHTS; ++weight) {
+            by[of][weight] += row[weight];
+        }
     }
-    return speed[0] * c[0] + speed[1] * c[1];
+
+    const double *c = line->contact;
+    double row[GMI_WEIGHTS] = {[GMI_WHOLE] = line->arm[0] * c[0] + line->arm[1] * c[1],
+                               [GMI_BY_T1] = line->arm[0] * c[1] + line->arm[1] * c[2]};
+    weigh(row, rho_origin, advance);
+    for (int weight = 0; weight < GMI_WEIGHTS; ++weight) {
+        arm[weight] += row[weight];
+    }
 }
 
-/* What a line or a part of one adds to the tangent of the side, and to its friction. */
-static OWN_STACK void add_tangent(const side_view *view, double rho_origin, int slides,
-                                  const gmi_line_sum *sum, gmi_side_sum *total) {
+/*
+ * The force, and what moves it beside: from integrals of the overlap, of 1 and of the arm over what touches. The speed of
+ * approach there is that of the rates less the tilt across times the arm. Returns its integral.
+ */
+static double finish_load(const side_view *view, const double sum[GMI_WEIGHTS],
+                          const double contact[GMI_WEIGHTS], const double arm[GMI_WEIGHTS],
+                          double force[GMI_WEIGHTS], double by[GMI_LOAD_VARIABLES][GMI_WEIGHTS]) {
+    const double k = view->law->stiffness, d = view->law->damping;
+    const double tau =
+        gmi_side_sign(view->side) * view->pair->face_advance / view->pair->face_width;
+    const gmi_rates *rates = &view->tangent->rates;
+    const double across = rates->across;
+    const double of_along = -tau * view->at->wheel_base_radius;
+    const double speed = rates->delta + of_along * rates->along;
+    for (int weight = 0; weight < GMI_WEIGHTS; ++weight) {
+        const double touching = d * contact[weight];
+        const double turning = d * arm[weight];
+        force[weight] = k * sum[weight] + (speed * touching - across * turning);
+
+        /* What the speed of approach changes by where the line is. */
+        by[GMI_BY_ORIGIN][weight] -= across * tau * touching;
+        by[GMI_BY_LENGTH][weight] += across * tau * touching;
+        by[GMI_BY_AXIAL][weight] += across * touching;
+
+        /* By the rates. */
+        by[GMI_BY_DELTA_RATE][weight] = touching;
+        by[GMI_BY_ALONG_RATE][weight] = of_along * touching;
+        by[GMI_BY_ACROSS_RATE][weight] = -turning;
+    }
+
+    /* The moment over rho_p moves with the origin. */
+    by[GMI_BY_ORIGIN][GMI_BY_RHO] += force[GMI_WHOLE];
+    return speed * contact[GMI_WHOLE] - across * arm[GMI_WHOLE];
+}
+
+/* Of the sums. */
+static void add_sum_derivatives(const gmi_line_tangent *line, gmi_side_sum *total) {
+    total->by_origin += line->sum_by[GMI_BY_ORIGIN][0];
+    total->by_delta += line->sum_by[GMI_BY_DELTA][0];
+}
+
+/* What a line adds to the tangent of the side. */
+static OWN_STACK void add_tangent(const side_view *view, double rho_origin, gmi_side_sum *total) {
     gmi_side_tangent *side = view->tangent;
+    add_rows(view, rho_origin, side->by.force, side->arm);
+    add_sum_derivatives(&side->line, total);
+}
+
+/* What a part of a line adds to it, and to the friction. */
+static OWN_STACK void add_sliding_tangent(const side_view *view, double rho_origin,
+                                          const gmi_line_sum *sum, gmi_side_sum *total) {
+    gmi_side_tangent *side = view->tangent;
+    const gmi_line_tangent *line = &side->line;
+    double sums[GMI_WEIGHTS] = {sum->sum, sum->sum_t1};
+    double contact[GMI_WEIGHTS] = {line->contact[0], line->contact[1]};
+    weigh(sums, rho_origin, view->lines.advance);
+    weigh(contact, rho_origin, view->lines.advance);
+
+    /* The force of the part. */
+    double arm[GMI_WEIGHTS] = {0.0, 0.0, 0.0};
     gmi_load load;
     gmi_load_by by;
-    side->flow += find_load(view, rho_origin, sum, &load, &by);
+    memset(&by, 0, sizeof by);
+    add_rows(view, rho_origin, by.force, arm);
+    side->flow += finish_load(view, sums, contact, arm, load.force, by.force);
+    load.contact = contact[GMI_WHOLE];
+    for (int of = 0; of < GMI_COORDINATES; ++of) {
+        by.contact[of] = line->contact_by[of][0];
+    }
+
     for (int weight = 0; weight < GMI_WEIGHTS; ++weight) {
         side->load.force[weight] += load.force[weight];
         for (int of = 0; of < GMI_LOAD_VARIABLES; ++of) {
             side->by.force[of][weight] += by.force[of][weight];
         }
     }
-    total->by_origin += side->line.sum_by[GMI_BY_ORIGIN][0];
-    total->by_delta += side->line.sum_by[GMI_BY_DELTA][0];
-    if (slides) {
-        gmi_rubbing_add(view->sliding, &load, &by, view->rubbing, view->rubbing_by);
-    }
+    add_sum_derivatives(line, total);
+    gmi_rubbing_add(view->sliding, &load, &by, view->rubbing, view->rubbing_by);
 }
 
 /* The simple model's pair touches in the pitch point, which follows the line of action, at mid-face. */
@@ -407,8 +463,10 @@ SPECIALIZED void add_line_in_parts(side_view *view, const gmi_line *line, double
     const gmi_side *prepared = view->prepared;
     const gmi_line_part *whole = &view->tilted_part;
     int touches = 0;
-    if (wanted & GMI_TANGENT && !prepared->is_tilted) {
-        (void)gmi_tilt_cut_line(&view->cuts, rho_origin, &view->tilted_part);
+    if (wanted & GMI_TANGENT) {
+        if (!prepared->is_tilted) {
+            (void)gmi_tilt_cut_line(&view->cuts, rho_origin, &view->tilted_part);
+        }
         move_ends(view, rho_origin);
     }
     friction_cut from = {line->from, -1}, to;
@@ -429,7 +487,7 @@ SPECIALIZED void add_line_in_parts(side_view *view, const gmi_line *line, double
         if (wanted & GMI_TANGENT) {
             add_part_end(view, 1.0, &to, sum.at_to, whole->to_by);
             add_part_end(view, -1.0, &from, sum.at_from, whole->from_by);
-            add_tangent(view, rho_origin, 1, &sum, side);
+            add_sliding_tangent(view, rho_origin, &sum, side);
         } else {
             add_friction(view, rho_origin, &sum);
         }
@@ -517,11 +575,14 @@ SPECIALIZED void add_line(side_view *view, const gmi_flank *pinion, const gmi_fl
     if (wanted & GMI_TANGENT) {
         if (!is_tilted) {
             (void)gmi_tilt_cut_line(&view->cuts, rho_origin, &view->tilted_part);
-            move_ends(view, rho_origin);
         }
-        add_end(line.tangent, 1.0, line.to, sum.at_to, view->tilted_part.to_by);
-        add_end(line.tangent, -1.0, line.from, sum.at_from, view->tilted_part.from_by);
-        add_tangent(view, rho_origin, 0, &sum, side);
+        if (sum.at_from > 0.0) {
+            add_touching_end(view, rho_origin, 1, sum.at_from);
+        }
+        if (sum.at_to > 0.0) {
+            add_touching_end(view, rho_origin, 0, sum.at_to);
+        }
+        add_tangent(view, rho_origin, side);
     }
 }
 
@@ -734,6 +795,12 @@ static OWN_STACK void follow_tangent(const gm_mesh *mesh, int side, const gm_pos
     view.law = &mesh->law;
     follow_lines(mesh->pair, &mesh->engagement, prepared, side, position, GMI_TANGENT | GMI_MOMENTS,
                  prepared->is_tilted, 0, &view, total);
+
+    /* All lines are known: their force. */
+    const double sum[GMI_WEIGHTS] = {total->sum, total->sum_t1, total->sum_rho};
+    const double contact[GMI_WEIGHTS] = {total->contact, total->contact_t1, total->contact_rho};
+    tangent->flow =
+        finish_load(&view, sum, contact, tangent->arm, tangent->load.force, tangent->by.force);
 }
 
 static OWN_STACK void follow_sliding_tangent(const gm_mesh *mesh, int side,

@@ -17,88 +17,54 @@
 #include <math.h>
 #include <string.h>
 
-/* Of one side: derivatives of all that its force depends on, by the seven and by their rates. */
-typedef struct side_jacobian {
-    double by[GMI_VARIABLES][GM_COORDINATES];
-    double speed_by_rate[GMI_VARIABLES - GMI_COORDINATES][GM_COORDINATES]; /* of what are speeds */
-} side_jacobian;
+/* How all that the force of a side depends on follows the seven and their rates. */
+typedef struct side_motion {
+    double sign, tau, wheel_sign;
+    gmi_plane plane;
+    double pinion_arm, wheel_arm; /* d delta / d angle of both gears (m) */
+    double across[GMI_VARIABLES]; /* by a movement of the wheel's axis along t */
+    double sideways_by_axial;     /* (1/s) */
+    double turning[2],
+        sideways[2]; /* of tilts: their share in the sideways speeds, at t1 = 0 and per t1 (1, m) */
+} side_motion;
 
-/* The row of a speed there. */
-#define SPEED(name) (GMI_BY_##name - GMI_COORDINATES)
-
-/* The coordinates of the side. */
-static void add_coordinates(const gm_mesh *mesh, int side, const gmi_plane *plane, double tau,
-                            double by[GMI_VARIABLES][GM_COORDINATES]) {
+/* e turns by 1 / T as the axis moves across it, and with it what tilts and rates of the pose are along it and across. */
+static OWN_STACK void find_side_motion(const gm_mesh *mesh, int side, const gmi_rates *rates,
+                                       const gm_pose *pose_rate, side_motion *motion) {
     const gm_pair *pair = mesh->pair;
     const gmi_engagement *at = &mesh->engagement;
     const double sign = gmi_side_sign(side);
-    const double *e = plane->e, *t = plane->t;
     const double r_bp = pair->pinion.base_radius;
-    const double length = at->line_of_action;
-    by[GMI_BY_ORIGIN][GM_PINION_ANGLE] = sign * r_bp;
-    by[GMI_BY_DELTA][GM_PINION_ANGLE] = sign * r_bp;
-    by[GMI_BY_DELTA][GM_WHEEL_ANGLE] = -sign * pair->wheel.base_radius;
-    by[GMI_BY_DELTA][GM_AXIAL_SHIFT] = tau;
-    by[GMI_BY_AXIAL][GM_AXIAL_SHIFT] = 1.0;
-    for (int k = 0; k < 2; ++k) {
-        const int moved = GM_CENTER_DISTANCE_CHANGE + k, tilted = GM_SKEW + k;
-        by[GMI_BY_ORIGIN][moved] = r_bp / length * t[k];
-        by[GMI_BY_DELTA][moved] = -e[k];
-        by[GMI_BY_LENGTH][moved] = e[k] + (r_bp + at->wheel_base_radius) / length * t[k];
-        by[GMI_BY_ALONG][moved] = at->across[side] / length * t[k];
-        by[GMI_BY_ACROSS][moved] = -at->along[side] / length * t[k];
-        if (mesh->model != GM_MODEL_SIMPLE) { /* which knows no tilts */
-            by[GMI_BY_ALONG][tilted] = -sign * e[k];
-            by[GMI_BY_ACROSS][tilted] = -sign * t[k];
-        }
-    }
-}
+    const double turn = 1.0 / at->line_of_action;
+    motion->sign = sign;
+    motion->wheel_sign = pair->wheel.sign;
+    motion->tau = sign * pair->face_advance / pair->face_width;
+    motion->plane = gmi_plane_of(at, sign);
+    motion->pinion_arm = sign * r_bp;
+    motion->wheel_arm = -sign * pair->wheel.base_radius;
 
-/* Speeds: e turns by 1 / T as the axis moves across it, and with it what the rates of the pose are along it and across. */
-static void add_speeds(const gm_mesh *mesh, int side, const gmi_rates *rates,
-                       const gm_pose *pose_rate, const gmi_plane *plane, side_jacobian *jacobian) {
-    const gm_pair *pair = mesh->pair;
-    const gmi_engagement *at = &mesh->engagement;
-    const double sign = gmi_side_sign(side);
-    const double *t = plane->t;
+    /* The coordinates of the side, and the speeds. */
+    const double *t = motion->plane.t;
     const double moving = t[0] * pose_rate->center_distance_change + t[1] * pose_rate->offset;
-    double(*by)[GM_COORDINATES] = jacobian->by;
-    double(*by_rate)[GM_COORDINATES] = jacobian->speed_by_rate;
-    for (int k = 0; k < 2; ++k) {
-        const int moved = GM_CENTER_DISTANCE_CHANGE + k;
-        const double turn = t[k] / at->line_of_action;
-        by[GMI_BY_DELTA_RATE][moved] = -turn * moving;
-        by[GMI_BY_ALONG_RATE][moved] = turn * rates->across;
-        by[GMI_BY_ACROSS_RATE][moved] = -turn * rates->along;
-        by[GMI_BY_SIDEWAYS][moved] = turn * rates->forward[0];
-        by[GMI_BY_SIDEWAYS_T1][moved] = turn * rates->forward[1];
-        by_rate[SPEED(SIDEWAYS)][moved] = -sign * t[k];
-    }
-    by[GMI_BY_SIDEWAYS][GM_AXIAL_SHIFT] = -rates->sideways[1] / pair->face_width;
+    double *across = motion->across;
+    across[GMI_BY_ORIGIN] = r_bp * turn;
+    across[GMI_BY_DELTA] = across[GMI_BY_AXIAL] = 0.0;
+    across[GMI_BY_LENGTH] = (r_bp + at->wheel_base_radius) * turn;
+    across[GMI_BY_ALONG] = at->across[side] * turn;
+    across[GMI_BY_ACROSS] = -at->along[side] * turn;
+    across[GMI_BY_DELTA_RATE] = -moving * turn;
+    across[GMI_BY_ALONG_RATE] = rates->across * turn;
+    across[GMI_BY_ACROSS_RATE] = -rates->along * turn;
+    across[GMI_BY_PINION_SPEED] = across[GMI_BY_WHEEL_SPEED] = 0.0;
+    across[GMI_BY_SIDEWAYS] = rates->forward[0] * turn;
+    across[GMI_BY_SIDEWAYS_T1] = rates->forward[1] * turn;
 
-    /* The rates move as their coordinates do; tilts turn what is away from the middle of the wheel's face sideways too. */
-    for (int k = 0; k < GM_COORDINATES; ++k) {
-        by_rate[SPEED(DELTA_RATE)][k] = by[GMI_BY_DELTA][k];
-        by_rate[SPEED(ALONG_RATE)][k] = k < GM_SKEW ? 0.0 : by[GMI_BY_ALONG][k];
-        by_rate[SPEED(ACROSS_RATE)][k] = k < GM_SKEW ? 0.0 : by[GMI_BY_ACROSS][k];
-    }
-    const double turning[2] = {sign * t[1], -sign * t[0]};
-    for (int k = 0; k < 2; ++k) {
-        by_rate[SPEED(SIDEWAYS)][GM_SKEW + k] = turning[k] * (pair->face_start - at->face_center);
-        by_rate[SPEED(SIDEWAYS_T1)][GM_SKEW + k] = turning[k] * pair->face_width;
-    }
-    by_rate[SPEED(PINION_SPEED)][GM_PINION_ANGLE] = 1.0;
-    by_rate[SPEED(WHEEL_SPEED)][GM_WHEEL_ANGLE] = pair->wheel.sign;
-}
-
-static OWN_STACK void find_jacobian(const gm_mesh *mesh, int side, const gmi_rates *rates,
-                                    const gm_pose *pose_rate, side_jacobian *jacobian) {
-    const double sign = gmi_side_sign(side);
-    const double tau = sign * mesh->pair->face_advance / mesh->pair->face_width;
-    const gmi_plane plane = gmi_plane_of(&mesh->engagement, sign);
-    memset(jacobian, 0, sizeof *jacobian);
-    add_coordinates(mesh, side, &plane, tau, jacobian->by);
-    add_speeds(mesh, side, rates, pose_rate, &plane, jacobian);
+    /* Tilts turn what is away from the middle of the wheel's face sideways too. */
+    motion->sideways_by_axial = -rates->sideways[1] / pair->face_width;
+    motion->turning[0] = sign * t[1];
+    motion->turning[1] = -sign * t[0];
+    motion->sideways[0] = pair->face_start - at->face_center;
+    motion->sideways[1] = pair->face_width;
 }
 
 /* Derivatives of a force and of its moments: by the seven and by their rates. */
@@ -107,71 +73,94 @@ typedef struct side_gradient {
     double by_rate[GM_COORDINATES][GMI_WEIGHTS];
 } side_gradient;
 
-/* count: of the variables that the force depends on. */
-static OWN_STACK void find_gradient(const side_jacobian *jacobian, int count,
-                                    const double force_by[][GMI_WEIGHTS], side_gradient *gradient) {
-    for (int k = 0; k < GM_COORDINATES; ++k) {
-        for (int weight = 0; weight < GMI_WEIGHTS; ++weight) {
-            double by = 0.0, rate = 0.0;
-            for (int of = 0; of < count; ++of) {
-                by += jacobian->by[of][k] * force_by[of][weight];
-            }
-            for (int of = GMI_COORDINATES; of < count; ++of) {
-                rate += jacobian->speed_by_rate[of - GMI_COORDINATES][k] * force_by[of][weight];
-            }
-            gradient->by[k][weight] = by;
-            gradient->by_rate[k][weight] = rate;
+/* Of the normal force, by the coordinates of the side and by its speeds of approach; is_rubbing: and by those of sliding. */
+SPECIALIZED void find_gradient(const side_motion *motion, const double by[][GMI_WEIGHTS],
+                               int is_rubbing, side_gradient *gradient) {
+    const int count = is_rubbing ? GMI_VARIABLES : GMI_LOAD_VARIABLES;
+    const double *e = motion->plane.e, *t = motion->plane.t;
+    const double sign = motion->sign, tau = motion->tau;
+    for (int weight = 0; weight < GMI_WEIGHTS; ++weight) {
+        double f[GMI_VARIABLES], across = 0.0;
+        for (int of = 0; of < count; ++of) {
+            f[of] = by[of][weight];
+            across += motion->across[of] * f[of];
+        }
+
+        /* Angles, and the wheel along its axis. */
+        double(*to)[GMI_WEIGHTS] = gradient->by, (*to_rate)[GMI_WEIGHTS] = gradient->by_rate;
+        to[GM_PINION_ANGLE][weight] = motion->pinion_arm * (f[GMI_BY_ORIGIN] + f[GMI_BY_DELTA]);
+        to[GM_WHEEL_ANGLE][weight] = motion->wheel_arm * f[GMI_BY_DELTA];
+        to[GM_AXIAL_SHIFT][weight] = tau * f[GMI_BY_DELTA] + f[GMI_BY_AXIAL];
+        to_rate[GM_PINION_ANGLE][weight] = motion->pinion_arm * f[GMI_BY_DELTA_RATE];
+        to_rate[GM_WHEEL_ANGLE][weight] = motion->wheel_arm * f[GMI_BY_DELTA_RATE];
+        to_rate[GM_AXIAL_SHIFT][weight] = tau * f[GMI_BY_DELTA_RATE];
+
+        /* The wheel's axis along the line of action and across it, and tilts. */
+        const double against = f[GMI_BY_DELTA] - f[GMI_BY_LENGTH];
+        for (int k = 0; k < 2; ++k) {
+            const int moved = GM_CENTER_DISTANCE_CHANGE + k, tilted = GM_SKEW + k;
+            to[moved][weight] = across * t[k] - against * e[k];
+            to[tilted][weight] = -sign * (e[k] * f[GMI_BY_ALONG] + t[k] * f[GMI_BY_ACROSS]);
+            to_rate[moved][weight] = -e[k] * f[GMI_BY_DELTA_RATE];
+            to_rate[tilted][weight] =
+                -sign * (e[k] * f[GMI_BY_ALONG_RATE] + t[k] * f[GMI_BY_ACROSS_RATE]);
+        }
+        if (!is_rubbing) {
+            continue;
+        }
+
+        /* And what slides. */
+        to[GM_AXIAL_SHIFT][weight] += motion->sideways_by_axial * f[GMI_BY_SIDEWAYS];
+        to_rate[GM_PINION_ANGLE][weight] += f[GMI_BY_PINION_SPEED];
+        to_rate[GM_WHEEL_ANGLE][weight] += motion->wheel_sign * f[GMI_BY_WHEEL_SPEED];
+        const double tilting =
+            motion->sideways[0] * f[GMI_BY_SIDEWAYS] + motion->sideways[1] * f[GMI_BY_SIDEWAYS_T1];
+        for (int k = 0; k < 2; ++k) {
+            to_rate[GM_CENTER_DISTANCE_CHANGE + k][weight] -= sign * t[k] * f[GMI_BY_SIDEWAYS];
+            to_rate[GM_SKEW + k][weight] += motion->turning[k] * tilting;
         }
     }
 }
 
-static gmi_side_force force_of(const double weighted[GMI_WEIGHTS]) {
-    const gmi_side_force force = {.force = weighted[GMI_WHOLE],
-                                  .force_t1 = weighted[GMI_BY_T1],
-                                  .force_rho = weighted[GMI_BY_RHO]};
-    return force;
-}
-
-/* alpha_wt by the distance of the axes. */
-static double angle_by_distance(const gmi_engagement *at) {
-    return at->cos_pressure_angle / (at->sin_pressure_angle * at->center_distance);
-}
-
-/* Adds one side to the derivatives of the wrench, all but that of the turn, in the frame of the posed axes. */
-static void add_wrenches(const gm_pair *pair, const gmi_engagement *at, int side,
-                         const side_gradient *gradient, const gmi_side_force *force,
+/* Adds a force or the friction of one side to the derivatives of the wrench, in the frame of the drawing. */
+static void add_wrenches(const gmi_wrench_map *map, const gmi_wrench_map map_by[2],
+                         const side_gradient *gradient, const double force[GMI_WEIGHTS],
                          gm_tangent *tangent) {
     for (int k = 0; k < GM_COORDINATES; ++k) {
-        const gmi_side_force by = force_of(gradient->by[k]);
-        const gmi_side_force by_rate = force_of(gradient->by_rate[k]);
-        gmi_wrench_add_side(pair, at, &by, side, &tangent->wrench_by[k]);
-        gmi_wrench_add_side(pair, at, &by_rate, side, &tangent->wrench_by_rate[k]);
-        const int axis = k - GM_CENTER_DISTANCE_CHANGE;
-        if (axis == 0 ||
-            axis == 1) { /* the distance of the axes changes along the x axis of the posed ones */
-            const double by_distance = at->axis[axis];
-            gmi_wrench_add_by_direction(pair, at, force, side, angle_by_distance(at) * by_distance,
-                                        by_distance, &tangent->wrench_by[k]);
-        }
+        gmi_wrench_map_add(map, gradient->by[k], &tangent->wrench_by[k]);
+        gmi_wrench_map_add(map, gradient->by_rate[k], &tangent->wrench_by_rate[k]);
+    }
+
+    /* As the wheel's axis moves, the line of action turns, and the axis about which moments are taken goes with it. */
+    for (int k = 0; k < 2; ++k) {
+        gmi_wrench_map_add(&map_by[k], force, &tangent->wrench_by[GM_CENTER_DISTANCE_CHANGE + k]);
     }
 }
 
 /* And its friction. */
 static OWN_STACK void add_rubbing(const gm_pair *pair, const gmi_engagement *at, int side,
-                                  const side_jacobian *jacobian, const gmi_rubbing *rubbing,
+                                  const side_motion *motion, const gmi_rubbing *rubbing,
                                   const gmi_rubbing_by *rubbing_by, gm_tangent *tangent) {
-    static const double none[GMI_WEIGHTS] = {0.0, 0.0, 0.0};
+    gmi_wrench_map map, map_by[2];
     side_gradient gradient;
-    find_gradient(jacobian, GMI_VARIABLES, rubbing_by->force, &gradient);
+    gmi_wrench_map_friction(pair, at, side, &map, map_by);
+    find_gradient(motion, rubbing_by->force, 1, &gradient);
+    add_wrenches(&map, map_by, &gradient, rubbing->force, tangent);
+}
+
+/* The normal force of a side: it, and its wrench. */
+static OWN_STACK void add_force(const gm_pair *pair, const gmi_engagement *at, int side,
+                                const side_motion *motion, const gmi_side_tangent *followed,
+                                gm_tangent *tangent) {
+    gmi_wrench_map map, map_by[2];
+    side_gradient gradient;
+    gmi_wrench_map_force(pair, at, side, &map, map_by);
+    find_gradient(motion, followed->by.force, 0, &gradient);
     for (int k = 0; k < GM_COORDINATES; ++k) {
-        const int axis = k - GM_CENTER_DISTANCE_CHANGE;
-        const double by_distance = axis == 0 || axis == 1 ? at->axis[axis] : 0.0;
-        gmi_wrench_add_friction_by(pair, at, gradient.by[k], rubbing->force, side,
-                                   angle_by_distance(at) * by_distance,
-                                   jacobian->by[GMI_BY_LENGTH][k], &tangent->wrench_by[k]);
-        gmi_wrench_add_friction_by(pair, at, gradient.by_rate[k], none, side, 0.0, 0.0,
-                                   &tangent->wrench_by_rate[k]);
+        tangent->force_by[k] += motion->sign * gradient.by[k][GMI_WHOLE];
+        tangent->force_by_rate[k] += motion->sign * gradient.by_rate[k][GMI_WHOLE];
     }
+    add_wrenches(&map, map_by, &gradient, followed->load.force, tangent);
 }
 
 static void set_tangent(gm_tangent *tangent, double value) {
@@ -182,10 +171,9 @@ static void set_tangent(gm_tangent *tangent, double value) {
     }
 }
 
-/* All that is known of a side: its sums, force and friction, and how they move. */
+/* All that is known of a side: its force and friction, and how they move. */
 typedef struct followed_side {
     gmi_side_tangent tangent;
-    gmi_side_force force;
     gmi_rubbing rubbing;
     gmi_rubbing_by rubbing_by;
 } followed_side;
@@ -195,18 +183,11 @@ static OWN_STACK void add_pressed(const gm_mesh *moved, const gm_pose *pose_rate
                                   const followed_side *followed, gm_tangent *tangent) {
     const gm_pair *pair = moved->pair;
     const gmi_engagement *at = &moved->engagement;
-    const double sign = gmi_side_sign(side);
-    side_jacobian jacobian;
-    side_gradient gradient;
-    find_jacobian(moved, side, &followed->tangent.rates, pose_rate, &jacobian);
-    find_gradient(&jacobian, GMI_LOAD_VARIABLES, followed->tangent.by.force, &gradient);
-    for (int k = 0; k < GM_COORDINATES; ++k) {
-        tangent->force_by[k] += sign * gradient.by[k][GMI_WHOLE];
-        tangent->force_by_rate[k] += sign * gradient.by_rate[k][GMI_WHOLE];
-    }
-    add_wrenches(pair, at, side, &gradient, &followed->force, tangent);
+    side_motion motion;
+    find_side_motion(moved, side, &followed->tangent.rates, pose_rate, &motion);
+    add_force(pair, at, side, &motion, &followed->tangent, tangent);
     if (moved->friction.is_on) {
-        add_rubbing(pair, at, side, &jacobian, &followed->rubbing, &followed->rubbing_by, tangent);
+        add_rubbing(pair, at, side, &motion, &followed->rubbing, &followed->rubbing_by, tangent);
     }
 }
 
@@ -222,28 +203,20 @@ static OWN_STACK void follow(const gm_mesh *moved, const gm_position *position,
     }
     gmi_side_sum_tangent(moved, side, position, moved->friction.is_on ? &sliding : NULL, &sum,
                          &followed->tangent, &followed->rubbing, &followed->rubbing_by);
-    gmi_law_force_of_tangent(&followed->tangent, &followed->force);
 }
 
 /* Adds a side, if it presses. */
 static OWN_STACK void add_side(const gm_mesh *moved, const gm_position *position,
                                const gm_pose *pose_rate, const gmi_rates *rates, int side,
-                               gm_tangent *tangent, gm_wrench *wrench) {
-    const gm_pair *pair = moved->pair;
+                               gm_tangent *tangent) {
     const gmi_engagement *at = &moved->engagement;
     if (gmi_side_is_clear(at, &moved->side[side], side, position->offset)) {
         return;
     }
     followed_side followed;
     follow(moved, position, rates, side, &followed);
-    if (followed.force.force > 0.0) {
+    if (followed.tangent.load.force[GMI_WHOLE] > 0.0) {
         add_pressed(moved, pose_rate, side, &followed, tangent);
-        gmi_wrench_add_side(pair, at, &followed.force, side, wrench);
-        if (moved->friction.is_on) {
-            gmi_friction_sum friction;
-            gmi_friction_sum_of(pair, side, &followed.rubbing, NULL, &friction);
-            gmi_wrench_add_friction(pair, at, &friction, side, wrench);
-        }
     }
 }
 
@@ -266,22 +239,9 @@ static int find_tangent(const gm_mesh *mesh, const gm_motion *motion, gm_tangent
         return status;
     }
 
-    gm_wrench wrench;
-    gmi_wrench_set(&wrench, 0.0);
     set_tangent(tangent, 0.0);
     for (int side = GM_DRIVE; side <= GM_COAST; ++side) {
-        add_side(&moved, &position, &motion->pose_rate, &rates[side], side, tangent, &wrench);
-    }
-
-    /* From the frame of the posed axes to that of the drawing, with the direction of the axes by y. */
-    const double *axis = moved.engagement.axis;
-    const double by_y = 1.0 / moved.engagement.center_distance;
-    gmi_wrench_add_by_turn(&wrench, -axis[1] * by_y,
-                           &tangent->wrench_by[GM_CENTER_DISTANCE_CHANGE]);
-    gmi_wrench_add_by_turn(&wrench, axis[0] * by_y, &tangent->wrench_by[GM_OFFSET]);
-    for (int k = 0; k < GM_COORDINATES; ++k) {
-        gmi_wrench_turn(&tangent->wrench_by[k], axis);
-        gmi_wrench_turn(&tangent->wrench_by_rate[k], axis);
+        add_side(&moved, &position, &motion->pose_rate, &rates[side], side, tangent);
     }
     return GM_OK;
 }

@@ -241,6 +241,18 @@ OWN_STACK void gmi_tilt_move_ends(const gm_pair *pair, const gmi_engagement *at,
     set_end(pair, at, &line, delta, part->to, part->to_place, 0, part->to_by);
 }
 
+OWN_STACK int gmi_tilt_move_end(const gm_pair *pair, const gmi_engagement *at, int side,
+                                double rho_origin, double delta, const gmi_line_part *part,
+                                int is_beginning, double by[GMI_COORDINATES]) {
+    const int place = is_beginning ? part->from_place : part->to_place;
+    if (place == FACE_PINION) {
+        return 0;
+    }
+    const tilted line = tilted_of(pair, at, side, rho_origin);
+    set_end(pair, at, &line, delta, is_beginning ? part->from : part->to, place, is_beginning, by);
+    return 1;
+}
+
 void gmi_tilt_beyond(const gm_pair *pair, const gmi_engagement *at, int side, double rho_origin,
                      double delta, int role, gmi_beyond *beyond) {
     const tilted line = tilted_of(pair, at, side, rho_origin);
@@ -304,26 +316,28 @@ void gmi_tilt_tangent(const gm_pair *pair, const gmi_engagement *at, int side, d
     /* Of the overlap: by u, which the origin raises by tau, the length and the wheel's face lower by tau and by 1. */
     const double by_u[2] = {linear + 2.0 * square * u, 2.0 * square * u1};
     const double squares[3] = {u * u, 2.0 * u * u1, u1 * u1};
-    const double all[GMI_COORDINATES][3] = {
-        [GMI_BY_ORIGIN] = {tau * by_u[0] - 0.5 * g * g, tau * by_u[1], 0.0},
-        [GMI_BY_DELTA] = {gain, 0.0, 0.0},
-        [GMI_BY_LENGTH] = {0.5 * g * g - tau * by_u[0] - square * squares[0] / line.length,
-                           -tau * by_u[1] - square * squares[1] / line.length,
-                           -square * squares[2] / line.length},
-        [GMI_BY_ALONG] = {-gain * tau * r_bw - 0.5 * g * r_bw -
-                              a * (tau * u + squares[0] / line.length),
-                          -a * (tau * u1 + squares[1] / line.length),
-                          -a * squares[2] / line.length},
-        [GMI_BY_ACROSS] = {tau * delta - tau * (g * u + tau * a * r_bw) - gain * u +
-                               g * second.at_zero - 0.5 * a * r_bw,
-                           -tau * g * u1 - gain * u1 + g * second.per_t1, 0.0},
-        [GMI_BY_AXIAL] = {-by_u[0] - 0.5 * g * g * tau, -by_u[1], 0.0},
-    };
-    for (int k = 0; k < GMI_COORDINATES; ++k) {
-        for (int power = 0; power < 3; ++power) {
-            tangent->by[k][power] = all[k][power];
-        }
-    }
+    double(*by)[3] = tangent->by;
+    by[GMI_BY_ORIGIN][0] = tau * by_u[0] - 0.5 * g * g;
+    by[GMI_BY_ORIGIN][1] = tau * by_u[1];
+    by[GMI_BY_DELTA][0] = gain;
+
+    /* By the length of the line of action. */
+    const double per_length = 1.0 / line.length;
+    const double curved = square * per_length;
+    by[GMI_BY_LENGTH][0] = 0.5 * g * g - tau * by_u[0] - curved * squares[0];
+    by[GMI_BY_LENGTH][1] = -tau * by_u[1] - curved * squares[1];
+    by[GMI_BY_LENGTH][2] = -curved * squares[2];
+
+    /* By the tilts, and by the wheel's face. */
+    const double turned = a * per_length;
+    by[GMI_BY_ALONG][0] = -gain * tau * r_bw - 0.5 * g * r_bw - a * tau * u - turned * squares[0];
+    by[GMI_BY_ALONG][1] = -a * tau * u1 - turned * squares[1];
+    by[GMI_BY_ALONG][2] = -turned * squares[2];
+    by[GMI_BY_ACROSS][0] = tau * delta - tau * (g * u + tau * a * r_bw) - gain * u +
+                           g * second.at_zero - 0.5 * a * r_bw;
+    by[GMI_BY_ACROSS][1] = -tau * g * u1 - gain * u1 + g * second.per_t1;
+    by[GMI_BY_AXIAL][0] = -by_u[0] - 0.5 * g * g * tau;
+    by[GMI_BY_AXIAL][1] = -by_u[1];
 
     tangent->arm[0] = u;
     tangent->arm[1] = u1;

@@ -16,15 +16,15 @@
  * wheel acts force * (sin(alpha), sign cos(alpha), -sign tan(beta_b)) at
  *     (r_bp cos(alpha) + rho sin(alpha), sign (rho cos(alpha) - r_bp sin(alpha)), z_0 + b t1).
  */
-SPECIALIZED void add_side(const gm_pair *pair, const gmi_engagement *at, const gmi_side_force *side,
-                          int side_of_teeth, double sin_alpha, double cos_alpha, int is_derivative,
-                          gm_wrench *wrench) {
+void gmi_wrench_add_side(const gm_pair *pair, const gmi_engagement *at, const gmi_side_force *side,
+                         int side_of_teeth, gm_wrench *wrench) {
+    const double sin_alpha = at->sin_pressure_angle, cos_alpha = at->cos_pressure_angle;
     const double sign = gmi_side_sign(side_of_teeth);
     const double force = side->force;
     const double f_x = force * sin_alpha;
     const double f_y = force * sign * cos_alpha;
     const double axial_share = -sign * pair->face_advance / pair->face_width;
-    const double f_z = is_derivative ? 0.0 : force * axial_share;
+    const double f_z = force * axial_share;
 
     /* Moments of position times force, about the pinion axis at z = 0. */
     const double r_b = pair->pinion.base_radius;
@@ -33,14 +33,13 @@ SPECIALIZED void add_side(const gm_pair *pair, const gmi_engagement *at, const g
     const double z_force = pair->face_start * force + pair->face_width * side->force_t1;
     const double m_x = y_force * axial_share - z_force * sign * cos_alpha;
     const double m_y = z_force * sin_alpha - x_force * axial_share;
-    const double m_z = is_derivative ? 0.0 : force * sign * r_b;
+    const double m_z = force * sign * r_b;
 
     /* About the wheel axis: less d e_x cross force. */
     const double d = at->center_distance;
     const double on_wheel_force[3] = {f_x, f_y, f_z};
     const double about_pinion[3] = {m_x, m_y, m_z};
-    const double about_wheel[3] = {m_x, m_y + d * f_z,
-                                   is_derivative ? 0.0 : -force * sign * at->wheel_base_radius};
+    const double about_wheel[3] = {m_x, m_y + d * f_z, -force * sign * at->wheel_base_radius};
 
     /* What acts on the wheel acts on the pinion the other way. */
     for (int k = 0; k < 3; ++k) {
@@ -51,31 +50,60 @@ SPECIALIZED void add_side(const gm_pair *pair, const gmi_engagement *at, const g
     }
 }
 
-void gmi_wrench_add_side(const gm_pair *pair, const gmi_engagement *at, const gmi_side_force *side,
-                         int side_of_teeth, gm_wrench *wrench) {
-    add_side(pair, at, side, side_of_teeth, at->sin_pressure_angle, at->cos_pressure_angle, 0,
-             wrench);
+/*
+ * The same in the frame of the drawing, as a map: a force along e, its axial share, and its arms
+ *     rho e + r_bp t + z k     from the pinion's axis.
+ * As the wheel's axis moves by dO, e turns by dO.t / T towards t and t away from e, and the axis of the wheel's moments is
+ * dO further: that is the map of those, without what keeps its direction.
+ */
+static gmi_wrench_map map_of_force(const gm_pair *pair, const double e[2], const double t[2],
+                                   const double to_wheel[2], double axial_share) {
+    const double r_b = pair->pinion.base_radius;
+    const double z = pair->face_start, width = pair->face_width;
+    const double about[2] = {r_b * t[1] * axial_share - z * e[1],
+                             z * e[0] - r_b * t[0] * axial_share};
+    const gmi_wrench_map map = {
+        .force = {e[0], e[1], 0.0},
+        .by_t1 = {-width * e[1], width * e[0]},
+        .by_rho = {axial_share * e[1], -axial_share * e[0], 0.0},
+        .pinion = {about[0], about[1], 0.0},
+        .wheel = {about[0] - to_wheel[1] * axial_share, about[1] + to_wheel[0] * axial_share, 0.0}};
+    return map;
 }
 
-void gmi_wrench_add_by_direction(const gm_pair *pair, const gmi_engagement *at,
-                                 const gmi_side_force *side, int side_of_teeth, double angle_by,
-                                 double distance_by, gm_wrench *wrench) {
-    add_side(pair, at, side, side_of_teeth, angle_by * at->cos_pressure_angle,
-             -angle_by * at->sin_pressure_angle, 1, wrench);
+void gmi_wrench_map_force(const gm_pair *pair, const gmi_engagement *at, int side,
+                          gmi_wrench_map *map, gmi_wrench_map by[2]) {
+    const double sign = gmi_side_sign(side);
+    const double axial_share = -sign * pair->face_advance / pair->face_width;
+    const gmi_plane plane = gmi_plane_of(at, sign);
+    const double *e = plane.e, *t = plane.t;
+    const double d = at->center_distance;
+    const double to_wheel[2] = {d * at->axis[0], d * at->axis[1]};
+    *map = map_of_force(pair, e, t, to_wheel, axial_share);
+    map->force[2] = axial_share;
+    map->pinion[2] = sign * pair->pinion.base_radius;
+    map->wheel[2] = -sign * at->wheel_base_radius;
 
-    /* The wheel's axis moves along x under the axial force. */
-    const double axial =
-        -gmi_side_sign(side_of_teeth) * pair->face_advance / pair->face_width * side->force;
-    wrench->wheel_moment[1] += distance_by * axial;
+    for (int k = 0; k < 2; ++k) {
+        const double turn = t[k] / at->line_of_action;
+        const double e_by[2] = {turn * t[0], turn * t[1]}, t_by[2] = {-turn * e[0], -turn * e[1]};
+        const double moved[2] = {k == 0, k == 1};
+        by[k] = map_of_force(pair, e_by, t_by, moved, axial_share);
+    }
 }
 
-void gmi_wrench_add_by_turn(const gm_wrench *wrench, double turn_by, gm_wrench *by) {
-    const double *of[4] = {wrench->pinion_force, wrench->pinion_moment, wrench->wheel_force,
-                           wrench->wheel_moment};
-    double *to[4] = {by->pinion_force, by->pinion_moment, by->wheel_force, by->wheel_moment};
-    for (int k = 0; k < 4; ++k) {
-        to[k][0] -= turn_by * of[k][1];
-        to[k][1] += turn_by * of[k][0];
+void gmi_wrench_map_add(const gmi_wrench_map *map, const double force[GMI_WEIGHTS],
+                        gm_wrench *wrench) {
+    const double whole = force[GMI_WHOLE], by_t1 = force[GMI_BY_T1], by_rho = force[GMI_BY_RHO];
+    const double moved[3] = {map->by_t1[0] * by_t1 + map->by_rho[0] * by_rho,
+                             map->by_t1[1] * by_t1 + map->by_rho[1] * by_rho,
+                             map->by_rho[2] * by_rho};
+    for (int k = 0; k < 3; ++k) {
+        const double on_wheel = map->force[k] * whole;
+        wrench->wheel_force[k] += on_wheel;
+        wrench->wheel_moment[k] += map->wheel[k] * whole + moved[k];
+        wrench->pinion_force[k] -= on_wheel;
+        wrench->pinion_moment[k] -= map->pinion[k] * whole + moved[k];
     }
 }
 
@@ -162,16 +190,32 @@ void gmi_wrench_add_friction(const gm_pair *pair, const gmi_engagement *at,
     add_friction_as_it_acts(pair, at, weighted, side_of_teeth, wrench);
 }
 
-void gmi_wrench_add_friction_by(const gm_pair *pair, const gmi_engagement *at,
-                                const double friction_by[GMI_WEIGHTS],
-                                const double friction[GMI_WEIGHTS], int side_of_teeth,
-                                double angle_by, double length_by, gm_wrench *wrench) {
-    add_friction_as_it_acts(pair, at, friction_by, side_of_teeth, wrench);
+/* As a map, and how it turns as the wheel's axis moves: the arm about that axis grows with T. */
+static gmi_wrench_map map_of_friction(const gm_pair *pair, const double across[2], double length) {
+    const double z = pair->face_start, width = pair->face_width;
+    const gmi_wrench_map map = {.force = {across[0], across[1], 0.0},
+                                .by_t1 = {-width * across[1], width * across[0]},
+                                .by_rho = {0.0, 0.0, 0.0},
+                                .pinion = {-z * across[1], z * across[0], 0.0},
+                                .wheel = {-z * across[1], z * across[0], -length}};
+    return map;
+}
 
-    /* Across turns with alpha_wt, and the arm about the wheel's axis grows with T. */
-    const double across_by[2] = {gmi_side_sign(side_of_teeth) * angle_by * at->sin_pressure_angle,
-                                 angle_by * at->cos_pressure_angle};
-    add_friction(pair, friction, across_by, 0.0, -length_by * friction[GMI_WHOLE], wrench);
+void gmi_wrench_map_friction(const gm_pair *pair, const gmi_engagement *at, int side,
+                             gmi_wrench_map *map, gmi_wrench_map by[2]) {
+    const double sign = gmi_side_sign(side);
+    const gmi_plane plane = gmi_plane_of(at, sign);
+    const double *e = plane.e, *t = plane.t;
+    const double across[2] = {-sign * t[0], -sign * t[1]};
+    *map = map_of_friction(pair, across, at->line_of_action);
+    map->by_rho[2] = 1.0;
+
+    const double base_sum = pair->pinion.base_radius + at->wheel_base_radius;
+    for (int k = 0; k < 2; ++k) {
+        const double turn = t[k] / at->line_of_action;
+        const double across_by[2] = {sign * turn * e[0], sign * turn * e[1]};
+        by[k] = map_of_friction(pair, across_by, e[k] + base_sum * turn);
+    }
 }
 
 /*
