@@ -186,6 +186,38 @@ static void bending_is_that_of_thin_slices(void) {
     }
 }
 
+/*
+ * A load leans by rho / r_b - psi: near the base circle, where gears close to undercut have their flanks too, the other way.
+ * The compliance depends on the square of its tangent alone, so loads that lean alike have the same, with opposite slopes.
+ */
+static void loads_that_lean_either_way_are_alike(void) {
+    static const double teeth[] = {18.0, 20.0, 24.0}, shift[] = {0.0, 0.0, 0.16};
+    static const double angle_deg[] = {20.0, 20.0, 16.0};
+    for (int g = 0; g < 3; ++g) {
+        const gmi_tooth_params params = params_of(teeth[g], 3.0, angle_deg[g], shift[g]);
+        gmi_tooth tooth;
+        GM_ASSERT_INT(gmi_tooth_init(&tooth, &params), GMI_TOOTH_FINE);
+        const double straight = tooth.base_radius * tooth.base_half_thickness;
+        int checked = 0;
+        for (int k = 1; k <= 20; ++k) {
+            const double way = 0.05 * k * straight;
+            if (straight - way < tooth.fillet_roll_length) {
+                break;
+            }
+            gmi_tooth_load up, down;
+            gm_test_context("%g teeth, %d", teeth[g], k);
+            GM_ASSERT_INT(gmi_tooth_load_at(&tooth, straight + way, &up), GMI_TOOTH_FINE);
+            GM_ASSERT_INT(gmi_tooth_load_at(&tooth, straight - way, &down), GMI_TOOTH_FINE);
+            GM_ASSERT_ABS(down.angle, -up.angle, 1e-12);
+            GM_ASSERT_REL(down.bending, up.bending, 1e-10);
+            GM_ASSERT_REL(down.foundation, up.foundation, 1e-10);
+            GM_ASSERT_REL(down.slope, -up.slope, 1e-9);
+            ++checked;
+        }
+        GM_ASSERT(checked >= 5);
+    }
+}
+
 /* The slope against differences, along the whole flank: also where y_p passes from the fillet to the involute and the foot. */
 static void slope_is_that_of_differences(void) {
     const double teeth[] = {20.0, 62.0, 99.1, 400.0, -400.0, -93.3, -41.0};
@@ -331,6 +363,7 @@ int main(int argc, char **argv) {
     static const gm_test tests[] = {GM_TEST(check_values_of_a_spur_gear),
                                     GM_TEST(check_values_of_helical_gears),
                                     GM_TEST(bending_is_that_of_thin_slices),
+                                    GM_TEST(loads_that_lean_either_way_are_alike),
                                     GM_TEST(slope_is_that_of_differences),
                                     GM_TEST(rack_is_the_limit_of_gears_and_rings),
                                     GM_TEST(compliance_has_no_scale),

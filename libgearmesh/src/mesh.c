@@ -232,6 +232,16 @@ static void set_kind(gm_mesh *mesh) {
         mesh->model == GM_MODEL_3D && !mesh->is_special && !mesh->is_posed && !at->is_tilted;
 }
 
+/* Whether flanks have a shape that ends somewhere: pitch deviations go on with the tooth. */
+static int are_tables(const gmi_tables *tables) {
+    return tables != NULL && tables->face_nodes > 0;
+}
+
+static int has_tables(const gm_flanks *flanks) {
+    return flanks != NULL &&
+           (are_tables(&flanks->side[GM_DRIVE]) || are_tables(&flanks->side[GM_COAST]));
+}
+
 int gm_mesh_init(gm_mesh **mesh, const gm_mesh_params *params, const gm_pair *pair,
                  const gm_flanks *pinion_flanks, const gm_flanks *wheel_flanks, void *memory,
                  size_t memory_size) {
@@ -297,10 +307,10 @@ int gm_mesh_init(gm_mesh **mesh, const gm_mesh_params *params, const gm_pair *pa
     if (params->model == GM_MODEL_SIMPLE) {
         pinion_flanks = wheel_flanks = NULL;
     }
-    if (pinion_flanks != NULL) {
+    if (has_tables(pinion_flanks)) {
         gmi_engagement_keep_tables(pair, GM_PINION, &made->engagement);
     }
-    if (wheel_flanks != NULL) {
+    if (has_tables(wheel_flanks)) {
         gmi_engagement_keep_tables(pair, GM_WHEEL, &made->engagement);
     }
     for (int side = GM_DRIVE; side <= GM_COAST; ++side) {
@@ -1056,10 +1066,10 @@ static int move_mesh(const gm_mesh *mesh, const gm_pose *pose, gm_mesh *moved) {
     }
 
     /* Tables end where they did; pitch point and sides follow. */
-    if (mesh->side[GM_DRIVE].pinion != NULL) {
+    if (are_tables(mesh->side[GM_DRIVE].pinion) || are_tables(mesh->side[GM_COAST].pinion)) {
         gmi_engagement_keep_tables(mesh->pair, GM_PINION, &moved->engagement);
     }
-    if (mesh->side[GM_DRIVE].wheel != NULL) {
+    if (are_tables(mesh->side[GM_DRIVE].wheel) || are_tables(mesh->side[GM_COAST].wheel)) {
         gmi_engagement_keep_tables(mesh->pair, GM_WHEEL, &moved->engagement);
     }
     if (mesh->friction.is_on) {

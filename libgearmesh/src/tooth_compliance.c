@@ -278,9 +278,14 @@ static void integrate_beam(const gmi_tooth *tooth, double roll_length, beam *sum
     const double end_of_involute = tooth->fillet_roll_length;
     const double joint_y = involute_point(tooth, end_of_involute).y;
     if (sums->y_p >= joint_y) {
-        /* The line of action comes from above y_p, so the point at y_p has a smaller roll length. */
-        const double top = parameter_at(tooth, INVOLUTE, sums->y_p, end_of_involute,
-                                        fmax(roll_length, end_of_involute));
+        /*
+         * The line of action comes from above y_p, so the point at y_p has a smaller roll length. Where the load leans the
+         * other way, near the base circle, that holds of the load that leans as much this way, which has the same y_p.
+         */
+        const double mirrored = 2.0 * tooth->base_radius * tooth->base_half_thickness - roll_length;
+        const double above = tooth->base_radius > 0.0 ? fmax(roll_length, mirrored) : roll_length;
+        const double top =
+            parameter_at(tooth, INVOLUTE, sums->y_p, end_of_involute, fmax(above, end_of_involute));
         integrate(tooth, FILLET, tooth->foot_angle, begin, sums);
         integrate(tooth, INVOLUTE, end_of_involute, top, sums);
         sums->top = involute_point(tooth, top).x;
