@@ -603,7 +603,7 @@ SPECIALIZED void follow_lines(const gm_pair *pair, const gmi_engagement *at,
         const double pitch = pair->transverse_base_pitch;
         const double before = lines->origin + (double)(lines->first - 1) * pitch + lines->rise;
         const double behind = lines->origin + (double)(lines->last + 1) * pitch + lines->fall;
-        const double reach = prepared->tilt_reach;
+        const double reach = prepared->tilt_reach + gmi_larger(-lines->delta, 0.0);
         view->lines.first -= before > lines->lower - reach;
         view->lines.last += behind < lines->upper + reach;
         view->ends.face_from = HUGE_VAL;

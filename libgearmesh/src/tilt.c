@@ -73,6 +73,9 @@ SPECIALIZED tilted tilted_of(const gm_pair *pair, const gmi_engagement *at, int 
 /* In place of how much a place climbs that stays the same along the line: then it is far off on one side or the other. */
 #define SMALLEST_CLIMB 1e-200
 
+/* A roll length of a ring that no pinion reaches (m). */
+#define BEYOND_ANY_ROOT 1e30
+
 /* What ends a line: a place on either gear, between two limits. Tables are read where parallel axes would touch. */
 enum { ROLL_PINION, ROLL_WHEEL, FACE_PINION, FACE_WHEEL, TABLE_PINION, TABLE_WHEEL };
 
@@ -96,13 +99,25 @@ SPECIALIZED straight place_of(const gm_pair *pair, const tilted *line, double de
     }
 }
 
+/*
+ * Where a gear's own flank starts. A start that the drawing does not give is where the mate's tip touches, which between
+ * tilted axes is elsewhere at each z: there the tip ends the line by itself, and the flank starts at the base circle, that
+ * of a ring at its root.
+ */
+SPECIALIZED double start_of(const gm_gear *gear, const gmi_engagement *at, int role) {
+    if (!at->is_tilted || gear->start_is_given) {
+        return at->start_roll_length[role];
+    }
+    return gear->sign < 0.0 ? -BEYOND_ANY_ROOT : 0.0;
+}
+
 SPECIALIZED gmi_interval limits_of(const gm_pair *pair, const gmi_engagement *at, int place) {
     const gm_gear *pinion = &pair->pinion, *wheel = &pair->wheel;
     switch (place) {
     case ROLL_PINION:
-        return (gmi_interval){at->start_roll_length[GM_PINION], at->tip_roll_length[GM_PINION]};
+        return (gmi_interval){start_of(pinion, at, GM_PINION), at->tip_roll_length[GM_PINION]};
     case ROLL_WHEEL:
-        return (gmi_interval){at->start_roll_length[GM_WHEEL], at->tip_roll_length[GM_WHEEL]};
+        return (gmi_interval){start_of(wheel, at, GM_WHEEL), at->tip_roll_length[GM_WHEEL]};
     case FACE_PINION:
         return (gmi_interval){0.0, pinion->face_width};
     case FACE_WHEEL:
@@ -165,7 +180,7 @@ static void set_end(const gm_pair *pair, const gmi_engagement *at, const tilted 
     const double per_t1 = place_of(pair, line, delta, place).per_t1;
     const int is_lower = is_beginning == (per_t1 > 0.0);
     place_gradient(line, t1, place, by);
-    if (is_lower && (place == ROLL_PINION || place == ROLL_WHEEL)) {
+    if (is_lower && !at->is_tilted && (place == ROLL_PINION || place == ROLL_WHEEL)) {
         by[GMI_BY_LENGTH] -= at->start_follows[place == ROLL_PINION ? GM_PINION : GM_WHEEL];
     }
     for (int k = 0; k < GMI_COORDINATES; ++k) {
