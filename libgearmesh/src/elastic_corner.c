@@ -142,9 +142,9 @@ int gmi_elastic_edges_add(const gmi_elastic_tips *tips, double approach, double 
             continue;
         }
 
-        /* Where nothing reaches it is enough to say so. */
+        /* Where nothing reaches it is enough to say so: tilted axes may leave the peak below 0, and x with it above. */
         if (is_clear(tips, at, approach, approach + peak, work->roll[p] + work->beyond[p])) {
-            work->deviation[p] = -2.0 * (approach + peak);
+            work->deviation[p] = -2.0 * (fabs(approach) + fabs(peak));
             continue;
         }
         const gmi_elastic_edge edge = gmi_elastic_edge_at(tips, approach, at->lower, at->upper,
