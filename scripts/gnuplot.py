@@ -52,6 +52,7 @@ def _start(script, values, folder):
     lines = [f"{name} = {literal(value)}" for name, value in values.items()]
     lines.append(f"load {literal(script)}")
     environment = {**os.environ, "LC_ALL": _utf8_locale()}
+    environment.pop("GNUTERM", None)  # a terminal that this gnuplot may not have
     with tempfile.TemporaryFile("w+", encoding="utf-8") as commands:
         commands.write("\n".join(lines) + "\n")
         commands.seek(0)
@@ -72,25 +73,35 @@ def _run(pictures, folder):
     """Draw all at once; raises RunFailed if a gnuplot failed or complained, when all have ended."""
     for path in glob.glob(os.path.join(glob.escape(SCRIPTS), "*.gp")):
         shutil.copy(path, folder)
-    running = [(script, _start(script, values, folder)) for script, values in pictures]
-    ended = [(script, process.communicate()[1], process.returncode) for script, process in running]
+    running = []
+    try:
+        for script, values in pictures:
+            running.append((script, _start(script, values, folder)))
+        ended = [(script, process.communicate()[1], process.returncode) for script, process in running]
+    finally:
+        for _, process in running:  # after an interruption
+            process.kill()
+            process.wait()
     for script, complaints, status in ended:
         text = complaints.decode("utf-8", errors="replace").strip()
         if status != 0 or text:
             raise program.RunFailed(f"gnuplot {script}: {text or status}")
 
 
-def draw(stem, prepare):
+def draw(stem, prepare, formats=None):
     """Draw pictures in a folder beside their place and move them there when all are done; returns their names.
 
     `prepare(folder)` writes the data and returns {name: (script, values)}; the picture becomes STEM + name. The script
-    writes it as `picture . '.png'`, `.svg` and `.pdf`.
+    writes it as `picture . '.png'`, `.svg` and `.pdf`, or in some of these formats.
     """
+    formats = formats or FORMATS
     with tempfile.TemporaryDirectory(prefix=".gearmesh_", dir=os.path.dirname(stem) or ".") as folder:
         folder = os.path.abspath(folder)
         pictures = prepare(folder)
-        _run([(script, {"picture": f"picture{name}", **values}) for name, (script, values) in pictures.items()], folder)
+        common = {"formats": " ".join(formats)}
+        _run([(script, {"picture": f"picture{name}", **common, **values}) for name, (script, values) in pictures.items()],
+             folder)
         for name in pictures:
-            for suffix in FORMATS:
+            for suffix in formats:
                 os.replace(os.path.join(folder, f"picture{name}.{suffix}"), f"{stem}{name}.{suffix}")
     return [f"{stem}{name}" for name in pictures]

@@ -474,7 +474,7 @@ class Gears:
 
 def with_values(text, values):
     """The text of an INI file with {section.key: text} in place of its values, or added to their section."""
-    lines = text.removeprefix("\ufeff").splitlines()
+    lines = text.removeprefix("\ufeff").removesuffix("\n").split("\n")  # as gearsim, at no other character
     for key, value in values.items():
         section, _, name = key.partition(".")
         at, end = None, None  # line of the key, end of the section
@@ -506,7 +506,7 @@ def write_params(gears, path, values):
             moved[key] = os.path.relpath(target, os.path.dirname(path) or ".")
     with open(gears.path, encoding="utf-8") as file:
         text = file.read()
-    with open(path, "w", encoding="utf-8") as file:
+    with program.written(path) as file:
         file.write(with_values(text, {**gears.settings, **moved, **values}))
 
 

@@ -4,17 +4,22 @@
 
 This module is imported before numpy, so it needs nothing but Python itself.
 """
+import contextlib
 import importlib
 import importlib.util
 import os
 import re
 import shutil
+import signal
+import stat
 import subprocess
 import sys
+import tempfile
 
 DEBIAN_PACKAGES = {"numpy": "python3-numpy", "scipy": "python3-scipy", "h5py": "python3-h5py"}
 HANDED_ON = "GEARMESH_HANDED_ON"  # set for a Python that a script was handed on to, not for what it starts
 WAS_HANDED_ON = os.environ.pop(HANDED_ON, None) is not None
+CONTROLS = r"\x00-\x08\x0b-\x1f\x7f-\x9f\u2028\u2029"  # characters that tell a terminal what to do, but tab and newline
 
 
 class InputError(Exception):
@@ -23,6 +28,43 @@ class InputError(Exception):
 
 class RunFailed(Exception):
     """A program that the script calls has failed; the text says why. Exit status 1."""
+
+
+# ----------------------------------------------------------------------------------------------------
+# Standard streams
+# ----------------------------------------------------------------------------------------------------
+
+
+def _hold_standard_descriptors():
+    """Take the places of standard streams that are closed, or the next file that is opened would get the messages.
+
+    As the programs do it: opened the wrong way round, so that what is printed for nobody fails.
+    """
+    for descriptor, way in ((0, os.O_WRONLY), (1, os.O_RDONLY), (2, os.O_RDONLY)):
+        try:
+            os.fstat(descriptor)
+        except OSError:
+            os.set_inheritable(os.open(os.devnull, way), True)
+    if sys.stdout is None:
+        sys.stdout = open(1, "w", encoding="utf-8", closefd=False)  # pylint: disable=consider-using-with
+    if sys.stderr is None:
+        sys.stderr = open(os.devnull, "w", encoding="utf-8")  # pylint: disable=consider-using-with
+
+
+_hold_standard_descriptors()
+
+
+class _Plain:
+    """A stream for people: what a name has in it tells the terminal nothing."""
+
+    def __init__(self, stream):
+        self.stream = stream
+
+    def write(self, text):
+        return self.stream.write(re.sub(f"[{CONTROLS}]", " ", text))
+
+    def __getattr__(self, name_):
+        return getattr(self.stream, name_)
 
 
 # ----------------------------------------------------------------------------------------------------
@@ -81,7 +123,9 @@ def _other_pythons():
 
 def _has(python, packages):
     """Whether a Python, the same version or another, finds all packages."""
-    code = f"import importlib.util, sys; sys.exit(any(importlib.util.find_spec(name) is None for name in {packages!r}))"
+    # Without the working folder, which `python3 -c` searches first.
+    code = "import sys; sys.path = [folder for folder in sys.path if folder]; import importlib.util; " \
+           f"sys.exit(any(importlib.util.find_spec(name) is None for name in {packages!r}))"
     command = [python, "-c", code]
     result = subprocess.run(command, stdin=subprocess.DEVNULL, capture_output=True, check=False)
     return result.returncode == 0
@@ -98,7 +142,7 @@ def name():
 
 
 def warn(text):
-    print(f"{name()}: warning: {text}", file=sys.stderr)
+    print(f"{name()}: warning: {shown(text)}", file=sys.stderr)
 
 
 def progress(text):
@@ -113,10 +157,13 @@ def run(work, parse):
     for stream in (sys.stdout, sys.stderr):
         if hasattr(stream, "reconfigure"):
             stream.reconfigure(errors="backslashreplace")
+    _be_interrupted_by_signals()
 
+    stdout = sys.stdout
+    sys.stdout = _Plain(stdout)
     try:
         status = work(parse()) or 0
-        sys.stdout.flush()
+        stdout.flush()
         return status
     except InputError as error:
         status, text = 2, error
@@ -129,9 +176,27 @@ def run(work, parse):
         status, text = 1, "out of memory"
     except KeyboardInterrupt:
         status, text = 130, "interrupted"
+    finally:
+        sys.stdout = stdout
     progress("")
-    print(f"{name()}: {text}", file=sys.stderr)
+    print(re.sub(f"[{CONTROLS}]", " ", f"{name()}: {text}"), file=sys.stderr)
+    try:
+        stdout.flush()
+    except OSError:  # not to be told again at the end of Python
+        os.dup2(os.open(os.devnull, os.O_WRONLY), 1)
     return status
+
+
+def _be_interrupted_by_signals():
+    """TERM and HUP end a script as Ctrl-C does, so that nothing is left behind; after nohup HUP still does nothing."""
+
+    def interrupt(*_):
+        raise KeyboardInterrupt
+
+    for one in (signal.SIGTERM, signal.SIGHUP):
+        with contextlib.suppress(ValueError):  # where main() is called from another thread, as in tests
+            if signal.getsignal(one) is signal.SIG_DFL:
+                signal.signal(one, interrupt)
 
 
 def parsed(parser):
@@ -166,5 +231,41 @@ def title_of(title, source):
 
 def shown(text):
     """A text as one line that any program can show: without control characters and broken characters."""
-    text = text.encode("utf-8", errors="surrogateescape").decode("utf-8", errors="replace")
-    return re.sub(r"[\x00-\x1f\x7f-\x9f\u2028\u2029]+", " ", text)
+    text = str(text).encode("utf-8", errors="surrogateescape").decode("utf-8", errors="replace")
+    return re.sub(f"[{CONTROLS}\t\n]+", " ", text)
+
+
+@contextlib.contextmanager
+def written(path, **options):
+    """A file of text to write, which has its name when it is whole, or never.
+
+    Two scripts that write it at once do not mix: the later one stays. What a link leads to is replaced, not the link;
+    a device is written as it is. Names that are no UTF-8 keep their bytes.
+    """
+    options = {"encoding": "utf-8", "errors": "surrogateescape", **options}
+    path = os.path.realpath(path)
+    is_there = os.path.exists(path)
+    if is_there and not os.path.isfile(path):
+        with open(path, "w", **options) as file:
+            yield file
+        return
+
+    descriptor, part = tempfile.mkstemp(prefix=".gearmesh_", dir=os.path.dirname(path))
+    try:
+        with open(descriptor, "w", **options) as file:
+            os.fchmod(descriptor, stat.S_IMODE(os.stat(path).st_mode) if is_there else 0o666 & ~_umask())
+            yield file
+            file.flush()
+            os.fsync(descriptor)
+        os.replace(part, path)
+    except BaseException:
+        with contextlib.suppress(FileNotFoundError):
+            os.remove(part)
+        raise
+
+
+def _umask():
+    """What new files are kept from."""
+    mask = os.umask(0o077)
+    os.umask(mask)
+    return mask

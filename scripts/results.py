@@ -239,7 +239,7 @@ def _read_csv(path, wanted):
 def _fill(path, columns, used, head_lines):
     """Rows into the columns, some at a time: together they would take as much memory again."""
     rows = len(next(iter(columns.values())))
-    with open(path, encoding="utf-8") as file:
+    with open(path, encoding="utf-8", errors="replace") as file:  # the head may have names that are no UTF-8
         for _ in range(head_lines):
             file.readline()
         for first in range(0, rows, ROWS_AT_ONCE):

@@ -23,7 +23,7 @@ set border lw 1.2
 set tics out nomirror format '%g'
 
 # eval terminal(...): of each format, of so many pixels of the png
-formats = 'png svg pdf'
+if (!exists('formats')) { formats = 'png svg pdf' } # scripts/gnuplot.py says which
 terminal(format, name, width, height) = format eq 'png' \
     ? sprintf("set terminal pngcairo size %d,%d font 'DejaVu Sans,13' fontscale 1.25", width, height) \
     : format eq 'pdf' \

@@ -37,6 +37,8 @@ static void a_message_is_one_line(void) {
     GM_ASSERT_INT(message_no_memory(&sink), EXIT_RUN_FAILED);
     GM_ASSERT_STRING(got.last, "gears: out of memory\n");
     GM_ASSERT_INT(got.lines, 3);
+    message_error(&sink, "%s: %s", "two\nlines\033[31m\t\x7f", "\xc3\xa9");
+    GM_ASSERT_STRING(got.last, "two?lines?[31m??: \xc3\xa9\n");
 }
 
 static void notes_are_left_out_when_quiet_and_errors_are_not(void) {

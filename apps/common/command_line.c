@@ -7,7 +7,14 @@
 #include <string.h>
 
 int command_line_refuse(const command_line *line, const char *text, const char *what) {
-    message_of_program(line->messages, "%s%s\n%s", text, what, line->usage);
+    message_of_program(line->messages, "%s%s", text, what);
+
+    /* A message is one line, the usage has several. */
+    for (const char *at = line->usage; *at != '\0';) {
+        const size_t length = strcspn(at, "\n");
+        message_error(line->messages, "%.*s", (int)length, at);
+        at += length + (at[length] == '\n');
+    }
     return EXIT_BAD_INPUT;
 }
 

@@ -40,6 +40,13 @@ static void put_line(const message_sink *to, char line[LINE_SIZE]) {
     if (length > LINE_SIZE - 2) {
         length = LINE_SIZE - 2;
     }
+
+    /* A name may have any byte: none may end the line or tell the terminal what to do. */
+    for (size_t i = 0; i < length; ++i) {
+        if ((unsigned char)line[i] < ' ' || line[i] == 0x7f) {
+            line[i] = '?';
+        }
+    }
     line[length] = '\n';
     line[length + 1] = '\0';
     to->put(to->user, line);
