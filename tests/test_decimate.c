@@ -15,7 +15,8 @@ static double sine(double frequency, double time) {
     return sin(two_pi * frequency * time + 0.3);
 }
 
-static const enum sample_kind filtered_kinds[] = {SAMPLE_VALUES, SAMPLE_BOX, SAMPLE_HAT};
+static const enum sample_kind filtered_kinds[] = {SAMPLE_VALUES, SAMPLE_BEHIND, SAMPLE_BOX,
+                                                  SAMPLE_HAT};
 enum { FILTERED_KINDS = sizeof filtered_kinds / sizeof filtered_kinds[0] };
 
 /* What the mean over an interval of length 1 leaves of a sine; the triangle is two such means in a row. */
@@ -26,6 +27,11 @@ static double gain_of_kind(enum sample_kind kind, double frequency) {
     return kind == SAMPLE_HAT ? box * box : kind == SAMPLE_BOX ? box : 1.0;
 }
 
+/* Where in the period from one sample to the next its value is that of. */
+static double place_of_kind(enum sample_kind kind) {
+    return kind == SAMPLE_BEHIND ? 0.5 : 0.0;
+}
+
 /* Largest size of (filtered - gain * sine at the row's own time) over some rows in the middle of a run. */
 static double filtered_error(enum sample_kind kind, int factor, double frequency, double gain) {
     decimator *filter = decimator_create(factor, 1, &kind);
@@ -34,7 +40,7 @@ static double filtered_error(enum sample_kind kind, int factor, double frequency
     double largest = 0.0;
 
     for (int j = 0; j < 80 * factor; ++j) {
-        const double sample = mean * sine(frequency, (double)j / factor);
+        const double sample = mean * sine(frequency, (j + place_of_kind(kind)) / factor);
         double value;
         decimator_push(filter, &sample);
         decimator_values(filter, &value);
@@ -142,6 +148,41 @@ static void plain_channels_are_delayed_alike(void) {
     decimator_free(filter);
 }
 
+/* Columns of all kinds side by side, in any number and order, are what each of them is alone. */
+static void channels_do_not_disturb_each_other(void) {
+    enum { CHANNELS = 9 };
+    const enum sample_kind kinds[CHANNELS] = {SAMPLE_BOX,   SAMPLE_PLAIN,  SAMPLE_VALUES,
+                                              SAMPLE_BOX,   SAMPLE_BEHIND, SAMPLE_BOX,
+                                              SAMPLE_PLAIN, SAMPLE_HAT,    SAMPLE_HAT};
+
+    for (int channels = 2; channels <= CHANNELS; ++channels) {
+        decimator *all = decimator_create(3, channels, kinds), *alone[CHANNELS];
+        for (int k = 0; k < channels; ++k) {
+            alone[k] = decimator_create(3, 1, &kinds[k]);
+        }
+        for (int j = 0; j < 300; ++j) {
+            double values[CHANNELS], got[CHANNELS], expected;
+            for (int k = 0; k < channels; ++k) {
+                values[k] = sine(0.1 + 0.05 * k, j);
+            }
+            decimator_push(all, values);
+            decimator_values(all, got);
+
+            /* Up to 91 products of numbers up to 1 in another order. */
+            for (int k = 0; k < channels; ++k) {
+                decimator_push(alone[k], &values[k]);
+                decimator_values(alone[k], &expected);
+                gm_test_context("%d channels, channel %d, sample %d", channels, k, j);
+                GM_ASSERT_ABS(got[k], expected, 1e-14);
+            }
+        }
+        for (int k = 0; k < channels; ++k) {
+            decimator_free(alone[k]);
+        }
+        decimator_free(all);
+    }
+}
+
 static void factor_one_is_the_identity(void) {
     const enum sample_kind kinds[] = {SAMPLE_VALUES};
     decimator *filter = decimator_create(1, 1, kinds);
@@ -165,6 +206,7 @@ int main(int argc, char **argv) {
         GM_TEST(a_constant_stays),
         GM_TEST(weights_are_symmetric_with_the_sum_one),
         GM_TEST(plain_channels_are_delayed_alike),
+        GM_TEST(channels_do_not_disturb_each_other),
         GM_TEST(factor_one_is_the_identity),
     };
     return gm_test_main("gearsim.decimate", tests, GM_TEST_COUNT(tests), argc, argv);

@@ -3,7 +3,7 @@
 
 /*
  * The value is scaled by a power of ten to an integer of the wanted number of digits, in double-double
- * arithmetic (about 100 bits), and rounded. Where the rest is so near one half that the rounding could
+ * arithmetic (about 100 bits), and rounded; up to ten digits are told by doubles. Where the rest is so near one half that the rounding could
  * be in doubt, and outside 1e-20..1e20, printf does the work.
  */
 #include "number.h"
@@ -91,15 +91,65 @@ static double_double scaled(double value, int power) {
 
 /* floor(log10(value)), or one more or less; log10(2) = 0.30103. */
 static int guess_exponent(double value) {
-    int binary;
-    (void)frexp(value, &binary);
+    uint64_t bits;
+    memcpy(&bits, &value, sizeof bits);
+    const int binary = (int)(bits >> 52) - 1023; /* of a positive number that is not too small */
 
     /* The shift by 100 makes truncation a floor. */
-    return (int)((binary - 1) * 0.30103 + 100.0) - 100;
+    return (int)(binary * 0.30103 + 100.0) - 100;
+}
+
+/* 10^k */
+static const int64_t whole_power_of_ten[] = {1,
+                                             10,
+                                             100,
+                                             1000,
+                                             10000,
+                                             100000,
+                                             1000000,
+                                             10000000,
+                                             100000000,
+                                             1000000000,
+                                             10000000000,
+                                             100000000000,
+                                             1000000000000,
+                                             10000000000000,
+                                             100000000000000,
+                                             1000000000000000,
+                                             10000000000000000,
+                                             100000000000000000};
+
+/* So many digits are told by doubles alone: a product or quotient below 10^10 is off by 2e-6 of the last digit at most. */
+enum { FEW_DIGITS = 10 };
+static const double near_tie_of_few = 4e-6;
+
+/* The same as decompose() for few digits. */
+static int decompose_few(double value, int digits, int64_t *mantissa, int *exponent) {
+    int e = guess_exponent(value);
+    int power = digits - 1 - e;
+    double m = power >= 0 ? value * power_of_ten[power].high : value / power_of_ten[-power].high;
+
+    if (m >= power_of_ten[digits].high) {
+        ++e;
+        --power;
+        m = power >= 0 ? value * power_of_ten[power].high : value / power_of_ten[-power].high;
+    }
+
+    int64_t n = (int64_t)m;
+    const double rest = m - (double)n;
+    n += rest > 0.5;
+    if (n == whole_power_of_ten[digits]) {
+        n /= 10;
+        ++e;
+    }
+    *mantissa = n;
+    *exponent = e;
+    return fabs(rest - 0.5) >= near_tie_of_few && n >= whole_power_of_ten[digits - 1] &&
+           n < whole_power_of_ten[digits];
 }
 
 /* value = mantissa * 10^(exponent + 1 - digits) with just so many digits; 0 if that is in doubt. */
-static int decompose(double value, int digits, uint64_t *mantissa, int *exponent) {
+static int decompose(double value, int digits, int64_t *mantissa, int *exponent) {
     int e = guess_exponent(value);
     double_double m = scaled(value, digits - 1 - e);
 
@@ -110,10 +160,10 @@ static int decompose(double value, int digits, uint64_t *mantissa, int *exponent
         m = scaled(value, digits - 1 - e);
     }
 
-    uint64_t n = (uint64_t)m.high;
+    int64_t n = (int64_t)m.high;
     double rest = (m.high - (double)n) + m.low;
     const double carry = floor(rest);
-    n += (uint64_t)(int64_t)carry;
+    n += (int64_t)carry;
     rest -= carry;
 
     /* The scaling is good to 1e-13 of the last digit; printf settles ties and what is near one. */
@@ -123,59 +173,65 @@ static int decompose(double value, int digits, uint64_t *mantissa, int *exponent
     n += rest > 0.5;
 
     /* 999.9996 has become 1000. */
-    if (n == (uint64_t)power_of_ten[digits].high) {
+    if (n == whole_power_of_ten[digits]) {
         n /= 10;
         ++e;
     }
     *mantissa = n;
     *exponent = e;
-    return n >= (uint64_t)power_of_ten[digits - 1].high && n < (uint64_t)power_of_ten[digits].high;
+    return n >= whole_power_of_ten[digits - 1] && n < whole_power_of_ten[digits];
 }
 
-/* Digits of n, right-aligned before `end`. */
-static void put_digits(char *end, uint64_t n) {
-    static const char pairs[] = "0001020304050607080910111213141516171819"
-                                "2021222324252627282930313233343536373839"
-                                "4041424344454647484950515253545556575859"
-                                "6061626364656667686970717273747576777879"
-                                "8081828384858687888990919293949596979899";
-    while (n >= 10) {
-        end -= 2;
-        memcpy(end, pairs + 2 * (n % 100), 2);
-        n /= 100;
+/*
+ * Eight digits of n < 10^8, in one word: halves by 10^4, their halves by 100 and those by 10, side by side. Multiplications
+ * take the place of divisions: x * 10486 >> 20 is x / 100 below 10^4, x * 103 >> 10 is x / 10 below 100.
+ */
+static void put_eight(char *out, uint32_t n) {
+    const uint64_t fours = (n / 10000) | ((uint64_t)(n % 10000) << 32);
+    const uint64_t hundreds = ((fours * 10486) >> 20) & 0x0000007f0000007f;
+    const uint64_t twos = ((fours - 100 * hundreds) << 16) + hundreds;
+    const uint64_t tens = ((twos * 103) >> 10) & 0x000f000f000f000f;
+    const uint64_t ones = ((twos - 10 * tens) << 8) + tens + 0x3030303030303030;
+
+    /* The first digit is in the lowest byte, on any machine. */
+    for (int i = 0; i < 8; ++i) {
+        out[i] = (char)(ones >> (8 * i));
     }
-    if (n > 0) {
-        *--end = (char)('0' + n);
+}
+
+/* Figures end at a place, with some more that may be copied behind them: copies of a fixed size take no call. */
+enum { FIGURES = 24, COPIED = 24 };
+
+/* Digits of n < 10^17, of which `digits` are wanted, at the end of their places. */
+static void put_digits(char figures[FIGURES], uint64_t n, int digits) {
+    const uint64_t above = n / 100000000;
+
+    put_eight(figures + 16, (uint32_t)(n - above * 100000000));
+    if (digits > 9) {
+        put_eight(figures + 8, (uint32_t)(above % 100000000));
+        figures[7] = (char)('0' + above / 100000000);
+    } else {
+        figures[15] = (char)('0' + above);
     }
 }
 
 /* 123.45 or 0.00123, without zeros at the end. */
 static char *put_fixed(char *out, const char *figures, int count, int exponent) {
     if (exponent < 0) {
-        *out++ = '0';
-        *out++ = '.';
-        for (int i = -1; i > exponent; --i) {
-            *out++ = '0';
-        }
-        memcpy(out, figures, (size_t)count);
-        return out + count;
+        memcpy(out, "0.000", 5);
+        memcpy(out + 1 - exponent, figures, COPIED);
+        return out + 1 - exponent + count;
     }
 
-    /* Figures before the point, zeros where there are none, then the rest. */
-    const int whole = exponent + 1 < count ? exponent + 1 : count;
-    int i = 0;
-    for (; i < whole; ++i) {
-        *out++ = figures[i];
+    /* Figures before the point, which include zeros where the others end, then the rest. */
+    const int whole = exponent + 1;
+    memcpy(out, figures, COPIED);
+    if (whole >= count) {
+        return out + whole;
     }
-    for (; i <= exponent; ++i) {
-        *out++ = '0';
-    }
-    if (whole < count) {
-        *out++ = '.';
-        memcpy(out, figures + whole, (size_t)(count - whole));
-        out += count - whole;
-    }
-    return out;
+    out[whole] = '.';
+    memcpy(out + whole + 1, figures + whole, COPIED);
+    return out + count + 1;
 }
 
 /* 1.2345e-07 */
@@ -185,7 +241,7 @@ static char *put_scientific(char *out, const char *figures, int count, int expon
     *out++ = figures[0];
     if (count > 1) {
         *out++ = '.';
-        memcpy(out, figures + 1, (size_t)(count - 1));
+        memcpy(out, figures + 1, COPIED);
         out += count - 1;
     }
     *out++ = 'e';
@@ -197,7 +253,7 @@ static char *put_scientific(char *out, const char *figures, int count, int expon
 
 int number_format(char text[NUMBER_TEXT_SIZE], double value, int digits) {
     const double size = fabs(value);
-    uint64_t mantissa;
+    int64_t mantissa;
     int exponent;
 
     if (value == 0.0 && !signbit(value)) {
@@ -205,13 +261,21 @@ int number_format(char text[NUMBER_TEXT_SIZE], double value, int digits) {
         text[1] = '\0';
         return 1;
     }
-    if (!(size >= smallest && size <= largest) || !decompose(size, digits, &mantissa, &exponent)) {
+
+    /* Where one way is in doubt the next one, which takes longer. */
+    const int is_told =
+        size >= smallest && size <= largest &&
+        ((digits <= FEW_DIGITS && decompose_few(size, digits, &mantissa, &exponent)) ||
+         decompose(size, digits, &mantissa, &exponent));
+    if (!is_told) {
         return snprintf(text, NUMBER_TEXT_SIZE, "%.*g", digits, value);
     }
 
-    char figures[20];
+    char room[FIGURES + COPIED];
+    const char *figures = room + FIGURES - digits;
     int count = digits;
-    put_digits(figures + digits, mantissa);
+    put_digits(room, (uint64_t)mantissa, digits);
+    memset(room + FIGURES, '0', COPIED);
     while (count > 1 && figures[count - 1] == '0') {
         --count;
     }

@@ -8,7 +8,8 @@
 #ifndef APPS_NUMBER_H
 #define APPS_NUMBER_H
 
-enum { NUMBER_TEXT_SIZE = 32 };
+/* Room for a text, which is written in whole words: more than the longest one takes. */
+enum { NUMBER_TEXT_SIZE = 48 };
 
 /* Writes `value` with 1 to 17 significant digits, '\0' at the end. Returns the length of the text. */
 int number_format(char text[NUMBER_TEXT_SIZE], double value, int digits);

@@ -13,7 +13,7 @@ static const double pi = 3.14159265358979323846;
  * (90 - 7.95) / (2 * 2.285 * 2 pi 0.2) = 14.3 rows, beta = 0.1102 (90 - 8.7) = 8.96. A little more of
  * both leaves a margin.
  */
-enum { HALF_WIDTH_ROWS = 15 }; /* a multiple of 3 */
+enum { HALF_WIDTH_ROWS = 15 };
 static const double kaiser_beta = 9.1;
 
 struct decimator {
@@ -25,9 +25,10 @@ struct decimator {
     enum sample_kind *kinds; /* [channels] */
     double *weights;         /* [SAMPLE_KINDS - 1][length], from SAMPLE_VALUES on */
 
-    /* [channels][2 length]: a ring written twice, so that the last `length` samples are always
-     * contiguous, from `next` on */
+    /* [channels][4 length]: a ring written twice, so that the last `length` samples are always contiguous, from `next` on;
+     * and the same from the newest to the oldest, from 3 length - `next` on */
     double *samples;
+    double *sums; /* [4]: in memory, so that compilers make vectors of what ends there */
 };
 
 /* Modified Bessel function of order 0, by its power series. */
@@ -55,27 +56,30 @@ static double gain_of_mean(enum sample_kind kind, double frequency) {
 enum { INTERVALS = 256 }; /* of Simpson's rule */
 
 /*
- * Weight i of the ideal low-pass at half the row's rate over the gain of the mean: its inverse transform, the integral
- * of cos(2 pi f i) / gain(f) from -1/(2 factor) to 1/(2 factor), by Simpson's rule. At most 7.5 periods of the
- * cosine fall into half of it: 256 intervals leave an error of 1e-7.
+ * Weight of the ideal low-pass at half the row's rate over the gain of the mean, at a distance in samples: its inverse
+ * transform, the integral of cos(2 pi f distance) / gain(f) from -1/(2 factor) to 1/(2 factor), by Simpson's rule. At most
+ * 7.5 periods of the cosine fall into half of it: 256 intervals leave an error of 1e-7.
  */
-static double ideal_weight(enum sample_kind kind, const double gains[], int i, int factor) {
+static double ideal_weight(enum sample_kind kind, const double gains[], double distance,
+                           int factor) {
     const double step = 0.5 / factor / INTERVALS;
     double sum = 0.0;
 
-    if (kind == SAMPLE_VALUES) {
-        return sinc((double)i / factor);
+    if (kind == SAMPLE_VALUES || kind == SAMPLE_BEHIND) {
+        return sinc(distance / factor);
     }
     for (int k = 0; k <= INTERVALS; ++k) {
         const double f = k * step;
         const double share = k == 0 || k == INTERVALS ? 1.0 : k % 2 == 1 ? 4.0 : 2.0;
-        sum += share * cos(2.0 * pi * f * i) / gains[k];
+        sum += share * cos(2.0 * pi * f * distance) / gains[k];
     }
     return 2.0 * factor * sum * step / 3.0;
 }
 
-/* The ideal low-pass under a Kaiser window, scaled to the sum 1. */
+/* The ideal low-pass under a Kaiser window, scaled to the sum 1. Symmetric, with a weight of 0 behind an even number. */
 static void design(double weights[], enum sample_kind kind, int half, int factor) {
+    const int is_even = kind == SAMPLE_BEHIND;
+    const int last = is_even ? 2 * half - 1 : 2 * half;
     double gains[INTERVALS + 1];
     double sum = 0.0;
 
@@ -84,14 +88,18 @@ static void design(double weights[], enum sample_kind kind, int half, int factor
         gains[k] = gain_of_mean(kind, k * (0.5 / factor / INTERVALS));
     }
 
-    for (int i = 0; i <= half; ++i) {
-        const double reach = half > 0 ? (double)i / (half + 1) : 0.0;
+    for (int i = half; i <= last; ++i) {
+        const double distance = i - half + (is_even ? 0.5 : 0.0);
+        const double reach = half > 0 ? distance / (half + (is_even ? 0.5 : 1.0)) : 0.0;
         const double window = bessel_i0(kaiser_beta * sqrt(1.0 - reach * reach));
 
-        weights[half + i] = weights[half - i] = window * ideal_weight(kind, gains, i, factor);
-        sum += (i > 0 ? 2.0 : 1.0) * weights[half + i];
+        weights[i] = weights[last - i] = window * ideal_weight(kind, gains, distance, factor);
+        sum += (i != last - i ? 2.0 : 1.0) * weights[i];
     }
-    for (int i = 0; i <= 2 * half; ++i) {
+    if (is_even) {
+        weights[2 * half] = 0.0;
+    }
+    for (int i = 0; i <= last; ++i) {
         weights[i] /= sum;
     }
 }
@@ -113,8 +121,10 @@ decimator *decimator_create(int factor, int channels, const enum sample_kind kin
     created->kinds = malloc(count * sizeof *created->kinds);
     created->weights =
         malloc((SAMPLE_KINDS - 1) * (size_t)created->length * sizeof *created->weights);
-    created->samples = malloc(count * 2 * (size_t)created->length * sizeof *created->samples);
-    if (created->kinds == NULL || created->weights == NULL || created->samples == NULL) {
+    created->samples = malloc(count * 4 * (size_t)created->length * sizeof *created->samples);
+    created->sums = malloc(4 * sizeof *created->sums);
+    if (created->kinds == NULL || created->weights == NULL || created->samples == NULL ||
+        created->sums == NULL) {
         decimator_free(created);
         return NULL;
     }
@@ -138,6 +148,7 @@ void decimator_free(decimator *filter) {
         free(filter->kinds);
         free(filter->weights);
         free(filter->samples);
+        free(filter->sums);
         free(filter);
     }
 }
@@ -150,58 +161,99 @@ const double *decimator_weights(const decimator *filter, enum sample_kind kind) 
     return weights_of(filter, kind);
 }
 
-static void hold(decimator *filter, const double values[]) {
-    const int size = 2 * filter->length;
+static void hold(decimator *filter, const double values[], int stride) {
+    const int size = 4 * filter->length;
 
     for (int channel = 0; channel < filter->channels; ++channel) {
         double *ring = filter->samples + (size_t)channel * (size_t)size;
         for (int i = 0; i < size; ++i) {
-            ring[i] = values[channel];
+            ring[i] = values[channel * stride];
         }
     }
     filter->started = 1;
 }
 
+void decimator_hold(decimator *filter, const double values[]) {
+    hold(filter, values, 1);
+}
+
 void decimator_push(decimator *filter, const double values[]) {
-    const size_t length = (size_t)filter->length;
-    double *place = filter->samples + filter->next;
+    decimator_push_all(filter, 1, values, 1);
+}
+
+/* Into the rings of a channel, from a place on that is far enough from their end. */
+static void put(double *ring, int length, int place, int count, const double values[]) {
+    double *forward = ring + place, *backward = ring + 3 * length - 1 - place;
+
+    for (int n = 0; n < count; ++n) {
+        forward[n] = forward[n + length] = values[n];
+        backward[-n] = backward[length - n] = values[n];
+    }
+}
+
+void decimator_push_all(decimator *filter, int count, const double values[], int stride) {
+    const int length = filter->length;
 
     if (!filter->started) {
-        hold(filter, values);
+        hold(filter, values, stride);
     }
-    for (int channel = 0; channel < filter->channels; ++channel) {
-        place[0] = values[channel];
-        place[length] = values[channel];
-        place += 2 * length;
+    for (int done = 0; done < count;) {
+        const int rest = length - filter->next;
+        const int some = count - done < rest ? count - done : rest;
+
+        for (int channel = 0; channel < filter->channels; ++channel) {
+            put(filter->samples + (size_t)channel * 4 * (size_t)length, length, filter->next, some,
+                values + channel * stride + done);
+        }
+        filter->next = some < rest ? filter->next + some : 0;
+        done += some;
     }
-    filter->next = filter->next + 1 < filter->length ? filter->next + 1 : 0;
 }
 
 /*
- * The weights are symmetric: the samples at equal distances from the middle share one. Three sums side by side, so that none
- * waits for the other; `half` is a multiple of three.
+ * The weights are symmetric: the samples at equal distances from the middle share one. Each is with its mate from the other
+ * end, and what is at one place of all three fills a register of two or four; several sums, so that none waits for the other.
  */
-static double weighted_sum(const double *samples, const double *weights, int half) {
-    const double *last = samples + 2 * half;
-    double first = 0.0, second = 0.0, third = 0.0;
+static double weighted_sum(const double *samples, const double *mates, const double *weights,
+                           int half, double middle, double sums[4]) {
+    double first[2] = {0.0, 0.0}, second[2] = {0.0, 0.0};
+    int i = 0;
 
-    for (int i = 0; i < half; i += 3) {
-        first += weights[i] * (samples[i] + last[-i]);
-        second += weights[i + 1] * (samples[i + 1] + last[-i - 1]);
-        third += weights[i + 2] * (samples[i + 2] + last[-i - 2]);
+    for (; i + 4 <= half; i += 4) {
+        first[0] += weights[i] * (samples[i] + mates[i]);
+        first[1] += weights[i + 1] * (samples[i + 1] + mates[i + 1]);
+        second[0] += weights[i + 2] * (samples[i + 2] + mates[i + 2]);
+        second[1] += weights[i + 3] * (samples[i + 3] + mates[i + 3]);
     }
-    return first + second + third + weights[half] * samples[half];
+    sums[0] = first[0];
+    sums[1] = first[1];
+    sums[2] = second[0];
+    sums[3] = second[1];
+    for (; i < half; ++i) {
+        sums[0] += weights[i] * (samples[i] + mates[i]);
+    }
+    return (sums[0] + sums[1]) + (sums[2] + sums[3]) + middle * samples[half];
 }
 
 void decimator_values(const decimator *filter, double values[]) {
+    const int half = filter->half;
+    const size_t length = (size_t)filter->length;
     const double *samples = filter->samples + filter->next;
+    const double *mates = filter->samples + 3 * length - filter->next;
 
     for (int channel = 0; channel < filter->channels; ++channel) {
         const enum sample_kind kind = filter->kinds[channel];
 
-        values[channel] = kind != SAMPLE_PLAIN
-                              ? weighted_sum(samples, weights_of(filter, kind), filter->half)
-                              : samples[filter->half];
-        samples += 2 * (size_t)filter->length;
+        if (kind == SAMPLE_PLAIN) {
+            values[channel] = samples[half];
+        } else {
+            /* An even number has no middle, and leaves the newest sample out. */
+            const int is_even = kind == SAMPLE_BEHIND;
+            const double *weights = weights_of(filter, kind);
+            values[channel] = weighted_sum(samples, mates + is_even, weights, half,
+                                           is_even ? 0.0 : weights[half], filter->sums);
+        }
+        samples += 4 * length;
+        mates += 4 * length;
     }
 }

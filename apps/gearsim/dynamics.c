@@ -31,16 +31,26 @@ typedef struct dynamic_run {
     int column_count;        /* that are asked for, */
     int column[COLUMNS_MAX]; /* which of dynamic_columns they are, */
     int place[COLUMNS_MAX];  /* where the output has them, */
-    double (*show[COLUMNS_MAX])(const dynamic_sample *sample); /* and what is taken of a sample */
+    double (*show[COLUMNS_MAX])(const dynamic_sample *sample); /* what is taken of a sample, */
+    const dynamic_sample *shown[COLUMNS_MAX];                  /* and of which one */
     enum sample_kind mean_kind; /* of the columns that show means, SAMPLE_PLAIN: none does */
-    int is_started;             /* there is a sample before */
-    double edge_time;           /* where the mean of the sample before has its end or its middle, */
-    gear_motion edge;           /* and the motion there */
-    gear_motion next;           /* at the next sample */
+    int shows_means;            /* of force or load, */
+    int shows_load;             /* and of the load */
+    int edge_wanted;            /* what they need of the motion at the edges of boxes */
+    int takes_blocks;           /* between rows nothing is needed but that, see take_block(), */
+    int is_force_alone;         /* and of that nothing but the means of the force */
+    int is_steady; /* nothing but noise and mesh changes what acts: it is in `steady` */
+    model_torques steady;
+    int is_started;       /* there is a sample before */
+    double edge_time;     /* where the mean of the sample before has its end or its middle, */
+    gear_motion edge;     /* and the motion there, */
+    double edge_momentum; /* of boxes alone */
+    gear_motion next;     /* at the next sample */
     double touched
         [2]; /* see integrator_touched(), where the mean begins, and up to where it is known */
-    int shows_overlap;    /* a column shows the mean of the penetration or of its rate */
-    int follows;          /* drive or load depend on the motion */
+    int shows_overlap; /* a column shows the mean of the penetration or of its rate: */
+    double penetration_by_force, penetration_by_rate; /* what it follows from (m/N, s) */
+    int follows;                                      /* drive or load depend on the motion */
     double gathered_time; /* up to which their integrals have been taken, */
 
     /* of the part since the edge: of the torques, and of them times the share of it */
@@ -53,10 +63,15 @@ typedef struct dynamic_run {
     double rows;                  /* number of rows, a whole number */
     double past_stop; /* +1 or -1: the stop speed is reached from below, from above; 0 = none */
     dynamic_sample sample;
+    dynamic_sample behind;      /* time and motion half a period behind it, where its box ends */
     gear_motion hardest;        /* the sample with the largest force of elastic teeth, */
     double hardest_force;       /* and that force (N) */
-    double values[COLUMNS_MAX]; /* of the sample, of the columns asked for */
-    char why[640];              /* the run ended early */
+    double values[COLUMNS_MAX]; /* of the sample, of the columns asked for, */
+    double block[COLUMNS_MAX *
+                 MODEL_EDGES_MAX];   /* and of a block of samples, one column after the other */
+    int filtered_count;              /* of these columns are filtered, */
+    int filtered_first[COLUMNS_MAX]; /* in front of the others in this order */
+    char why[640];                   /* the run ended early */
 } dynamic_run;
 
 /* ---------------------------------------------------------------------------------------------
@@ -67,8 +82,10 @@ typedef struct dynamic_run {
 static int see_mesh(dynamic_run *run, enum column_need need) {
     dynamic_sample *sample = &run->sample;
 
-    const int wanted = need == NEEDS_WRENCH  ? GM_WANT_PAIRS | GM_WANT_WRENCH
-                       : need == NEEDS_PAIRS ? GM_WANT_PAIRS
+    /* Pairs are counted anyway, but by a cache. */
+    const int pairs = run->model.cache != NULL ? GM_WANT_PAIRS : GM_WANT_FORCE;
+    const int wanted = need == NEEDS_WRENCH  ? pairs | GM_WANT_WRENCH
+                       : need == NEEDS_PAIRS ? pairs
                                              : GM_WANT_FORCE;
     const int status = model_evaluate(&run->model, &sample->motion, wanted, &sample->mesh);
     sample->apex = gear_contact_apex(run->model.gears);
@@ -84,17 +101,28 @@ static int see_mesh(dynamic_run *run, enum column_need need) {
     return 0;
 }
 
-/* Motion at a time. */
-static int see_motion(dynamic_run *run, double time, gear_motion *motion) {
-    double state[STATES_MAX];
-    const int failed = integrator_advance(run->solver, time, state);
+/* States of the solver at some times. */
+static int see_points(dynamic_run *run, int count, const double times[],
+                      integrator_point points[]) {
+    const int failed =
+        integrator_advance_through(run->solver, count, times, run->shows_overlap, points);
+    const double time = integrator_time(run->solver);
 
     if (failed == EXIT_INTERRUPTED) {
         snprintf(run->why, sizeof run->why, "interrupted at t = %.9g s", time);
     } else if (failed) {
         snprintf(run->why, sizeof run->why, "%s", integrator_failure(run->solver));
-    } else {
-        *motion = model_motion(&run->model, time, state);
+    }
+    return failed;
+}
+
+/* Motion at a time. */
+static int see_motion(dynamic_run *run, double time, gear_motion *motion) {
+    integrator_point point;
+    const int failed = see_points(run, 1, &time, &point);
+
+    if (!failed) {
+        *motion = model_motion(&run->model, time, point.state);
     }
     return failed;
 }
@@ -168,20 +196,34 @@ static void forget_gathered(dynamic_run *run) {
     memset(run->gathered, 0, sizeof run->gathered);
 }
 
-/* Means of force and load, with those of the accelerations and of the torques that follow the motion. */
+/* Mean of the noise under a weight. */
+static double mean_noise(dynamic_run *run, const mean_weight *weight) {
+    double mean = 0.0;
+
+    for (int side = 0; side < 2 && weight->time[side] < weight->time[side + 1]; ++side) {
+        mean += load_noise_integral(&run->model.load, weight->time[side], weight->time[side + 1],
+                                    weight->weight[side][0], weight->weight[side][1], &run->noise);
+    }
+    return mean;
+}
+
+/*
+ * Means of force and load, with those of the accelerations and of the torques that follow the motion. Of x'' it may be the
+ * part without the noise, whose mean then is asked for by the column of the load alone.
+ */
 static void set_means(dynamic_run *run, const mean_weight *weight, double pinion_acceleration,
-                      const model_torques *following, double acceleration) {
-    const load_signal *load = &run->model.load;
+                      const model_torques *following, double acceleration, int is_without_noise) {
     dynamic_sample *sample = &run->sample;
-    model_torques mean = model_mean_over_time(&run->model, weight, pinion_acceleration);
+    model_torques mean = run->is_steady
+                             ? run->steady
+                             : model_mean_over_time(&run->model, weight, pinion_acceleration);
+    const double noise = run->shows_load || !is_without_noise ? mean_noise(run, weight) : 0.0;
 
     add_torques(&mean, 1.0, following);
-    for (int side = 0; side < 2 && weight->time[side] < weight->time[side + 1]; ++side) {
-        mean.load +=
-            load_noise_integral(load, weight->time[side], weight->time[side + 1],
-                                weight->weight[side][0], weight->weight[side][1], &run->noise);
+    sample->mean_load = mean.load + noise;
+    if (!is_without_noise) {
+        mean.load = sample->mean_load;
     }
-    sample->mean_load = mean.load;
     sample->mean_force = model_mean_force(&run->model, &mean, acceleration);
 }
 
@@ -206,16 +248,14 @@ static model_torques mean_following(const dynamic_run *run, double begin, double
  * times x', and the rest of the force comes from the penetration. Else their values at the sample's time.
  */
 static int set_overlap(dynamic_run *run, enum column_need seen, double begin, double end,
-                       double speed) {
+                       double speed, const integrator_point *last) {
     dynamic_sample *sample = &run->sample;
-    double touched;
-    const int carries = integrator_touched(run->solver, begin, end, &touched);
     const int is_hat = run->mean_kind == SAMPLE_HAT;
 
-    if (carries && run->is_started) {
-        sample->mean_rate = (touched - run->touched[0]) / (end - begin) * speed;
-        sample->mean_penetration =
-            gear_contact_penetration(run->model.gears, sample->mean_force, sample->mean_rate);
+    if (last->carried_since <= begin && run->is_started) {
+        sample->mean_rate = (last->touched - run->touched[0]) / (end - begin) * speed;
+        sample->mean_penetration = run->penetration_by_force * sample->mean_force +
+                                   run->penetration_by_rate * sample->mean_rate;
     } else {
         const int failed = seen < NEEDS_MESH ? see_mesh(run, NEEDS_MESH) : 0;
         if (failed) {
@@ -226,8 +266,8 @@ static int set_overlap(dynamic_run *run, enum column_need seen, double begin, do
     }
 
     /* The next triangle begins in the middle of this one, where that before has ended. */
-    run->touched[0] = is_hat ? run->touched[1] : touched;
-    run->touched[1] = touched;
+    run->touched[0] = is_hat ? run->touched[1] : last->touched;
+    run->touched[1] = last->touched;
     return 0;
 }
 
@@ -242,41 +282,57 @@ static model_torques following_at(const dynamic_run *run, const gear_motion *mot
 }
 
 /* Over the sample's period: from the middle between two samples to the next, x'' from the change of x'. */
-static int see_box_means(dynamic_run *run, enum column_need seen, double row, int i) {
-    const double end = sample_time(run, row, i + 0.5);
-    gear_motion motion;
-    int failed = run->follows ? gather(run, end) : 0;
-    if (!failed) {
-        failed = see_motion(run, end, &motion);
-    }
-    if (failed) {
-        return failed;
-    }
+static int set_box_means(dynamic_run *run, enum column_need seen, double end,
+                         const model_edge *edge, const integrator_point *last) {
+    const gear_motion *motion = &edge->motion;
 
     /* Before t = 0 the gears rest against each other, at the speeds of the start: half of the first box. */
     const double begin = run->is_started ? run->edge_time : -end;
-    const double before = run->is_started ? run->edge.offset_rate : 0.0;
+    const double before = run->is_started ? run->edge_momentum : 0.0;
     const double weight = 1.0 / (end - begin);
     model_torques following = {0.0, 0.0, 0.0};
     if (run->follows) {
-        following = mean_following(run, begin, end, &motion);
+        following = mean_following(run, begin, end, motion);
         if (!run->is_started) {
             const model_torques held = following_at(run, &run->edge);
             add_torques(&following, 0.5, &held);
         }
         forget_gathered(run);
     }
-    const mean_weight box = {{begin, end, end}, {{weight, weight}, {0.0, 0.0}}};
-    const double speed = motion.pinion_speed - run->edge.pinion_speed;
-    const double rest = run->is_started ? 0.0 : 0.5 * drive_acceleration(&run->model.drive, 0.0);
-    set_means(run, &box, rest + speed * weight, &following, (motion.offset_rate - before) * weight);
-    failed = !run->shows_overlap
-                 ? 0
-                 : set_overlap(run, seen, begin, end, (motion.offset - run->edge.offset) * weight);
+    if (run->shows_means) {
+        const mean_weight box = {{begin, end, end}, {{weight, weight}, {0.0, 0.0}}};
+        const double speed = motion->pinion_speed - run->edge.pinion_speed;
+        const double rest =
+            run->is_started ? 0.0 : 0.5 * drive_acceleration(&run->model.drive, 0.0);
+        set_means(run, &box, rest + speed * weight, &following, (edge->momentum - before) * weight,
+                  run->model.noise != NULL);
+    }
+    const double rolled = motion->offset - run->edge.offset;
+    const int failed =
+        run->shows_overlap ? set_overlap(run, seen, begin, end, rolled * weight, last) : 0;
 
     run->edge_time = end;
-    run->edge = motion;
+    run->edge = *motion;
+    run->edge_momentum = edge->momentum;
+    run->behind.time = end;
+    run->behind.motion = *motion;
     return failed;
+}
+
+static int see_box_means(dynamic_run *run, enum column_need seen, double row, int i) {
+    const double end = sample_time(run, row, i + 0.5);
+    integrator_point last;
+    model_edge edge;
+    int failed = run->follows ? gather(run, end) : 0;
+    if (!failed) {
+        failed = see_points(run, 1, &end, &last);
+    }
+    if (failed) {
+        return failed;
+    }
+    const double *state = last.state;
+    model_edges(&run->model, 1, &end, &state, run->edge_wanted, &edge);
+    return set_box_means(run, seen, end, &edge, &last);
 }
 
 /* Mean of the pinion's acceleration under a triangle: second difference of its angle, constant before t = 0. */
@@ -296,15 +352,16 @@ static double hat_acceleration(const dynamic_run *run, double begin, double midd
 /* Under a triangle from the sample before to the next, x'' from the second difference of x. */
 static int see_hat_means(dynamic_run *run, enum column_need seen, double row, int i) {
     const double middle = run->sample.time, end = sample_time(run, row, i + 1.0);
-    gear_motion motion;
+    integrator_point last;
     int failed = run->follows ? gather(run, end) : 0;
     if (!failed) {
-        failed = see_motion(run, end, &motion);
+        failed = see_points(run, 1, &end, &last);
     }
     if (failed) {
         return failed;
     }
 
+    const gear_motion motion = model_motion(&run->model, end, last.state);
     const double x = run->sample.motion.offset;
     const double begin = run->is_started ? run->edge_time : middle - (end - middle);
     const double before = run->is_started ? run->edge.offset : x;
@@ -327,12 +384,15 @@ static int see_hat_means(dynamic_run *run, enum column_need seen, double row, in
     }
     const mean_weight hat = {{begin, middle, end}, {{0.0, peak}, {peak, 0.0}}};
     set_means(run, &hat, hat_acceleration(run, begin, middle, &motion, end), &following,
-              peak * (fall - rise));
+              peak * (fall - rise), 0);
 
     /* The mean speed under a triangle of a parabola. */
-    const double speed =
-        (run->edge.offset_rate + 10.0 * run->sample.motion.offset_rate + motion.offset_rate) / 12.0;
-    failed = !run->shows_overlap ? 0 : set_overlap(run, seen, begin, end, speed);
+    if (run->shows_overlap) {
+        const double speed =
+            (run->edge.offset_rate + 10.0 * run->sample.motion.offset_rate + motion.offset_rate) /
+            12.0;
+        failed = set_overlap(run, seen, begin, end, speed, &last);
+    }
 
     run->edge_time = middle;
     run->edge = run->sample.motion;
@@ -389,6 +449,32 @@ static int takes_mean(const dynamic_run *run, const dynamic_column *column) {
     }
 }
 
+/* Of the row's sample all columns, of others those that are filtered. */
+static void set_values(dynamic_run *run, int of_row) {
+    const int count = of_row ? run->column_count : run->filtered_count;
+
+    for (int n = 0; n < count; ++n) {
+        const int k = run->filtered_first[n];
+        run->values[k] = run->show[k](run->shown[k]);
+    }
+}
+
+/* Before the first sample: its values, or those at its own time in place of those behind it. */
+static void hold_values(dynamic_run *run) {
+    const dynamic_sample behind = run->behind;
+    double held[COLUMNS_MAX];
+
+    memcpy(held, run->values, sizeof held);
+    run->behind = run->sample;
+    for (int k = 0; k < run->column_count; ++k) {
+        if (run->shown[k] == &run->behind) {
+            held[k] = run->show[k](&run->behind);
+        }
+    }
+    run->behind = behind;
+    decimator_hold(run->filter, held);
+}
+
 /* Sample i of a row's period; values that nobody needs are left as they were. */
 static int take_sample(dynamic_run *run, double row, int i) {
     const int of_row = i == 0;
@@ -412,14 +498,125 @@ static int take_sample(dynamic_run *run, double row, int i) {
     if (failed) {
         return failed;
     }
-    run->is_started = 1;
 
-    for (int k = 0; k < run->column_count; ++k) {
-        if (of_row || dynamic_columns[run->column[k]].is_filtered) {
-            run->values[k] = run->show[k](&run->sample);
-        }
+    set_values(run, of_row);
+    if (!run->is_started) {
+        hold_values(run);
     }
+    run->is_started = 1;
     return 0;
+}
+
+/* Samples on the way from a row to the next: as many as a row has, the last of them at the next row's time. */
+typedef struct sample_block {
+    int count;
+    double centre[MODEL_EDGES_MAX], end[MODEL_EDGES_MAX]; /* of their boxes */
+    gear_motion of_row;                                   /* at the last centre */
+    model_edge edges[MODEL_EDGES_MAX];                    /* at the ends, */
+    integrator_point points[2 * MODEL_EDGES_MAX];         /* and what the solver says there, */
+    int each;                                             /* and at the centres before them: 2 */
+} sample_block;
+
+/* The solver only goes forward: centres with the ends, where flanks that do not carry may have to be looked at there. */
+static int see_block(dynamic_run *run, double row, sample_block *block) {
+    const int count = run->factor, each = run->shows_overlap ? 2 : 1;
+    double times[2 * MODEL_EDGES_MAX];
+    const double *states[MODEL_EDGES_MAX];
+
+    block->count = count;
+    block->each = each;
+    for (int j = 0; j < count; ++j) {
+        block->centre[j] = sample_time(run, row, j + 1.0);
+        block->end[j] = sample_time(run, row, j + 1.5);
+        times[each * j] = block->centre[j];
+        times[each * j + each - 1] = block->end[j];
+        states[j] = block->points[each * j + each - 1].state;
+    }
+
+    /* All ends, and before the last one the row's own time. */
+    int failed = see_points(run, each * count - 1, times, block->points);
+    if (!failed && each == 2) {
+        block->of_row =
+            model_motion(&run->model, block->centre[count - 1], block->points[2 * count - 2].state);
+    } else if (!failed && run->row_need > NEEDS_TIME) {
+        failed = see_motion(run, block->centre[count - 1], &block->of_row);
+    }
+    if (!failed) {
+        failed = see_points(run, 1, &block->end[count - 1], &block->points[each * count - 1]);
+    }
+    if (!failed) {
+        model_edges(&run->model, count, block->end, states, run->edge_wanted, block->edges);
+    }
+    if (!failed && each == 1 && run->row_need == NEEDS_TIME) {
+        /* Near enough for the display of progress. */
+        block->of_row = block->edges[count - 1].motion;
+    }
+    return failed;
+}
+
+/* Of the block the means of the force, the only column that is filtered. */
+static void set_forces(dynamic_run *run, const sample_block *block) {
+    double *force = run->block + run->filtered_first[0] * MODEL_EDGES_MAX;
+
+    for (int j = 0; j < block->count; ++j) {
+        const double weight = 1.0 / (block->end[j] - run->edge_time);
+        const double change = block->edges[j].momentum - run->edge_momentum;
+
+        force[j] = model_mean_force(&run->model, &run->steady, change * weight);
+        run->edge_time = block->end[j];
+        run->edge_momentum = block->edges[j].momentum;
+    }
+    run->edge = block->edges[block->count - 1].motion;
+}
+
+/* Of a sample of the block all columns that are filtered. */
+static int set_sample(dynamic_run *run, const sample_block *block, int j) {
+    const int is_row = j == block->count - 1;
+    const enum column_need seen = is_row ? run->row_need : NEEDS_TIME;
+    const integrator_point *last = &block->points[block->each * (j + 1) - 1];
+
+    run->sample.time = block->centre[j];
+    if (!is_row && run->shows_overlap && !(last->carried_since <= run->edge_time)) {
+        run->sample.motion =
+            model_motion(&run->model, block->centre[j], block->points[2 * j].state);
+    }
+    const int failed = set_box_means(run, seen, block->end[j], &block->edges[j], last);
+    for (int n = 0; n < run->filtered_count; ++n) {
+        const int k = run->filtered_first[n];
+        run->block[k * MODEL_EDGES_MAX + j] = run->show[k](run->shown[k]);
+    }
+    return failed;
+}
+
+/* All that samples take between the rows is where their boxes end. */
+static int take_block(dynamic_run *run, double row) {
+    sample_block block;
+    int failed = see_block(run, row, &block);
+    const int last = block.count - 1;
+
+    for (int j = 0; j < last && !failed && !run->is_force_alone; ++j) {
+        failed = set_sample(run, &block, j);
+    }
+
+    /* The row's own sample, with the mesh if a column needs to know. */
+    run->sample.time = block.centre[last];
+    run->sample.motion = block.of_row;
+    if (!failed && run->row_need >= NEEDS_FORCE) {
+        failed = see_mesh(run, run->row_need);
+    }
+    if (!failed && run->is_force_alone) {
+        set_forces(run, &block);
+    } else if (!failed) {
+        failed = set_sample(run, &block, last);
+    }
+    for (int n = run->filtered_count; n < run->column_count && !failed; ++n) {
+        const int k = run->filtered_first[n];
+        run->block[k * MODEL_EDGES_MAX + last] = run->show[k](run->shown[k]);
+    }
+    if (!failed) {
+        decimator_push_all(run->filter, block.count, run->block, MODEL_EDGES_MAX);
+    }
+    return failed;
 }
 
 static void tell_progress(dynamic_run *run) {
@@ -448,51 +645,61 @@ static void look_for_stop(dynamic_run *run, double row) {
     }
 }
 
-/* Samples of one row period, the first of them at the row's time itself. */
-static int take_row_period(dynamic_run *run, double row) {
-    for (int i = 0; i < run->factor; ++i) {
-        const int failed = take_sample(run, row, i);
+/* A row that is complete: that of the first sample of a period, with the filter's delay behind it. */
+static int write_row(dynamic_run *run) {
+    double shown[COLUMNS_MAX], values[COLUMNS_MAX];
+
+    decimator_values(run->filter, shown);
+    for (int k = 0; k < run->column_count; ++k) {
+        values[run->place[k]] = shown[k];
+    }
+    if (output_row(run->output, values) != 0) {
+        snprintf(run->why, sizeof run->why, "the disk took no more at t = %.9g s",
+                 run->sample.time);
+        return EXIT_RUN_FAILED;
+    }
+    return 0;
+}
+
+/* The samples from a row's time on, up to that of the next. */
+static int go_to_next_row(dynamic_run *run, double row) {
+    if (run->takes_blocks) {
+        return take_block(run, row);
+    }
+
+    /* The last one is the first one of the next row's period. */
+    for (int i = 1; i <= run->factor; ++i) {
+        const int is_row = i == run->factor;
+        const int failed = take_sample(run, is_row ? row + 1.0 : row, is_row ? 0 : i);
         if (failed) {
             return failed;
         }
-
         decimator_push(run->filter, run->values);
-        if (i == 0) {
-            tell_progress(run);
-            look_for_stop(run, row);
-        }
-
-        /* The rows that lag behind by the filter's delay are complete with their period's first sample. */
-        const double complete = row - (double)(decimator_delay(run->filter) / run->factor);
-        if (i == 0 && complete >= 0.0) {
-            double shown[COLUMNS_MAX], values[COLUMNS_MAX];
-            decimator_values(run->filter, shown);
-            for (int k = 0; k < run->column_count; ++k) {
-                values[run->place[k]] = shown[k];
-            }
-            if (output_row(run->output, values) != 0) {
-                snprintf(run->why, sizeof run->why, "the disk took no more at t = %.9g s",
-                         run->sample.time);
-                return EXIT_RUN_FAILED;
-            }
-            if (complete + 1.0 >= run->rows) {
-                return 0;
-            }
-        }
     }
     return 0;
 }
 
 static int take_all(dynamic_run *run) {
     const double delay = (double)(decimator_delay(run->filter) / run->factor);
+    int failed = take_sample(run, 0.0, 0);
 
-    for (double row = 0.0; row < run->rows + delay; row += 1.0) {
-        const int failed = take_row_period(run, row);
-        if (failed) {
-            return failed;
-        }
+    if (!failed) {
+        decimator_push(run->filter, run->values);
     }
-    return 0;
+    for (double row = 0.0; !failed; row += 1.0) {
+        tell_progress(run);
+        look_for_stop(run, row);
+
+        /* The rows that lag behind by the filter's delay are complete with their period's first sample. */
+        if (row >= delay) {
+            failed = write_row(run);
+        }
+        if (failed || row + 1.0 >= run->rows + delay) {
+            break;
+        }
+        failed = go_to_next_row(run, row);
+    }
+    return failed;
 }
 
 /* ---------------------------------------------------------------------------------------------
@@ -536,7 +743,61 @@ static enum sample_kind kind_of(const dynamic_run *run, const dynamic_column *co
     if (!column->is_filtered) {
         return SAMPLE_PLAIN;
     }
-    return takes_mean(run, column) ? mean_kind(run->conf, run->model.gears) : SAMPLE_VALUES;
+    const enum sample_kind means = mean_kind(run->conf, run->model.gears);
+    if (takes_mean(run, column)) {
+        return means;
+    }
+
+    /* Where boxes end the motion is known anyway, so that it is not asked for at the samples' own times. */
+    return run->factor > 1 && means == SAMPLE_BOX && column->need == NEEDS_MOTION ? SAMPLE_BEHIND
+                                                                                  : SAMPLE_VALUES;
+}
+
+/* What the means take. */
+static void prepare_means(dynamic_run *run) {
+    const gear_model *model = &run->model;
+    const int drive_is_steady =
+        model->states == STATES_MAX ? model->drive.table == NULL : drive_is_linear(&model->drive);
+    const mean_weight any = {{0.0, 1.0, 1.0}, {{1.0, 1.0}, {0.0, 0.0}}};
+
+    run->follows = run->shows_means && model_follows_motion(model);
+    run->is_steady = drive_is_steady && model->load.table == NULL;
+    if (run->is_steady) {
+        run->steady = model_mean_over_time(model, &any, 0.0);
+    }
+
+    /* The motion at the edges, if it is only for the display of progress. */
+    if (run->follows || !drive_is_steady || run->row_need < NEEDS_MOTION) {
+        run->edge_wanted |= EDGE_OFFSET | EDGE_PINION;
+    }
+    if (run->shows_overlap) {
+        run->edge_wanted |= EDGE_OFFSET;
+        run->penetration_by_force = gear_contact_penetration(model->gears, 1.0, 0.0);
+        run->penetration_by_rate = gear_contact_penetration(model->gears, 0.0, 1.0);
+    }
+
+    /* Where torques follow the motion, it is gathered sample by sample; flanks that do not carry are looked at. */
+    if (run->shows_overlap && run->follows) {
+        run->sample_need = larger(run->sample_need, NEEDS_MOTION);
+        run->row_need = larger(run->row_need, NEEDS_MOTION);
+    }
+    run->takes_blocks =
+        run->mean_kind == SAMPLE_BOX && run->sample_need == NEEDS_TIME && !run->follows;
+    run->is_force_alone = run->takes_blocks && run->filtered_count == 1 && run->shows_means &&
+                          !run->shows_load && !run->shows_overlap && run->is_steady &&
+                          (model->noise != NULL || model->load.amplitude == 0.0);
+}
+
+/* Those that are filtered first. */
+static void order_columns(dynamic_run *run) {
+    for (int pass = 1, n = 0; pass >= 0; --pass) {
+        for (int k = 0; k < run->column_count; ++k) {
+            if (dynamic_columns[run->column[k]].is_filtered == pass) {
+                run->filtered_first[n++] = k;
+                run->filtered_count += pass;
+            }
+        }
+    }
 }
 
 /* What is asked for decides what has to be computed, and whether there is anything to filter. */
@@ -563,14 +824,26 @@ static int start_filter(dynamic_run *run) {
 
         kinds[k] = kind_of(run, column);
         run->show[k] = takes_mean(run, column) ? column->mean : column->value;
-        if (kinds[k] == SAMPLE_BOX || kinds[k] == SAMPLE_HAT) {
+        run->shown[k] = kinds[k] == SAMPLE_BEHIND ? &run->behind : &run->sample;
+        switch (kinds[k]) {
+        case SAMPLE_BEHIND:
+            run->mean_kind = SAMPLE_BOX;
+            run->edge_wanted = EDGE_OFFSET | EDGE_PINION;
+            break;
+        case SAMPLE_BOX:
+        case SAMPLE_HAT:
             run->mean_kind = kinds[k];
+            run->shows_means = 1;
+            run->shows_load |= column->need == NEEDS_MOTION;
             run->shows_overlap |= column->need == NEEDS_MESH;
-        } else {
-            run->row_need = larger(run->row_need, column->need);
-        }
-        if (kinds[k] == SAMPLE_VALUES) {
+            break;
+        case SAMPLE_VALUES:
             run->sample_need = larger(run->sample_need, column->need);
+            run->row_need = larger(run->row_need, column->need);
+            break;
+        default:
+            run->row_need = larger(run->row_need, column->need);
+            break;
         }
     }
 
@@ -579,7 +852,9 @@ static int start_filter(dynamic_run *run) {
         run->row_need = larger(run->row_need, NEEDS_MOTION);
         run->past_stop = run->conf->stop_speed >= run->conf->start_speed ? 1.0 : -1.0;
     }
-    run->follows = run->mean_kind != SAMPLE_PLAIN && model_follows_motion(&run->model);
+
+    order_columns(run);
+    prepare_means(run);
     run->filter = decimator_create(run->factor, run->column_count, kinds);
     return run->filter != NULL ? 0 : message_no_memory(run->conf->messages);
 }
@@ -588,7 +863,7 @@ static int start_run(dynamic_run *run, const gear_mesh *gears) {
     if (model_init(&run->model, run->conf, gears) != 0) {
         return message_no_memory(run->conf->messages);
     }
-    run->sample.model = &run->model;
+    run->sample.model = run->behind.model = &run->model;
 
     int exit_code = start_solver(run);
     if (exit_code != 0) {

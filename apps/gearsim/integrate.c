@@ -298,7 +298,17 @@ static int step(integrator *solver) {
     return 0;
 }
 
-int integrator_advance(integrator *solver, double time, double state[]) {
+int integrator_touched(const integrator *solver, double since, double time, double *touched) {
+    const double rest = solver->time - time;
+    const double share = solver->step_length > 0.0 ? 0.5 * rest / solver->step_length : 0.0;
+    const double middle = solver->touching[1] + share * (solver->touching[0] - solver->touching[1]);
+
+    *touched = solver->touched - rest * middle;
+    return solver->carried_since <= since;
+}
+
+/* Steps until a time is behind. */
+static int go_beyond(integrator *solver, double time) {
     while (solver->time < time) {
         if (interrupt_requested()) {
             return EXIT_INTERRUPTED;
@@ -308,25 +318,62 @@ int integrator_advance(integrator *solver, double time, double state[]) {
             return failed;
         }
     }
+    return 0;
+}
 
+/* States at times within the last step. */
+static int read_states(integrator *solver, int count, const double times[],
+                       integrator_point points[]) {
     /* Before the first step there is nothing to interpolate. */
     if (solver->time == 0.0) {
-        memcpy(state, NV_DATA_S(solver->state), (size_t)solver->model->states * sizeof state[0]);
+        for (int k = 0; k < count; ++k) {
+            memcpy(points[k].state, NV_DATA_S(solver->state),
+                   (size_t)solver->model->states * sizeof points[k].state[0]);
+        }
         return 0;
     }
-    if (solver->package->interpolate(solver, time, state) != 0) {
+    if (solver->package->interpolate(solver, count, times, points) != 0) {
         return fail(solver, "no value between the solver's steps");
     }
     return 0;
 }
 
-int integrator_touched(const integrator *solver, double since, double time, double *touched) {
-    const double rest = solver->time - time;
-    const double share = solver->step_length > 0.0 ? 0.5 * rest / solver->step_length : 0.0;
-    const double middle = solver->touching[1] + share * (solver->touching[0] - solver->touching[1]);
+int integrator_advance_through(integrator *solver, int count, const double times[],
+                               int with_touched, integrator_point points[]) {
+    int done = 0;
 
-    *touched = solver->touched - rest * middle;
-    return solver->carried_since <= since;
+    while (done < count) {
+        int failed = go_beyond(solver, times[done]);
+        if (failed) {
+            return failed;
+        }
+
+        /* All that this step has reached. */
+        int next = done + 1;
+        while (next < count && times[next] <= solver->time) {
+            ++next;
+        }
+        failed = read_states(solver, next - done, times + done, points + done);
+        if (failed) {
+            return failed;
+        }
+        for (int k = done; k < next && with_touched; ++k) {
+            integrator_touched(solver, times[k], times[k], &points[k].touched);
+            points[k].carried_since = solver->carried_since;
+        }
+        done = next;
+    }
+    return 0;
+}
+
+int integrator_advance(integrator *solver, double time, double state[]) {
+    integrator_point point;
+    const int failed = integrator_advance_through(solver, 1, &time, 0, &point);
+
+    if (!failed) {
+        memcpy(state, point.state, (size_t)solver->model->states * sizeof state[0]);
+    }
+    return failed;
 }
 
 double integrator_time(const integrator *solver) {

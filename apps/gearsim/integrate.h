@@ -37,6 +37,16 @@ void integrator_free(integrator *solver);
  */
 int integrator_advance(integrator *solver, double time, double state[]);
 
+/* The same at several times, one after the other. */
+typedef struct integrator_point {
+    double state[STATES_MAX];
+    double touched;       /* see integrator_touched(), only where it is wanted, */
+    double carried_since; /* and since when all that touched has carried, HUGE_VAL = it does not */
+} integrator_point;
+
+int integrator_advance_through(integrator *solver, int count, const double times[],
+                               int with_touched, integrator_point points[]);
+
 /*
  * What the solver has seen of the contact on its way: the integral over time of the part of the flanks that touches, up to
  * a time within its last step (s), by straight lines from step to step. Returns whether all that touched has carried at all

@@ -130,7 +130,8 @@ static void motion_of(const step_end *end, int coordinate, double h, double w0, 
     motion[2] = end->derivative[coordinate + 1] * w0 * h * h;
 }
 
-static int interpolate(integrator *solver, double time, double state[]) {
+static int interpolate(integrator *solver, int count, const double times[],
+                       integrator_point points[]) {
     const arkode_memory *memory = solver->memory;
     const double w0 = solver->model->natural_frequency;
     const double h = memory->to.time - memory->from.time;
@@ -140,9 +141,11 @@ static int interpolate(integrator *solver, double time, double state[]) {
 
         motion_of(&memory->from, i, h, w0, from);
         motion_of(&memory->to, i, h, w0, to);
-        quintic(from, to, (time - memory->from.time) / h, motion);
-        state[i] = motion[0];
-        state[i + 1] = motion[1] / (h * w0);
+        for (int k = 0; k < count; ++k) {
+            quintic(from, to, (times[k] - memory->from.time) / h, motion);
+            points[k].state[i] = motion[0];
+            points[k].state[i + 1] = motion[1] / (h * w0);
+        }
     }
     return 0;
 }

@@ -138,21 +138,24 @@ static int read_polynomial(const integrator *solver, cvode_memory *memory) {
     return 0;
 }
 
-static int interpolate(integrator *solver, double time, double state[]) {
+static int interpolate(integrator *solver, int count, const double times[],
+                       integrator_point points[]) {
     cvode_memory *memory = solver->memory;
 
     if (memory->order < 0 && read_polynomial(solver, memory) != 0) {
         return -1;
     }
-    const double share = (time - solver->time) * memory->per_length;
-    for (int i = 0; i < solver->model->states; i += 2) {
-        double first = 0.0, second = 0.0;
-        for (int k = memory->order; k >= 0; --k) {
-            first = memory->polynomial[k][i] + share * first;
-            second = memory->polynomial[k][i + 1] + share * second;
+    for (int n = 0; n < count; ++n) {
+        const double share = (times[n] - solver->time) * memory->per_length;
+        for (int i = 0; i < solver->model->states; i += 2) {
+            double first = 0.0, second = 0.0;
+            for (int k = memory->order; k >= 0; --k) {
+                first = memory->polynomial[k][i] + share * first;
+                second = memory->polynomial[k][i + 1] + share * second;
+            }
+            points[n].state[i] = first;
+            points[n].state[i + 1] = second;
         }
-        state[i] = first;
-        state[i + 1] = second;
     }
     return 0;
 }

@@ -29,8 +29,9 @@ typedef struct solver_package {
     /* Forgets the steps before the time and state reached; 0 = done. */
     int (*restart)(integrator *solver);
 
-    /* State at a time within the last step; 0 = done. */
-    int (*interpolate)(integrator *solver, double time, double state[]);
+    /* States at times within the last step; 0 = done. */
+    int (*interpolate)(integrator *solver, int count, const double times[],
+                       integrator_point points[]);
 
     integrator_statistics (*counts)(const integrator *solver);
 } solver_package;

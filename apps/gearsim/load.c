@@ -98,6 +98,26 @@ static double piece_integral(const double c[4], const double w[2], double from, 
     return last - first;
 }
 
+/* The same of the cubic alone. */
+static double unweighted_integral(const double d[4], double from, double to) {
+    const double first = from * (d[0] + from * (d[1] + from * (d[2] + from * d[3])));
+    const double last = to * (d[0] + to * (d[1] + to * (d[2] + to * d[3])));
+
+    return last - first;
+}
+
+static void keep_piece(const load_signal *load, int64_t k, noise_piece *kept) {
+    if (kept->is_known && kept->k == k) {
+        return;
+    }
+    load_noise_cubic(load, k, kept->coefficients);
+    for (int n = 0; n < 4; ++n) {
+        kept->integral[n] = kept->coefficients[n] / (n + 1);
+    }
+    kept->k = k;
+    kept->is_known = 1;
+}
+
 double load_noise_integral(const load_signal *load, double from, double to, double first_weight,
                            double last_weight, noise_piece *kept) {
     if (load->amplitude == 0.0 || !(to > 0.0) || !(to > from)) {
@@ -119,14 +139,16 @@ double load_noise_integral(const load_signal *load, double from, double to, doub
     }
     for (int64_t k = (int64_t)position; position < end; ++k) {
         const double behind = (double)k + 1.0, next = behind < end ? behind : end;
-        const double weight[2] = {first_weight + slope * ((double)k - begin), slope};
 
-        if (!kept->is_known || kept->k != k) {
-            load_noise_cubic(load, k, kept->coefficients);
-            kept->k = k;
-            kept->is_known = 1;
+        keep_piece(load, k, kept);
+        if (slope == 0.0) {
+            sum += first_weight *
+                   unweighted_integral(kept->integral, position - (double)k, next - (double)k);
+        } else {
+            const double weight[2] = {first_weight + slope * ((double)k - begin), slope};
+            sum +=
+                piece_integral(kept->coefficients, weight, position - (double)k, next - (double)k);
         }
-        sum += piece_integral(kept->coefficients, weight, position - (double)k, next - (double)k);
         position = next;
     }
     return h * sum;

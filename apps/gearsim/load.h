@@ -49,6 +49,7 @@ typedef struct noise_piece {
     int is_known;
     int64_t k;
     double coefficients[4];
+    double integral[4]; /* of the cubic from the piece's beginning on: powers 1 to 4 */
 } noise_piece;
 
 /*

@@ -268,6 +268,39 @@ gear_motion model_motion(const gear_model *model, double time, const double stat
     return motion_with(model, time, state, &noise);
 }
 
+/* x' = u' + p', and of p' the noise has made all but what was carried. */
+void model_edges(const gear_model *model, int count, const double times[],
+                 const double *const states[], int wanted, model_edge edges[]) {
+    const double speed_unit = model_speed_unit(model);
+    const int is_with_offset = wanted & (EDGE_OFFSET | EDGE_PINION);
+    double carried[MODEL_EDGES_MAX];
+    response_value noise[MODEL_EDGES_MAX];
+
+    if (model->noise != NULL) {
+        response_carried(model->noise, count, times, carried, is_with_offset ? noise : NULL);
+    }
+    for (int k = 0; k < count; ++k) {
+        const double rate = states[k][STATE_OFFSET_RATE] * speed_unit;
+        const double known = model->noise != NULL ? carried[k] : 0.0;
+
+        edges[k].momentum = rate - known;
+        edges[k].motion = (gear_motion){.offset = 0.0};
+        if (is_with_offset) {
+            const response_value none = {0.0, 0.0};
+            const response_value more = model->noise != NULL ? noise[k] : none;
+            const drive_motion none_known = {.angle = 0.0};
+            const drive_motion pinion =
+                wanted & EDGE_PINION ? pinion_motion(model, times[k], states[k]) : none_known;
+            edges[k].motion = (gear_motion){
+                .pinion_angle = pinion.angle,
+                .pinion_speed = pinion.speed,
+                .offset = states[k][STATE_OFFSET] * micrometre + more.offset,
+                .offset_rate = rate + more.rate,
+            };
+        }
+    }
+}
+
 int model_evaluate(const gear_model *model, const gear_motion *motion, int wanted,
                    gm_mesh_result *result) {
     gm_position position;

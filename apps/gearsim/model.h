@@ -91,6 +91,23 @@ double model_speed_unit(const gear_model *model);
 
 gear_motion model_motion(const gear_model *model, double time, const double state[]);
 
+/*
+ * The edge of a mean: the motion there, with the part of x' that the noise has not made, which changes by the force and the
+ * other torques alone (m/s). Where the response to the noise is not known (model->noise), it is all of x'.
+ */
+typedef struct model_edge {
+    double momentum;
+    gear_motion motion;
+} model_edge;
+
+/* What of the motion at edges is wanted beside x' (a sum). */
+enum edge_wanted { EDGE_MOMENTUM = 0, EDGE_OFFSET = 1, EDGE_PINION = 2 };
+
+/* For states at times, no more than MODEL_EDGES_MAX. What is not wanted is 0. */
+enum { MODEL_EDGES_MAX = 64 };
+void model_edges(const gear_model *model, int count, const double times[],
+                 const double *const states[], int wanted, model_edge edges[]);
+
 /* Force and contact of the mesh; wanted: a sum of enum gm_wanted. Returns a library status. */
 int model_evaluate(const gear_model *model, const gear_motion *motion, int wanted,
                    gm_mesh_result *result);

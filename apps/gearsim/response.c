@@ -20,21 +20,30 @@ enum { TERMS = 20 };
 /* Below, there are as many segments as steps of a solver that follows the noise itself. */
 static const double shortest_interval = 1e-2; /* rad of the frequency */
 
-/* p over the share of a segment. */
+/* Over the share of a segment, from the power 0 up; an even number of terms. */
 typedef struct segment {
-    double coefficients[TERMS];
+    double offset[TERMS];  /* p */
+    double rate[TERMS];    /* p' */
+    double carried[TERMS]; /* what has been carried, see response_carried() */
 } segment;
 
 struct response {
     load_signal load;
-    int64_t parts;             /* segments in an interval of the noise */
+    int parts;                 /* segments in an interval of the noise */
     double length, per_length; /* of a segment (s, 1/s) */
     int terms;
     double by_noise[4], by_offset[TERMS],
-        by_rate[TERMS];   /* what makes a power from those below it */
-    int64_t next;         /* first segment that has not been computed */
-    response_value start; /* p and p' at its start */
-    segment kept[KEPT];   /* segment k at k mod KEPT */
+        by_rate[TERMS];        /* what makes a power from those below it */
+    double to_rate[TERMS];     /* from p to p' (1/s) */
+    double decay;              /* 2 zeta w0: what is carried by p, */
+    double by_integral[TERMS]; /* and by the integral of the power before (1/s) */
+    int64_t next;              /* first segment that has not been computed, */
+    int64_t interval;          /* the noise's interval that it lies in, */
+    int part;                  /* which of its parts it is, */
+    double noise[4];           /* and the noise there, over the share of the interval */
+    response_value start;      /* p and p' at its start */
+    double start_carried;      /* likewise */
+    segment kept[KEPT];        /* segment k at k mod KEPT */
 };
 
 int response_is_useful(const load_signal *load, double frequency) {
@@ -43,7 +52,10 @@ int response_is_useful(const load_signal *load, double frequency) {
 
 static void restart(response *linear) {
     linear->next = 0;
+    linear->interval = -1;
+    linear->part = linear->parts - 1;
     linear->start = (response_value){0.0, 0.0};
+    linear->start_carried = 0.0;
 }
 
 /*
@@ -57,7 +69,7 @@ static int terms_for(double x) {
     while (term > left_out && n < TERMS) {
         term *= x / ++n;
     }
-    return n;
+    return n + n % 2;
 }
 
 /* Of the equation over the share of a segment, with h^2 p'' = sum of (k + 2) (k + 1) p[k + 2] share^k. */
@@ -73,6 +85,12 @@ static void set_recurrence(response *linear, double gain, double frequency, doub
             linear->by_noise[k] = gain * linear->length * linear->length / both;
         }
     }
+
+    linear->decay = 2.0 * damping_ratio * frequency;
+    for (int k = 1; k < TERMS; ++k) {
+        linear->to_rate[k] = (double)k / linear->length;
+        linear->by_integral[k] = frequency * x / (double)k;
+    }
 }
 
 response *response_create(const load_signal *load, double gain, double frequency,
@@ -81,7 +99,7 @@ response *response_create(const load_signal *load, double gain, double frequency
 
     if (created != NULL) {
         created->load = *load;
-        created->parts = (int64_t)ceil(frequency * load->interval / longest_segment);
+        created->parts = (int)ceil(frequency * load->interval / longest_segment);
         created->length = load->interval / (double)created->parts;
         created->per_length = 1.0 / created->length;
         set_recurrence(created, gain, frequency, damping_ratio);
@@ -94,50 +112,69 @@ void response_free(response *linear) {
     free(linear);
 }
 
-/* The noise over the share of a segment: the cubic of its interval from where the segment begins. */
-static void noise_of(const response *linear, int64_t number, double noise[4]) {
-    const double share = 1.0 / (double)linear->parts;
-    const double from = (double)(number % linear->parts) * share;
-    double c[4];
+/* The noise over the share of the next segment: the cubic of its interval from where the segment begins. */
+static void next_noise(response *linear, double noise[4]) {
+    if (++linear->part == linear->parts) {
+        linear->part = 0;
+        load_noise_cubic(&linear->load, ++linear->interval, linear->noise);
+    }
 
-    load_noise_cubic(&linear->load, number / linear->parts, c);
+    const double share = 1.0 / (double)linear->parts;
+    const double from = (double)linear->part * share;
+    const double *c = linear->noise;
     noise[0] = c[0] + from * (c[1] + from * (c[2] + from * c[3]));
     noise[1] = share * (c[1] + from * (2.0 * c[2] + from * 3.0 * c[3]));
     noise[2] = share * share * (c[2] + 3.0 * from * c[3]);
     noise[3] = share * share * share * c[3];
 }
 
-static response_value evaluate(const response *linear, const segment *part, double share) {
-    const double *p = part->coefficients;
-    double offset = p[linear->terms - 1], rate = 0.0;
+/* A polynomial by its even and its odd powers, so that neither waits for the other. */
+static double evaluate(const double coefficients[], int terms, double share) {
+    const double square = share * share;
+    double even = 0.0, odd = 0.0;
 
-    for (int k = linear->terms - 2; k >= 0; --k) {
-        rate = offset + share * rate;
-        offset = p[k] + share * offset;
+    for (int k = terms - 2; k >= 0; k -= 2) {
+        even = coefficients[k] + square * even;
+        odd = coefficients[k + 1] + square * odd;
     }
-    return (response_value){.offset = offset, .rate = rate * linear->per_length};
+    return even + share * odd;
 }
 
 /* Computes one more segment, from where the one before has ended. */
 static void extend(response *linear) {
-    double *p = linear->kept[linear->next % KEPT].coefficients;
+    segment *added = &linear->kept[(uint64_t)linear->next % KEPT];
+    const int terms = linear->terms;
+    double *p = added->offset;
     double noise[4];
 
-    noise_of(linear, linear->next, noise);
+    /* Each power from the two below it. */
+    next_noise(linear, noise);
     p[0] = linear->start.offset;
     p[1] = linear->start.rate * linear->length;
-    for (int k = 0; k + 2 < linear->terms; ++k) {
+    for (int k = 0; k < 4; ++k) {
+        p[k + 2] = linear->by_noise[k] * noise[k] - linear->by_offset[k] * p[k] -
+                   linear->by_rate[k] * p[k + 1];
+    }
+    for (int k = 4; k + 2 < terms; ++k) {
         p[k + 2] = -linear->by_offset[k] * p[k] - linear->by_rate[k] * p[k + 1];
-        if (k < 4) {
-            p[k + 2] += linear->by_noise[k] * noise[k];
-        }
     }
 
-    linear->start = evaluate(linear, &linear->kept[linear->next % KEPT], 1.0);
+    /* What follows from p: its derivative, and what is carried with its integral. */
+    for (int k = 1; k < terms; ++k) {
+        added->rate[k - 1] = linear->to_rate[k] * p[k];
+        added->carried[k] = linear->decay * p[k] + linear->by_integral[k] * p[k - 1];
+    }
+    added->rate[terms - 1] = 0.0;
+    added->carried[0] = linear->start_carried;
+
+    linear->start.offset = evaluate(p, terms, 1.0);
+    linear->start.rate = evaluate(added->rate, terms, 1.0);
+    linear->start_carried = evaluate(added->carried, terms, 1.0);
     ++linear->next;
 }
 
-response_value response_at(response *linear, double time) {
+/* The segment that a time is in, and the share of it before the time. */
+static const segment *segment_at(response *linear, double time, double *share) {
     const double position = time > 0.0 ? time * linear->per_length : 0.0;
     const int64_t k = (int64_t)position;
 
@@ -147,5 +184,35 @@ response_value response_at(response *linear, double time) {
     while (k >= linear->next) {
         extend(linear);
     }
-    return evaluate(linear, &linear->kept[k % KEPT], position - (double)k);
+    *share = position - (double)k;
+    return &linear->kept[(uint64_t)k % KEPT];
+}
+
+response_value response_at(response *linear, double time) {
+    double share;
+    const segment *part = segment_at(linear, time, &share);
+
+    return (response_value){.offset = evaluate(part->offset, linear->terms, share),
+                            .rate = evaluate(part->rate, linear->terms, share)};
+}
+
+void response_carried(response *linear, int count, const double times[], double carried[],
+                      response_value values[]) {
+    const int terms = linear->terms;
+    const segment *part = NULL;
+    double begin = 0.0;
+
+    for (int i = 0; i < count; ++i) {
+        double share = times[i] * linear->per_length - begin;
+        if (part == NULL || !(share >= 0.0 && share < 1.0)) {
+            part = segment_at(linear, times[i], &share);
+            begin = floor(times[i] > 0.0 ? times[i] * linear->per_length : 0.0);
+        }
+
+        carried[i] = evaluate(part->carried, terms, share);
+        if (values != NULL) {
+            values[i].offset = evaluate(part->offset, terms, share);
+            values[i].rate = evaluate(part->rate, terms, share);
+        }
+    }
 }

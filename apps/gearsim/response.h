@@ -36,4 +36,11 @@ int response_is_useful(const load_signal *load, double frequency);
  * it starts again from zero. Not for several threads at once. */
 response_value response_at(response *linear, double time);
 
+/*
+ * What spring and damper of the linear mesh have carried of the noise up to some times (m/s): the integral of
+ * 2 zeta w0 p' + w0^2 p, or what the noise has given x' less p'. With p and p', if values are wanted: NULL = they are not.
+ */
+void response_carried(response *linear, int count, const double times[], double carried[],
+                      response_value values[]);
+
 #endif
