@@ -1132,7 +1132,9 @@ iso_blank_factor = 0.898
     def test_damping_is_given_once(self):
         place = f"run.ini:{line_of(PARAMS, 'damping_Ns_per_m') + 1}: mesh.damping_ratio: "
         text = PARAMS.replace("damping_Ns_per_m = 844.361\n", "damping_Ns_per_m = 844.361\ndamping_ratio = 0.05\n")
-        self.refused(place + "must not stand beside mesh.damping_Ns_per_m, which says the same (got 0.05)", params=text)
+        told = place + "must not stand beside mesh.damping_Ns_per_m, which says the same (got 0.05)"
+        self.refused(told, params=text)
+        self.refused(told, params=text, arguments=["--set", "analysis.type=static"])
         self.refused_value("mesh", "damping_ratio", "-0.01")
         self.refused_value("mesh", "damping_ratio", "5", "0.05")
 

@@ -108,16 +108,21 @@ static int check_tables(const config *conf) {
     return faults;
 }
 
+/* Two keys for one thing, also where neither is used: which one is meant cannot be told. */
+static int check_damping(const config *conf) {
+    const char *ratio = config_text(conf, "mesh.damping_ratio");
+
+    if (ratio == NULL || config_text(conf, "mesh.damping_Ns_per_m") == NULL) {
+        return 0;
+    }
+    config_complain(conf, "mesh.damping_ratio",
+                    "must not stand beside mesh.damping_Ns_per_m, which says the same (got %s)",
+                    ratio);
+    return 1;
+}
+
 static int check_dynamic(const config *conf) {
     int faults = check_tables(conf);
-
-    if (config_text(conf, "mesh.damping_ratio") != NULL &&
-        config_text(conf, "mesh.damping_Ns_per_m") != NULL) {
-        config_complain(conf, "mesh.damping_ratio",
-                        "must not stand beside mesh.damping_Ns_per_m, which says the same (got %s)",
-                        config_text(conf, "mesh.damping_ratio"));
-        ++faults;
-    }
 
     if (!(conf->duration * conf->output_rate <= row_limit)) {
         config_complain(conf, "output.rate_Hz",
@@ -189,6 +194,7 @@ int config_check_together(const config *conf) {
     if (conf->model == MODEL_3D) {
         faults += modification_keys_check(conf);
     }
+    faults += check_damping(conf);
     faults += conf->analysis == ANALYSIS_STATIC ? check_static(conf) : check_dynamic(conf);
     return faults + check_outputs_are_no_inputs(conf);
 }
