@@ -71,7 +71,9 @@ def gears_of(path, provenance, options, needed=True):
         if not (digits.isascii() and digits.isdigit() and 3 <= int(digits[:9]) and len(digits) <= 5):
             if option is not None:
                 raise program.InputError(f"--{gear}-teeth: must be 3 to 99999 (got {text})")
-            raise runup.RunError(f"{path}: no gears.{gear}_teeth (3 to 99999) in its head lines; please give --{gear}-teeth")
+            got = f" (got {program.shown(text[:40])})" if text else ""
+            other_way = f", or give --{gear}-teeth" if getattr(options, "on_command_line", True) else ""
+            raise runup.RunError(f"{path}: its head must have gears.{gear}_teeth, 3 to 99999{got}{other_way}")
         return int(digits)
 
     pinion, wheel = teeth("pinion", options.pinion_teeth), teeth("wheel", options.wheel_teeth)

@@ -48,6 +48,7 @@ class Options:
     """What lines.gears_of() asks a command line for."""
 
     pinion_teeth = wheel_teeth = eigenfrequency = None
+    on_command_line = False
 
 
 def read_all(path):

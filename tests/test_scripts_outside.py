@@ -46,6 +46,8 @@ TRACES = "tooth,flank,trace,face_mm,roll_length_mm,deviation_um\n" + "".join(
 HEAD = "# gearsim\n# gears.pinion_teeth = 20\n# gears.wheel_teeth = 31\n# eigenfrequency_Hz = 300\n"
 COLUMNS = ("time_s", "pinion_speed_rpm", "pinion_angle_rad", "contact_force_N")
 
+BASH_SCRIPTS = ("bench", "demo", "reference", "setup", "test")
+
 # What a script and Python itself import.
 PLANTED_MODULES = ("numpy", "csv", "json", "contextlib", "functools", "importlib", "types", "warnings", "program",
                    "gearmesh_planted")
@@ -444,8 +446,28 @@ class Packages(Case):
             self.assertRegex(stdout, rf"(?m)^    scripts/{script} ")
             self.assertEqual(self.call(script, "--no-such-option", "x")[0], 2)
 
+    def test_bash_scripts_go_by_their_own_place(self):
+        """Called by a link, and with CDPATH: not into another folder, whose scripts and builds they would run."""
+        for folder in ("bin", "libgearmesh", "scripts/libgearmesh", "programs"):
+            os.makedirs(folder)
+        os.symlink(os.path.join(SCRIPTS, "reference"), "bin/reference")
+        self.write("programs/doxygen", "#!/bin/sh\npwd\n")
+        os.chmod("programs/doxygen", 0o755)
+        path = os.path.join(self.folder, "programs") + os.pathsep + os.environ["PATH"]
+        for folder, script in ((self.folder, "bin/reference"), (ROOT, "scripts/reference")):
+            result = subprocess.run(["bash", script, os.path.join(self.folder, "out")], capture_output=True, text=True,
+                                    cwd=folder, env={**os.environ, "PATH": path, "CDPATH": self.folder})
+            self.assertEqual(result.stdout.splitlines()[:1], [os.path.join(ROOT, "libgearmesh")], result.stderr)
+
+        # The others go the same way.
+        for script in ("scripts/bench", "scripts/demo", "scripts/reference", "scripts/test"):
+            with open(os.path.join(ROOT, script), encoding="utf-8") as file:
+                places = re.findall(r"(?m)^cd .*", file.read())
+            self.assertRegex(places[0], r'^cd "\$\(dirname "\$\(realpath -- "\$0"\)"\)/\.\.(/libgearmesh)?"$', script)
+            self.assertEqual(len(places), 1)
+
     def test_help_of_the_bash_scripts_is_their_whole_head(self):
-        for name in ("bench", "demo", "reference", "setup", "test"):
+        for name in BASH_SCRIPTS:
             with open(os.path.join(SCRIPTS, name), encoding="utf-8") as file:
                 head = file.read().split("#\n", 1)[1].split("\nset ", 1)[0]
             text = re.sub("(?m)^# ?", "", head) + "\n"

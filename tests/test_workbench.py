@@ -132,10 +132,18 @@ class Summaries(Case):
 
     def test_broken_runs_are_refused(self):
         self.write("a.csv", "# gearsim\n", self.run_up())
-        for name, message in (("a.csv", "no gears.pinion_teeth"), ("nowhere.csv", "nowhere.csv")):
+        for name, message in (("a.csv", "its head must have gears.pinion_teeth, 3 to 99999\n"), ("nowhere.csv", "nowhere.csv")):
             result = script_case.call("summary", name, folder=self.folder)
             self.assertEqual(result.returncode, 2)
             self.assertIn(message, result.stderr)
+
+        # An option is named where there is one.
+        for script in ("plot", "report", "campbell"):
+            result = script_case.call(script, "a.csv", folder=self.folder)
+            self.assertEqual(result.returncode, 2)
+            has_option = "--pinion-teeth" in script_case.call(script, "--help").stdout
+            self.assertEqual("--pinion-teeth" in result.stderr, has_option, result.stderr)
+            self.assertEqual(has_option, script == "campbell")
 
 
 class Pictures(Case):
