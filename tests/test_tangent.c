@@ -83,12 +83,18 @@ static void add_friction(uint64_t *seed, int i, gm_mesh_params *law) {
     law->roughness = 1e-6;
 }
 
+/* What a mesh has beside stiffness and damping. */
+enum kind { PLAIN, SLIDING, CORNERS };
+
 /* In contact for the most part; damped in every other case, and simple in some. */
-static int random_motion(const random_case *c, uint64_t *seed, int i, double tilt, int slides,
+static int random_motion(const random_case *c, uint64_t *seed, int i, double tilt, enum kind kind,
                          gm_mesh **mesh, plain_mesh *room, gm_motion *motion) {
     const gm_pair *pair = &c->pair;
     const double m = pair->normal_module;
-    const int may_be_parallel = c->use[0] == NULL && c->use[1] == NULL;
+    const int may_be_parallel =
+        c->use[0] == NULL && c->use[1] == NULL &&
+        (kind != CORNERS ||
+         pair->face_advance != 0.0); /* a gap that is the same all along a line */
     const double tilted = i % 8 == 0 && may_be_parallel
                               ? 0.0 /* else a kink: tilted tables end where parallel ones do */
                               : tilt * pair->transverse_base_pitch / pair->face_width;
@@ -96,8 +102,9 @@ static int random_motion(const random_case *c, uint64_t *seed, int i, double til
     gm_mesh_params_default(&law);
     law.stiffness = 1e8;
     law.damping = i % 2 == 0 ? 0.0 : 1e5;
-    law.model = i % 11 == 0 ? GM_MODEL_SIMPLE : GM_MODEL_3D;
-    if (slides) {
+    law.model = i % 11 == 0 && kind != CORNERS ? GM_MODEL_SIMPLE : GM_MODEL_3D;
+    law.corner_contact = kind == CORNERS ? GM_CORNER_ON : GM_CORNER_OFF;
+    if (kind == SLIDING) {
         add_friction(seed, i, &law);
     }
     const int status =
@@ -121,7 +128,7 @@ static int random_motion(const random_case *c, uint64_t *seed, int i, double til
     const double x = side * (0.5 * pair->backlash + gm_test_uniform(seed, 0.0, 12e-3) * m);
     (void)gm_position_from_pinion_angle(pair, gm_test_uniform(seed, 0.0, 6.0), x,
                                         gm_test_uniform(seed, -1e-3, 1e-3) * m, &motion->position);
-    if (slides) { /* either way round, and next to rest */
+    if (kind == SLIDING) { /* either way round, and next to rest */
         const double fastest = i % 7 == 0 ? 0.1 : 100.0;
         motion->position.pinion_speed =
             gm_test_uniform(seed, -fastest, fastest) * 0.1 / pair->center_distance;
@@ -167,8 +174,9 @@ static void compare_with_differences(const gm_mesh *mesh, const gm_motion *motio
     }
 }
 
-static void compare_random_tangents(uint64_t seed, int slides) {
-    int compared = 0, kinks = 0;
+/* Returns how many motions were compared. */
+static int compare_random_tangents(uint64_t seed, enum kind kind) {
+    int compared = 0, kinks = 0, motions = 0;
     for (int i = 0; i < 300; ++i) {
         random_case c;
         plain_mesh room;
@@ -178,24 +186,31 @@ static void compare_random_tangents(uint64_t seed, int slides) {
         gm_test_context("case %d", i);
         GM_ASSERT_INT(random_mixed_case_make(&c, &seed, i), GM_OK);
         double here[VALUES];
-        if (random_motion(&c, &seed, i, 0.02, slides, &mesh, &room, &motion) == GM_OK &&
+        if (random_motion(&c, &seed, i, 0.02, kind, &mesh, &room, &motion) == GM_OK &&
             evaluate(mesh, &motion, here) == GM_OK && here[0] != 0.0 &&
             GM_ASSERT_INT(gm_mesh_tangent(mesh, &motion, &tangent), GM_OK)) {
             compare_with_differences(mesh, &motion, &tangent, i, &compared, &kinks);
+            ++motions;
         }
         random_case_free(&c);
     }
     gm_test_context("all cases: %d compared, %d kinks", compared, kinks);
     GM_ASSERT(compared > 20000);
     GM_ASSERT(kinks < compared / 10);
+    return motions;
 }
 
 static void tangent_is_that_of_differences(void) {
-    compare_random_tangents(UINT64_C(301), 0);
+    GM_ASSERT(compare_random_tangents(UINT64_C(301), PLAIN) > 200);
 }
 
 static void tangent_with_friction_is_that_of_differences(void) {
-    compare_random_tangents(UINT64_C(303), 1);
+    GM_ASSERT(compare_random_tangents(UINT64_C(303), SLIDING) > 200);
+}
+
+/* Lines that go on beyond the path, where tip corners touch: normals turn, arms are others. */
+static void tangent_with_corners_is_that_of_differences(void) {
+    GM_ASSERT(compare_random_tangents(UINT64_C(306), CORNERS) > 200);
 }
 
 /* The change of a cross product r x f by dr. */
@@ -219,7 +234,7 @@ static void forces_stay_in_balance_with_friction(void) {
         gm_mesh_result r;
         gm_test_context("case %d", i);
         GM_ASSERT_INT(random_mixed_case_make(&c, &seed, i), GM_OK);
-        if (random_motion(&c, &seed, i, 0.02, 1, &mesh, &room, &motion) == GM_OK &&
+        if (random_motion(&c, &seed, i, 0.02, SLIDING, &mesh, &room, &motion) == GM_OK &&
             gm_mesh_evaluate_posed(mesh, &motion, GM_WANT_WRENCH, NULL, &r) == GM_OK &&
             r.force != 0.0 && GM_ASSERT_INT(gm_mesh_tangent(mesh, &motion, &tangent), GM_OK)) {
             const double apart = c.pair.wheel.sign * c.pair.center_distance;
@@ -262,7 +277,7 @@ static void friction_ends_without_a_jump(void) {
         gm_motion motion;
         gm_test_context("case %d", i);
         GM_ASSERT_INT(random_mixed_case_make(&c, &seed, i), GM_OK);
-        const int status = random_motion(&c, &seed, i, 0.02, 0, &mesh[0], &room[0], &motion);
+        const int status = random_motion(&c, &seed, i, 0.02, PLAIN, &mesh[0], &room[0], &motion);
         gm_mesh_params law;
         gm_mesh_params_default(&law);
         law.stiffness = 1e8;
@@ -300,7 +315,7 @@ static void power_of_a_tilt_is_that_of_its_points(void) {
         gm_mesh_result still, moving;
         gm_test_context("case %d", i);
         GM_ASSERT_INT(random_mixed_case_make(&c, &seed, i), GM_OK);
-        const int status = random_motion(&c, &seed, 2 * i + 1, 0.0, 0, &mesh, &room, &motion);
+        const int status = random_motion(&c, &seed, 2 * i + 1, 0.0, PLAIN, &mesh, &room, &motion);
         const gm_pose rate = motion.pose_rate;
         memset(&motion.pose_rate, 0, sizeof motion.pose_rate);
         motion.position.offset_rate = 0.0;
@@ -371,6 +386,7 @@ int main(int argc, char **argv) {
         GM_TEST(what_has_no_tangent_is_refused),
         GM_TEST(tangent_is_that_of_differences),
         GM_TEST(tangent_with_friction_is_that_of_differences),
+        GM_TEST(tangent_with_corners_is_that_of_differences),
         GM_TEST(forces_stay_in_balance_with_friction),
         GM_TEST(friction_ends_without_a_jump),
     };

@@ -143,6 +143,8 @@ void gmi_corner_at(const gmi_corner *corner, double roll, gmi_corner_place *plac
     place->mate_roll = rho;
     place->across = n_way;
     place->along = e_way + roll;
+    place->across_by_roll = by.sine + corner->tip_roll / r_g * (1.0 - by.versine);
+    place->along_by_roll = by.versine + corner->tip_roll / r_g * by.sine;
     place->versine = versine;
     place->turn = angle_of(sine, cosine);
     place->gain = longer + roll;
@@ -163,6 +165,10 @@ void gmi_corner_at(const gmi_corner *corner, double roll, gmi_corner_place *plac
         (base_sum * sine + corner->line_of_action * cosine) * turn_by_roll * per_base;
     place->versine_by_roll = sine * turn_by_roll;
     place->gain_by_roll = rho_by_roll + 1.0;
+
+    /* By T the turn follows from gap' by both: that of by_length by the roll. */
+    place->versine_by_length = -sine * (r_g * place->versine_by_roll + sine) /
+                               (corner->line_of_action * cosine + base_sum * sine);
 }
 
 /* The gap is convex: from beyond, Newton's method comes closer from the same side. */

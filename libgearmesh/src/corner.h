@@ -20,10 +20,12 @@ typedef struct gmi_corner_place {
 
     /* From the point of the line of action with the same roll: away from the mate's axis, and along the line (m). */
     double across, along;
+    double across_by_roll, along_by_roll; /* (1) */
 
     /* Turn of the normal from the line of action, with the axes held: the angle (rad), and 1 - cos of it. */
     double turn, versine;
     double versine_by_roll;
+    double versine_by_length; /* and by T (1/m) */
 
     /* By how much roll lengths of the flank touched are longer than on the line of action (m). */
     double gain;
@@ -71,6 +73,38 @@ typedef struct gmi_corner_sums {
  */
 void gmi_side_sum_corners(const gm_mesh *mesh, int side, const gm_position *position, int wanted,
                           double approach_speed, const gmi_sliding *sliding, gmi_corner_sums *sums);
+
+/* What a tip makes of the wrench: its sums as two triples, each with weights as of a force. */
+enum gmi_tip_part { GMI_TIP_TURNED, GMI_TIP_VERSINE, GMI_TIP_PARTS };
+enum { GMI_TIP_VARIABLES = GMI_BY_DELTA_RATE + 1 }; /* variables that these move with */
+
+/* arm, arm_t1, across; and versine, versine_t1, along of gmi_tip_load; and how they move. */
+typedef struct gmi_tip_tangent {
+    double sum[GMI_TIP_PARTS][GMI_WEIGHTS];
+    double by[GMI_TIP_PARTS][GMI_LOAD_VARIABLES][GMI_WEIGHTS];
+} gmi_tip_tangent;
+
+/* A side with corners, and how all of it moves with its coordinates: integrals over what touches, times the weights. */
+typedef struct gmi_corner_tangent {
+    gmi_rates rates;                             /* given */
+    double sum[GMI_WEIGHTS];                     /* of the overlap (m) */
+    double contact[GMI_WEIGHTS];                 /* of 1 (1) */
+    double arm[GMI_WEIGHTS];                     /* of gmi_line_tangent.arm (m) */
+    double sum_by[GMI_COORDINATES][GMI_WEIGHTS]; /* derivatives */
+    double contact_by[GMI_COORDINATES][GMI_WEIGHTS];
+    double flow_by
+        [GMI_COORDINATES];   /* of the speed of approach, where the ends of what touches move */
+    gmi_tip_tangent tips[2]; /* [enum gm_role] */
+    gmi_line_tangent line;   /* at hand */
+} gmi_corner_tangent;
+
+/* corner_line.c: of a side that is not clear, without friction. */
+void gmi_side_sum_corner_tangent(const gm_mesh *mesh, int side, const gm_position *position,
+                                 gmi_corner_tangent *tangent);
+
+/* wrench.c: the wrench of a tip as a map of one of its triples; and how it changes as the wheel's axis moves. */
+void gmi_wrench_map_tip(const gm_pair *pair, const gmi_engagement *at, int role, int part, int side,
+                        gmi_wrench_map *map, gmi_wrench_map by[2]);
 
 /* The roll at which the gap is as large as an overlap, or the corner is off the flank; 0 for an overlap <= 0 (m). */
 double gmi_corner_touch(const gmi_corner *corner, double overlap);

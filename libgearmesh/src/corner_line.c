@@ -21,13 +21,17 @@
 /* Of a flank without tables and ramps. */
 static const gmi_grid no_grid = {0};
 
+/* Of gmi_tilt_cuts_find(): nothing else ends a line. */
+enum { FACES_ALONE = 4 };
+
 #define JOINT_ROUNDING 1e-9 /* of the shortest parabola: a place this close to a joint is at it */
 
 /* What is known of the corner at a joint. */
 typedef struct joint {
     double gap, slope;
     double versine, across, along, gain;
-    double versine_by_roll, gain_by_roll; /* of spur gears */
+    double versine_by_roll, versine_by_length;
+    double gain_by_roll, across_by_roll, along_by_roll; /* of spur gears */
 } joint;
 
 /* The gap around one roll: a parabola from `from` on, and where the corner is. */
@@ -48,17 +52,22 @@ typedef struct view {
     gmi_grid held[2];
     parabola last; /* what was found last, of the tip of this gear: */
     int last_role;
-    gmi_line_tangent tangent;
-    gmi_corner_sums *sums;
-    double approach_speed;      /* (m/s) */
-    double viscous;             /* damping times speed of approach (N) */
-    const gmi_sliding *sliding; /* NULL = without friction */
+    gmi_line_tangent *tangent;    /* of the part at hand, where derivatives are wanted */
+    gmi_corner_tangent *followed; /* NULL = sums alone */
+    gmi_corner_sums *sums;        /* or NULL */
+    double approach_speed;        /* (m/s) */
+    double viscous;               /* damping times speed of approach (N) */
+    const gmi_sliding *sliding;   /* NULL = without friction */
 } view;
+
+/* What cuts a line: a face, a roll beyond the tip of a gear, an end of its table, friction; or it ends where a corner does. */
+enum { CUT_FACE, CUT_ROLL, CUT_TABLE = CUT_ROLL + 2, CUT_FRICTION = CUT_TABLE + 2, CUT_STOP };
 
 /* A place at which a line is cut, and how that moves by origin and delta. */
 typedef struct cut {
     double t1;
     double by[2];
+    int what; /* of both gears: their first one and enum gm_role */
 } cut;
 
 /* One line of it. */
@@ -108,7 +117,10 @@ static void find_joint(const gmi_corner *corner, double roll, joint *found) {
     found->along = place.along;
     found->gain = place.gain;
     found->versine_by_roll = place.versine_by_roll;
+    found->versine_by_length = place.versine_by_length;
     found->gain_by_roll = place.gain_by_roll;
+    found->across_by_roll = place.across_by_roll;
+    found->along_by_roll = place.along_by_roll;
 }
 
 /* Both parabolas between two joints meet halfway with the same slope: gap and slope at both ends say which. */
@@ -165,6 +177,30 @@ static OWN_STACK void find_point(const gmi_corner *corner, double roll, parabola
     found->curvature = place.by_roll_twice;
 }
 
+/* How the parabola moves with T, as the same of what gap and slope at its joints move by; of spur gears at one place. */
+typedef struct moved_parabola {
+    double gap, slope, curvature; /* at its beginning */
+} moved_parabola;
+
+static moved_parabola by_length_of(const parabola *gap) {
+    const joint *begins = &gap->begins, *ends = &gap->ends;
+    const double half = 0.5 * (gap->pair_to - gap->pair_from);
+    moved_parabola by = {-begins->versine, -begins->versine_by_roll, 0.0};
+    if (!(half > 0.0)) {
+        return by;
+    }
+    const double middle_slope = (begins->versine - ends->versine) / half +
+                                0.5 * (begins->versine_by_roll + ends->versine_by_roll);
+    if (gap->from == gap->pair_from) {
+        by.curvature = (middle_slope - by.slope) / half;
+    } else {
+        by.gap += 0.5 * half * (by.slope + middle_slope);
+        by.slope = middle_slope;
+        by.curvature = (-ends->versine_by_roll - middle_slope) / half;
+    }
+    return by;
+}
+
 /* The gap of one tip around a place on a line. */
 static const parabola *gap_at(view *v, const gmi_beyond *beyond, int role, double t1) {
     const gmi_corner *corner = &v->mesh->corners[role];
@@ -181,14 +217,14 @@ static const parabola *gap_at(view *v, const gmi_beyond *beyond, int role, doubl
     return &v->last;
 }
 
-/* The roll at which the gap exceeds an overlap: kappa u^2 / 2 is not far from it. */
-static OWN_STACK double stop_of(const gmi_corner *corner, double overlap) {
+/* The roll at which the gap exceeds an overlap, which tilts raise with the roll: kappa u^2 / 2 is not far from it. */
+static OWN_STACK double stop_of(const gmi_corner *corner, double overlap, double by_roll) {
     gmi_corner_place place;
     gmi_corner_at(corner, 0.0, &place);
     double roll = fmin(sqrt(2.0 * overlap / place.by_roll_twice), corner->reach);
     for (int k = 0; k < 40 && roll < corner->reach; ++k) {
         gmi_corner_at(corner, roll, &place);
-        if (place.gap > overlap) {
+        if (place.gap > overlap + by_roll * roll) {
             break;
         }
         roll = fmin(1.25 * roll, corner->reach);
@@ -209,18 +245,20 @@ static double profile_rate(const gmi_grid *grid) {
     return grid->direction * grid->climb;
 }
 
-static void take_nearer(double t1, double from, double by_origin, double by_delta, cut *next) {
+static void take_nearer(double t1, double from, double by_origin, double by_delta, int what,
+                        cut *next) {
     if (t1 > from && t1 < next->t1) { /* not for spur gears: infinite, or no number */
         next->t1 = t1;
         next->by[GMI_BY_ORIGIN] = by_origin;
         next->by[GMI_BY_DELTA] = by_delta;
+        next->what = what;
     }
 }
 
 /* Where the next part begins: at an end of either flank's table, at a tip, at a joint of the gap, and on the path of contact
  * where sliding speeds differ enough. */
-static cut next_cut(const view *v, const whole_line *whole, double from, double to) {
-    cut next = {to, {0.0, 0.0}};
+static cut next_cut(const view *v, const whole_line *whole, double from, const cut *last) {
+    cut next = *last;
     const double per_advance = 1.0 / v->lines.advance;
     int is_on_path = 1;
     for (int role = GM_PINION; role <= GM_WHEEL; ++role) {
@@ -229,9 +267,10 @@ static cut next_cut(const view *v, const whole_line *whole, double from, double 
         if (grid->face_rate > 0.0) {
             const double profile = profile_of(&whole->line, role);
             const double by_delta = role == GM_PINION ? 0.0 : per_advance;
-            take_nearer(-profile / profile_rate(grid), from, -per_advance, by_delta, &next);
+            take_nearer(-profile / profile_rate(grid), from, -per_advance, by_delta,
+                        CUT_TABLE + role, &next);
             take_nearer((grid->profile_cells - profile) / profile_rate(grid), from, -per_advance,
-                        by_delta, &next);
+                        by_delta, CUT_TABLE + role, &next);
         }
 
         /* The tip, and beyond it the next joint. */
@@ -244,11 +283,12 @@ static cut next_cut(const view *v, const whole_line *whole, double from, double 
         is_on_path = is_on_path && is_before;
         const double next_roll = is_before ? 0.0 : next_joint(corner, roll, climbs);
         take_nearer((next_roll - beyond->at_zero) / beyond->per_t1, from,
-                    -beyond->by_origin / beyond->per_t1, -beyond->by_delta / beyond->per_t1, &next);
+                    -beyond->by_origin / beyond->per_t1, -beyond->by_delta / beyond->per_t1,
+                    CUT_ROLL + role, &next);
     }
     for (int k = 0; k < GMI_FRICTION_CUTS && v->sliding != NULL && is_on_path; ++k) {
         take_nearer((v->sliding->friction->cuts[k] - whole->origin) * per_advance, from,
-                    -per_advance, 0.0, &next);
+                    -per_advance, 0.0, CUT_FRICTION, &next);
     }
     return next;
 }
@@ -268,10 +308,15 @@ static void hold_flanks(const view *v, double middle, gmi_line *part, int held[2
 
 /* What is known of the tangent of a part before it is followed. */
 static OWN_STACK void begin_tangent(view *v, const whole_line *whole, const int held[2]) {
-    gmi_line_tangent *tangent = &v->tangent;
+    const gm_mesh *mesh = v->mesh;
+    gmi_line_tangent *tangent = v->tangent;
     memset(tangent, 0, sizeof *tangent);
     tangent->by[GMI_BY_DELTA][0] = 1.0;
-    if (v->mesh->engagement.is_tilted) {
+    if (v->followed != NULL) {
+        gmi_tilt_tangent(mesh->pair, &mesh->engagement, v->side, whole->origin, v->lines.delta,
+                         &v->followed->rates, tangent);
+        tangent->face_per_length = v->running[GM_WHEEL]->face_rate / mesh->pair->face_width;
+    } else if (mesh->engagement.is_tilted) {
         tangent->by[GMI_BY_DELTA][0] = whole->gain;
         tangent->by[GMI_BY_ORIGIN][0] = whole->by_origin[0];
         tangent->by[GMI_BY_ORIGIN][1] = whole->by_origin[1];
@@ -280,20 +325,47 @@ static OWN_STACK void begin_tangent(view *v, const whole_line *whole, const int 
     tangent->wheel_per_rho = held[GM_WHEEL] ? 0.0 : v->running[GM_WHEEL]->per_rho;
 }
 
+/* The gap moves the part with all coordinates: by the roll beyond the tip, which moves straight along t1, and by T. */
+static OWN_STACK void follow_gap(view *v, const whole_line *whole, int role, const parabola *gap) {
+    const gm_mesh *mesh = v->mesh;
+    const gmi_beyond *beyond = &whole->beyond[role];
+    double roll_by[GMI_COORDINATES][2];
+    gmi_tilt_beyond_by(mesh->pair, &mesh->engagement, v->side, whole->origin, role, roll_by);
+    const double gone = beyond->at_zero - gap->from, rate = beyond->per_t1;
+    const double slope_0 = gap->slope + gap->curvature * gone;
+    const double slope_1 = gap->curvature * rate;
+    for (int k = 0; k < GMI_COORDINATES; ++k) {
+        double *by = v->tangent->by[k];
+        by[0] -= roll_by[k][0] * slope_0;
+        by[1] -= roll_by[k][0] * slope_1 + roll_by[k][1] * slope_0;
+        by[2] -= roll_by[k][1] * slope_1;
+    }
+
+    const moved_parabola moved = by_length_of(gap);
+    double *by_length = v->tangent->by[GMI_BY_LENGTH];
+    by_length[0] -= moved.gap + gone * (moved.slope + 0.5 * gone * moved.curvature);
+    by_length[1] -= rate * (moved.slope + gone * moved.curvature);
+    by_length[2] -= 0.5 * rate * rate * moved.curvature;
+}
+
 /* A corner takes its gap off the part, and changes what the part moves by. */
-static void take_gap_off(view *v, const gmi_beyond *beyond, const parabola *gap, gmi_line *part) {
+static void take_gap_off(view *v, const whole_line *whole, int role, const parabola *gap,
+                         gmi_line *part) {
+    const gmi_beyond *beyond = &whole->beyond[role];
     const double gone = roll_at(beyond, part->from) - gap->from;
     const double rate = beyond->per_t1;
     part->overlap -= gap->gap + gone * (gap->slope + 0.5 * gone * gap->curvature);
     part->half_slope -= 0.5 * rate * (gap->slope + gone * gap->curvature);
     part->curvature -= 0.5 * rate * rate * gap->curvature;
-    if (v->wanted & GMI_DERIVATIVES) {
+    if (v->followed != NULL) {
+        follow_gap(v, whole, role, gap);
+    } else if (v->wanted & GMI_DERIVATIVES) {
         const double slope_0 = gap->slope + gap->curvature * (beyond->at_zero - gap->from);
         const double slope_1 = gap->curvature * rate;
-        v->tangent.by[GMI_BY_ORIGIN][0] -= beyond->by_origin * slope_0;
-        v->tangent.by[GMI_BY_ORIGIN][1] -= beyond->by_origin * slope_1;
-        v->tangent.by[GMI_BY_DELTA][0] -= beyond->by_delta * slope_0;
-        v->tangent.by[GMI_BY_DELTA][1] -= beyond->by_delta * slope_1;
+        v->tangent->by[GMI_BY_ORIGIN][0] -= beyond->by_origin * slope_0;
+        v->tangent->by[GMI_BY_ORIGIN][1] -= beyond->by_origin * slope_1;
+        v->tangent->by[GMI_BY_DELTA][0] -= beyond->by_delta * slope_0;
+        v->tangent->by[GMI_BY_DELTA][1] -= beyond->by_delta * slope_1;
     }
 }
 
@@ -311,7 +383,7 @@ static part_force force_of(const view *v, const gmi_line_sum *sum) {
                         {0.0, 0.0},
                         {0.0, 0.0}};
     if (v->wanted & GMI_DERIVATIVES) {
-        const gmi_line_tangent *tangent = &v->tangent;
+        const gmi_line_tangent *tangent = v->tangent;
         for (int k = GMI_BY_ORIGIN; k <= GMI_BY_DELTA; ++k) {
             force.whole_by[k] =
                 stiffness * tangent->sum_by[k][0] + viscous * tangent->contact_by[k][0];
@@ -374,7 +446,7 @@ static gmi_part_force force_with_moments(const view *v, const whole_line *whole,
     double moment_by[2] = {load->whole, 0.0}, touching_by[2] = {0.0, 0.0};
     for (int k = GMI_BY_ORIGIN; k <= GMI_BY_DELTA && v->wanted & GMI_DERIVATIVES; ++k) {
         moment_by[k] += origin * load->whole_by[k] + advance * load->by_t1_by[k];
-        touching_by[k] = v->tangent.contact_by[k][0];
+        touching_by[k] = v->tangent->contact_by[k][0];
     }
 
     /* By angles and speeds. */
@@ -487,7 +559,7 @@ static OWN_STACK void add_sums(view *v, const whole_line *whole, const gmi_line_
     side->contact_rho += whole->origin * sum->contact + advance * sum->contact_t1;
 
     if (v->wanted & GMI_DERIVATIVES) {
-        const gmi_line_tangent *tangent = &v->tangent;
+        const gmi_line_tangent *tangent = v->tangent;
         side->by_origin += tangent->sum_by[GMI_BY_ORIGIN][0];
         side->by_delta += tangent->sum_by[GMI_BY_DELTA][0];
         side->contact_by_origin += tangent->contact_by[GMI_BY_ORIGIN][0];
@@ -508,27 +580,211 @@ static OWN_STACK void add_sums(view *v, const whole_line *whole, const gmi_line_
 static void add_ends(view *v, const whole_line *whole, const cut *from, const cut *to,
                      const gmi_line_sum *sum) {
     const int is_tilted = v->mesh->engagement.is_tilted, slides = v->sliding != NULL;
-    const int begins = from->t1 == whole->line.from, ends = to->t1 == whole->line.to;
+    const int begins = from->what == CUT_FACE, ends = to->what == CUT_FACE;
     if (begins ? is_tilted : slides) {
-        add_end(&v->tangent, -1.0, from->t1, sum->at_from, begins ? whole->from_by : from->by);
+        add_end(v->tangent, -1.0, from->t1, sum->at_from, begins ? whole->from_by : from->by);
     }
     if (ends ? is_tilted : slides) {
-        add_end(&v->tangent, 1.0, to->t1, sum->at_to, ends ? whole->to_by : to->by);
+        add_end(v->tangent, 1.0, to->t1, sum->at_to, ends ? whole->to_by : to->by);
     }
 }
 
-/* One part between two cuts; whether it touches. */
-static int add_part(view *v, const whole_line *whole, const cut *from, const cut *to) {
+/* ---------------------------------------------------------------------------------------------
+ * How a side moves with all its coordinates
+ * ------------------------------------------------------------------------------------------- */
+
+/* The end of a line at a face of the wheel, which moves and takes f there along. A face of the pinion stays. */
+static OWN_STACK void follow_face(const view *v, const whole_line *whole, int is_beginning,
+                                  double t1, double f) {
+    const gm_mesh *mesh = v->mesh;
+    gmi_tilt_cuts cuts;
+    gmi_line_part part;
+    double by[GMI_COORDINATES];
+    gmi_tilt_cuts_find(mesh->pair, &mesh->engagement, v->side, v->lines.delta, FACES_ALONE, &cuts);
+    (void)gmi_tilt_cut_line(&cuts, whole->origin, &part);
+    if (!gmi_tilt_move_end(mesh->pair, &mesh->engagement, v->side, whole->origin, v->lines.delta,
+                           &part, is_beginning, by)) {
+        return;
+    }
+    for (int k = 0; k < GMI_COORDINATES; ++k) {
+        const double moved = is_beginning ? -by[k] : by[k];
+        double *sum = v->tangent->sum_by[k], *contact = v->tangent->contact_by[k];
+        sum[0] += f * moved;
+        sum[1] += f * moved * t1;
+        contact[0] += moved;
+        contact[1] += moved * t1;
+    }
+}
+
+/* Adds what has the integrals whole and by_t1, with the weights. */
+static inline void add_weighted(const view *v, const whole_line *whole, double all, double by_t1,
+                                double sums[GMI_WEIGHTS]) {
+    sums[GMI_WHOLE] += all;
+    sums[GMI_BY_T1] += by_t1;
+    sums[GMI_BY_RHO] += whole->origin * all + v->lines.advance * by_t1;
+}
+
+/* What of a corner goes with the middle of the load of a part, and how that moves. */
+typedef struct at_middle {
+    double value, by_roll, by_length;
+} at_middle;
+
+/* Linear between both joints of the parabola. */
+static at_middle between(const parabola *gap, double roll, double begins, double ends,
+                         double by_roll_there) {
+    const double length = gap->pair_to - gap->pair_from;
+    const double by_roll = length > 0.0 ? (ends - begins) / length : by_roll_there;
+    const at_middle result = {begins + (roll - gap->pair_from) * by_roll, by_roll, 0.0};
+    return result;
+}
+
+/* Adds its product with the force, or with the force's moment, and how that moves. */
+static void add_product(const at_middle *what, const double roll_by[GMI_TIP_VARIABLES],
+                        const double load[1 + GMI_TIP_VARIABLES], int weight,
+                        double sum[GMI_WEIGHTS], double by[][GMI_WEIGHTS]) {
+    sum[weight] += what->value * load[GMI_TIP_VARIABLES];
+    for (int k = 0; k < GMI_TIP_VARIABLES; ++k) {
+        const double moved =
+            what->by_roll * roll_by[k] + (k == GMI_BY_LENGTH ? what->by_length : 0.0);
+        by[k][weight] += what->value * load[k] + moved * load[GMI_TIP_VARIABLES];
+    }
+}
+
+/*
+ * A cut moves with the line, and what one part loses there the next one gains: that is not the same to what goes with the
+ * middle of each.
+ */
+static OWN_STACK void follow_cut(const view *v, const whole_line *whole, const cut *end,
+                                 double sign, double f, double load[], double load_t1[]) {
+    if (!(f > 0.0) || end->what == CUT_FACE || end->what == CUT_STOP) {
+        return;
+    }
+    double by[GMI_COORDINATES] = {end->by[GMI_BY_ORIGIN], end->by[GMI_BY_DELTA]};
+    if (end->what < CUT_TABLE) {
+        const int role = end->what - CUT_ROLL;
+        double roll_by[GMI_COORDINATES][2];
+        gmi_tilt_beyond_by(v->mesh->pair, &v->mesh->engagement, v->side, whole->origin, role,
+                           roll_by);
+        for (int k = 0; k < GMI_COORDINATES; ++k) {
+            by[k] = -(roll_by[k][0] + roll_by[k][1] * end->t1) / whole->beyond[role].per_t1;
+        }
+    } else {
+        by[GMI_BY_LENGTH] = end->by[GMI_BY_DELTA]; /* of the wheel's table */
+    }
+    const double density = sign * (v->mesh->law.stiffness * f + v->viscous);
+    for (int k = 0; k < GMI_COORDINATES; ++k) {
+        load[k] += density * by[k];
+        load_t1[k] += density * by[k] * end->t1;
+    }
+}
+
+/* What acts at a corner, as add_tip_load() has it. */
+static OWN_STACK void follow_tip(const view *v, const whole_line *whole, int role,
+                                 const parabola *gap, const cut *from, const cut *to,
+                                 const gmi_line_sum *sum) {
+    const gm_mesh *mesh = v->mesh;
+    const double stiffness = mesh->law.stiffness, damping = mesh->law.damping;
+    const double viscous = v->viscous;
+    const gmi_line_tangent *line = v->tangent;
+
+    /* Force and moment of the part, behind how they move with the coordinates and with the speed of approach. */
+    double load[1 + GMI_TIP_VARIABLES], load_t1[1 + GMI_TIP_VARIABLES];
+    for (int k = 0; k < GMI_COORDINATES; ++k) {
+        load[k] = stiffness * line->sum_by[k][0] + viscous * line->contact_by[k][0];
+        load_t1[k] = stiffness * line->sum_by[k][1] + viscous * line->contact_by[k][1];
+    }
+    follow_cut(v, whole, from, -1.0, sum->at_from, load, load_t1);
+    follow_cut(v, whole, to, 1.0, sum->at_to, load, load_t1);
+    load[GMI_BY_DELTA_RATE] = damping * sum->contact;
+    load_t1[GMI_BY_DELTA_RATE] = damping * sum->contact_t1;
+    load[GMI_TIP_VARIABLES] = stiffness * sum->sum + viscous * sum->contact;
+    load_t1[GMI_TIP_VARIABLES] = stiffness * sum->sum_t1 + viscous * sum->contact_t1;
+    const double force = load[GMI_TIP_VARIABLES];
+    if (force == 0.0) {
+        return;
+    }
+
+    /* The roll in its middle, which moves with the line and along it. */
+    const gmi_beyond *beyond = &whole->beyond[role];
+    const double t1 = load_t1[GMI_TIP_VARIABLES] / force;
+    const double roll = roll_at(beyond, t1);
+    double line_by[GMI_COORDINATES][2], roll_by[GMI_TIP_VARIABLES];
+    gmi_tilt_beyond_by(mesh->pair, &mesh->engagement, v->side, whole->origin, role, line_by);
+    for (int k = 0; k < GMI_TIP_VARIABLES; ++k) {
+        roll_by[k] = beyond->per_t1 * (load_t1[k] - t1 * load[k]) / force;
+        roll_by[k] += k < GMI_COORDINATES ? line_by[k][0] + line_by[k][1] * t1 : 0.0;
+    }
+
+    /* The gap's slope, and where the corner is. */
+    const joint *a = &gap->begins, *b = &gap->ends;
+    const double gone = roll - gap->from;
+    const moved_parabola moved = by_length_of(gap);
+    const at_middle slope = {gap->slope + gone * gap->curvature, gap->curvature,
+                             moved.slope + gone * moved.curvature};
+    at_middle versine = between(gap, roll, a->versine, b->versine, a->versine_by_roll);
+    versine.by_length = between(gap, roll, a->versine_by_length, b->versine_by_length, 0.0).value;
+    const at_middle across = between(gap, roll, a->across, b->across, a->across_by_roll);
+    const at_middle along = between(gap, roll, a->along, b->along, a->along_by_roll);
+
+    gmi_tip_tangent *tip = &v->followed->tips[role];
+    double *turned = tip->sum[GMI_TIP_TURNED], *rest = tip->sum[GMI_TIP_VERSINE];
+    double(*turned_by)[GMI_WEIGHTS] = tip->by[GMI_TIP_TURNED];
+    double(*rest_by)[GMI_WEIGHTS] = tip->by[GMI_TIP_VERSINE];
+    add_product(&slope, roll_by, load, GMI_WHOLE, turned, turned_by);
+    add_product(&slope, roll_by, load_t1, GMI_BY_T1, turned, turned_by);
+    add_product(&across, roll_by, load, GMI_BY_RHO, turned, turned_by);
+    add_product(&versine, roll_by, load, GMI_WHOLE, rest, rest_by);
+    add_product(&versine, roll_by, load_t1, GMI_BY_T1, rest, rest_by);
+    add_product(&along, roll_by, load, GMI_BY_RHO, rest, rest_by);
+}
+
+/* What a part adds to the tangent of the side. */
+static OWN_STACK void add_followed(view *v, const whole_line *whole, const cut *from, const cut *to,
+                                   const gmi_line_sum *sum, const int is_beyond[2], double middle) {
+    gmi_corner_tangent *side = v->followed;
+    const gmi_line_tangent *line = v->tangent;
+    const double *c = line->contact, *arm = line->arm, *speed = line->speed;
+    if (from->what == CUT_FACE && sum->at_from > 0.0) {
+        follow_face(v, whole, 1, from->t1, sum->at_from);
+    }
+    if (to->what == CUT_FACE && sum->at_to > 0.0) {
+        follow_face(v, whole, 0, to->t1, sum->at_to);
+    }
+
+    add_weighted(v, whole, sum->sum, sum->sum_t1, side->sum);
+    add_weighted(v, whole, sum->contact, sum->contact_t1, side->contact);
+    add_weighted(v, whole, arm[0] * c[0] + arm[1] * c[1], arm[0] * c[1] + arm[1] * c[2], side->arm);
+    for (int k = 0; k < GMI_COORDINATES; ++k) {
+        const double *contact_by = line->contact_by[k];
+        add_weighted(v, whole, line->sum_by[k][0], line->sum_by[k][1], side->sum_by[k]);
+        add_weighted(v, whole, contact_by[0], contact_by[1], side->contact_by[k]);
+        side->flow_by[k] += speed[0] * contact_by[0] + speed[1] * contact_by[1];
+    }
+
+    /* The moment over rho_p moves with the origin. */
+    side->sum_by[GMI_BY_ORIGIN][GMI_BY_RHO] += sum->sum;
+    side->contact_by[GMI_BY_ORIGIN][GMI_BY_RHO] += sum->contact;
+    for (int role = GM_PINION; role <= GM_WHEEL; ++role) {
+        if (is_beyond[role]) {
+            follow_tip(v, whole, role, gap_at(v, &whole->beyond[role], role, middle), from, to,
+                       sum);
+        }
+    }
+}
+
+/* One part between two cuts; whether it touches. follows: a constant at each call. */
+SPECIALIZED int add_part(view *v, const whole_line *whole, const cut *from, const cut *to,
+                         int follows) {
     const gm_mesh *mesh = v->mesh;
     const double middle = 0.5 * (from->t1 + to->t1);
     gmi_line part = gmi_line_between(&whole->line, from->t1, to->t1);
     int held[2], is_beyond[2];
     hold_flanks(v, middle, &part, held);
     int mask = v->sliding != NULL ? GMI_MOMENTS : v->wanted & GMI_MOMENTS;
-    if (v->wanted & GMI_DERIVATIVES) {
+    if (follows || v->wanted & GMI_DERIVATIVES) {
         mask = GMI_TANGENT | GMI_MOMENTS;
         begin_tangent(v, whole, held);
-        part.tangent = &v->tangent;
+        part.tangent = v->tangent;
     }
 
     /* The gap of each tip that the part is beyond of. */
@@ -538,7 +794,7 @@ static int add_part(view *v, const whole_line *whole, const cut *from, const cut
         is_beyond[role] = roll > 0.0;
         if (is_beyond[role]) {
             mask |= GMI_MOMENTS;
-            take_gap_off(v, beyond, gap_at(v, beyond, role, middle), &part);
+            take_gap_off(v, whole, role, gap_at(v, beyond, role, middle), &part);
         }
     }
 
@@ -546,6 +802,10 @@ static int add_part(view *v, const whole_line *whole, const cut *from, const cut
     gmi_flanks_integrate(
         &mesh->side[v->side], held[GM_PINION] ? &v->held[GM_PINION] : v->running[GM_PINION],
         held[GM_WHEEL] ? &v->held[GM_WHEEL] : v->running[GM_WHEEL], &part, mask, &sum);
+    if (follows) {
+        add_followed(v, whole, from, to, &sum, is_beyond, middle);
+        return sum.contact > 0.0;
+    }
     if (v->wanted & GMI_DERIVATIVES) {
         add_ends(v, whole, from, to, &sum);
     }
@@ -561,22 +821,21 @@ static int add_part(view *v, const whole_line *whole, const cut *from, const cut
  * ------------------------------------------------------------------------------------------- */
 
 /* A line ends where the corner of a gear no longer touches. */
-static void end_at_stop(const gmi_beyond *beyond, double stop, double *from, double *to) {
+static void end_at_stop(const gmi_beyond *beyond, double stop, cut *from, cut *to) {
     if (beyond->per_t1 == 0.0) {
-        *to = beyond->at_zero <= stop ? *to : *from;
+        to->t1 = beyond->at_zero <= stop ? to->t1 : from->t1;
         return;
     }
-    const double end = (stop - beyond->at_zero) / beyond->per_t1;
+    const cut end = {(stop - beyond->at_zero) / beyond->per_t1, {0.0, 0.0}, CUT_STOP};
     if (beyond->per_t1 > 0.0) {
-        *to = fmin(*to, end);
+        *to = end.t1 < to->t1 ? end : *to;
     } else {
-        *from = fmax(*from, end);
+        *from = end.t1 > from->t1 ? end : *from;
     }
 }
 
 /* Between tilted axes the overlap is a parabola along the line, and faces end elsewhere. */
 static OWN_STACK void tilt_line(const view *v, whole_line *whole) {
-    enum { FACES_ALONE = 4 };
     const gm_pair *pair = v->mesh->pair;
     const gmi_engagement *at = &v->mesh->engagement;
     gmi_tilt_cuts cuts;
@@ -607,7 +866,8 @@ static OWN_STACK void tilt_line(const view *v, whole_line *whole) {
 }
 
 /* Adds what line k has of flanks and of edges, between the cuts at which one takes over from the other. */
-static void add_line(view *v, const gmi_flank *pinion, const gmi_flank *wheel, int k) {
+SPECIALIZED void add_line(view *v, const gmi_flank *pinion, const gmi_flank *wheel, int k,
+                          int follows) {
     const gm_mesh *mesh = v->mesh;
     const gm_pair *pair = mesh->pair;
     const gmi_engagement *at = &mesh->engagement;
@@ -634,21 +894,23 @@ static void add_line(view *v, const gmi_flank *pinion, const gmi_flank *wheel, i
     if (at->is_tilted) {
         tilt_line(v, &whole);
     }
-    cut from = {whole.line.from, {0.0, 0.0}};
-    double last = whole.line.to;
+    cut from = {whole.line.from, {0.0, 0.0}, CUT_FACE},
+        last = {whole.line.to, {0.0, 0.0}, CUT_FACE};
     for (int role = GM_PINION; role <= GM_WHEEL; ++role) {
         gmi_tilt_beyond(pair, at, v->side, whole.origin, delta, role, &whole.beyond[role]);
-        end_at_stop(&whole.beyond[role], v->stop[role], &from.t1, &last);
+        end_at_stop(&whole.beyond[role], v->stop[role], &from, &last);
     }
 
     /* From cut to cut. */
     int touches = 0;
     cut to;
-    for (; from.t1 < last; from = to) {
-        to = next_cut(v, &whole, from.t1, last);
-        touches |= add_part(v, &whole, &from, &to);
+    for (; from.t1 < last.t1; from = to) {
+        to = next_cut(v, &whole, from.t1, &last);
+        touches |= add_part(v, &whole, &from, &to, follows);
     }
-    v->sums->side.pairs += touches;
+    if (v->sums != NULL) {
+        v->sums->side.pairs += touches;
+    }
 }
 
 /* What of the coefficient is the same all over the side. */
@@ -662,57 +924,78 @@ static OWN_STACK void finish_friction(const view *v) {
     gmi_friction_finish(v->sliding, &all, &v->sums->friction, &v->sums->tip_friction);
 }
 
-void gmi_side_sum_corners(const gm_mesh *mesh, int side, const gm_position *position, int wanted,
-                          double approach_speed, const gmi_sliding *sliding,
-                          gmi_corner_sums *sums) {
+/* All lines of a side that is not clear; v: with what is wanted of them. follows: a constant, v has what they are followed for. */
+SPECIALIZED void follow_lines(const gm_mesh *mesh, int side, const gm_position *position,
+                              double approach_speed, int follows, view *v) {
     const gm_pair *pair = mesh->pair;
     const gmi_engagement *at = &mesh->engagement;
     const gmi_side *prepared = &mesh->side[side];
-    memset(sums, 0, sizeof *sums);
-    if (gmi_side_is_clear(at, prepared, side, position->offset)) {
-        return;
-    }
-    view v;
-    v.mesh = mesh;
-    v.side = side;
-    v.wanted = wanted;
-    v.sums = sums;
-    v.sliding = sliding;
-    v.last_role = -1;
-    v.approach_speed = approach_speed;
-    v.viscous = mesh->law.damping * approach_speed;
+    v->mesh = mesh;
+    v->side = side;
+    v->last_role = -1;
+    v->approach_speed = approach_speed;
+    v->viscous = mesh->law.damping * approach_speed;
 
     /* The tables as lines run through them, and as they are held beyond their ends. */
     const int has_tables = prepared->pinion != NULL || prepared->wheel != NULL;
-    v.running[GM_PINION] = has_tables ? &prepared->pinion_grid : &no_grid;
-    v.running[GM_WHEEL] = has_tables ? &prepared->wheel_grid : &no_grid;
+    v->running[GM_PINION] = has_tables ? &prepared->pinion_grid : &no_grid;
+    v->running[GM_WHEEL] = has_tables ? &prepared->wheel_grid : &no_grid;
+    const double overlap = gmi_ideal_penetration(at, side, position->offset) + prepared->peak;
+    const double by_roll = at->is_tilted ? gmi_tilt_bound_by_roll(pair, at, side) : 0.0;
     for (int role = GM_PINION; role <= GM_WHEEL; ++role) {
-        v.held[role] = *v.running[role];
-        gmi_grid_hold(&v.held[role]);
-        v.stop[role] = stop_of(&mesh->corners[role],
-                               gmi_ideal_penetration(at, side, position->offset) + prepared->peak);
+        v->held[role] = *v->running[role];
+        gmi_grid_hold(&v->held[role]);
+        v->stop[role] = stop_of(&mesh->corners[role], overlap, by_roll);
     }
 
     /* Starts of profiles end no line; tilted axes may bring one in that is just outside. */
-    gmi_lines_find(pair, at, side, position, &v.lines);
-    const double lower = at->line_of_action + v.lines.delta - at->tip_roll_length[GM_WHEEL];
-    gmi_lines_widen(pair, lower - v.stop[GM_WHEEL],
-                    at->tip_roll_length[GM_PINION] + v.stop[GM_PINION], &v.lines);
-    v.lines.first -= at->is_tilted;
-    v.lines.last += at->is_tilted;
+    gmi_lines_find(pair, at, side, position, &v->lines);
+    const double lower = at->line_of_action + v->lines.delta - at->tip_roll_length[GM_WHEEL];
+    gmi_lines_widen(pair, lower - v->stop[GM_WHEEL],
+                    at->tip_roll_length[GM_PINION] + v->stop[GM_PINION], &v->lines);
+    v->lines.first -= at->is_tilted;
+    v->lines.last += at->is_tilted;
 
     /* Line by line, each with the teeth that meet on it; those that cannot reach each other are left out. */
-    gmi_teeth teeth = gmi_lines_teeth(pair, side, position, &v.lines);
-    for (int k = v.lines.first; k <= v.lines.last; ++k) {
+    gmi_teeth teeth = gmi_lines_teeth(pair, side, position, &v->lines);
+    for (int k = v->lines.first; k <= v->lines.last; ++k) {
         const gmi_flank pinion = gmi_flank_of(prepared->pinion, teeth.pinion);
         const gmi_flank wheel = gmi_flank_of(prepared->wheel, teeth.wheel);
-        if (v.lines.delta + pinion.peak + wheel.peak + prepared->tilt_bound > 0.0) {
-            add_line(&v, &pinion, &wheel, k);
+        if (v->lines.delta + pinion.peak + wheel.peak + prepared->tilt_bound > 0.0) {
+            add_line(v, &pinion, &wheel, k, follows);
         }
         teeth.pinion = gmi_next_tooth(teeth.pinion, teeth.step, pair->pinion.teeth);
         teeth.wheel = gmi_next_tooth(teeth.wheel, teeth.step, pair->wheel.teeth);
     }
+}
+
+void gmi_side_sum_corners(const gm_mesh *mesh, int side, const gm_position *position, int wanted,
+                          double approach_speed, const gmi_sliding *sliding,
+                          gmi_corner_sums *sums) {
+    memset(sums, 0, sizeof *sums);
+    if (gmi_side_is_clear(&mesh->engagement, &mesh->side[side], side, position->offset)) {
+        return;
+    }
+    view v;
+    gmi_line_tangent tangent;
+    v.wanted = wanted;
+    v.sums = sums;
+    v.followed = NULL;
+    v.tangent = &tangent;
+    v.sliding = sliding;
+    follow_lines(mesh, side, position, approach_speed, 0, &v);
     if (sliding != NULL) {
         finish_friction(&v);
     }
+}
+
+void gmi_side_sum_corner_tangent(const gm_mesh *mesh, int side, const gm_position *position,
+                                 gmi_corner_tangent *tangent) {
+    view v;
+    v.wanted = GMI_DERIVATIVES | GMI_MOMENTS;
+    v.sums = NULL;
+    v.followed = tangent;
+    v.tangent = &tangent->line;
+    v.sliding = NULL;
+    follow_lines(mesh, side, position, tangent->rates.delta, 1, &v);
 }

@@ -461,7 +461,7 @@ enum gmi_coordinate {
  */
 typedef struct gmi_line_tangent {
     double by[GMI_COORDINATES]
-             [3];    /* beside the tables; of second order by the length and along alone */
+             [3];    /* beside the tables; of second order by the length and the tilts alone */
     double speed[2]; /* of approach (m/s); line.c leaves it and the next to others */
 
     /* u of tilt.c: the speed of approach falls by it times that of the tilt across (m) */
@@ -643,6 +643,10 @@ typedef struct gmi_beyond {
 void gmi_tilt_beyond(const gm_pair *pair, const gmi_engagement *at, int side, double rho_origin,
                      double delta, int role, gmi_beyond *beyond);
 
+/* How it moves with all coordinates of the side: at t1 = 0, and per t1. */
+void gmi_tilt_beyond_by(const gm_pair *pair, const gmi_engagement *at, int side, double rho_origin,
+                        int role, double by[GMI_COORDINATES][2]);
+
 /* Speed of approach, on average over the touching part; sum with GMI_MOMENTS where the tilt changes. */
 double gmi_rates_mean_approach(const gmi_rates *rates, const gm_pair *pair,
                                const gmi_engagement *at, int side, const gmi_side_sum *sum);
@@ -687,6 +691,9 @@ double gmi_tilt_gain(const gm_pair *pair, const gmi_engagement *at, int side);
 
 /* f exceeds delta nowhere on a side by more than this; and ends of lines move along rho_p by no more than *reach (m). */
 double gmi_tilt_bound(const gm_pair *pair, const gmi_engagement *at, int side, double *reach);
+
+/* By how much that bound grows with the roll beyond the tips (1). */
+double gmi_tilt_bound_by_roll(const gm_pair *pair, const gmi_engagement *at, int side);
 
 /* penetration.c: the sums over all lines of one side. */
 

@@ -314,7 +314,7 @@ SPECIALIZED void follow_slopes(const gmi_grid *grid, const table_point *at, doub
     across->by_distance = 0.5 * across_2 + rate * ((1.0 / 6.0) * rates_3);
 }
 
-/* The polynomials with these in place of the powers of t1: only two of them are of second order. */
+/* The polynomials with these in place of the powers of t1: only three of them are of second order. */
 static inline void sum_powers(const gmi_line_tangent *tangent, const double powers[3],
                               double by[GMI_COORDINATES]) {
     for (int k = 0; k < GMI_COORDINATES; ++k) {
@@ -322,6 +322,7 @@ static inline void sum_powers(const gmi_line_tangent *tangent, const double powe
     }
     by[GMI_BY_LENGTH] += tangent->by[GMI_BY_LENGTH][2] * powers[2];
     by[GMI_BY_ALONG] += tangent->by[GMI_BY_ALONG][2] * powers[2];
+    by[GMI_BY_ACROSS] += tangent->by[GMI_BY_ACROSS][2] * powers[2];
 }
 
 /* Where f passes zero the touching part moves by d f / |d f / d t1|; moves: d place / d f, 0 where there is no root. */

@@ -11,6 +11,7 @@
  *     delta by -dO.e,   T by dO.e + dO.t (r_bp + r_bw) / T,   the origin by dO.t r_bp / T,
  *     and turns e by dO.t / T, so that the tilt along it grows by its part across times that, and the one across falls.
  */
+#include "corner.h"
 #include "internal.h"
 #include "penetration.h"
 
@@ -150,17 +151,17 @@ static OWN_STACK void add_rubbing(const gm_pair *pair, const gmi_engagement *at,
 
 /* The normal force of a side: it, and its wrench. */
 static OWN_STACK void add_force(const gm_pair *pair, const gmi_engagement *at, int side,
-                                const side_motion *motion, const gmi_side_tangent *followed,
-                                gm_tangent *tangent) {
+                                const side_motion *motion, const double force[GMI_WEIGHTS],
+                                const double force_by[][GMI_WEIGHTS], gm_tangent *tangent) {
     gmi_wrench_map map, map_by[2];
     side_gradient gradient;
     gmi_wrench_map_force(pair, at, side, &map, map_by);
-    find_gradient(motion, followed->by.force, 0, &gradient);
+    find_gradient(motion, force_by, 0, &gradient);
     for (int k = 0; k < GM_COORDINATES; ++k) {
         tangent->force_by[k] += motion->sign * gradient.by[k][GMI_WHOLE];
         tangent->force_by_rate[k] += motion->sign * gradient.by_rate[k][GMI_WHOLE];
     }
-    add_wrenches(&map, map_by, &gradient, followed->load.force, tangent);
+    add_wrenches(&map, map_by, &gradient, force, tangent);
 }
 
 static void set_tangent(gm_tangent *tangent, double value) {
@@ -185,7 +186,8 @@ static OWN_STACK void add_pressed(const gm_mesh *moved, const gm_pose *pose_rate
     const gmi_engagement *at = &moved->engagement;
     side_motion motion;
     find_side_motion(moved, side, &followed->tangent.rates, pose_rate, &motion);
-    add_force(pair, at, side, &motion, &followed->tangent, tangent);
+    add_force(pair, at, side, &motion, followed->tangent.load.force, followed->tangent.by.force,
+              tangent);
     if (moved->friction.is_on) {
         add_rubbing(pair, at, side, &motion, &followed->rubbing, &followed->rubbing_by, tangent);
     }
@@ -220,11 +222,99 @@ static OWN_STACK void add_side(const gm_mesh *moved, const gm_position *position
     }
 }
 
+/*
+ * With corners: the whole side approaches at the mean speed over what touches, and its tips at that of parallel axes, as in
+ * evaluations. The mean moves with what touches and with how fast each of its points approaches.
+ */
+static void find_corner_load(const gm_mesh *moved, int side, const gmi_corner_tangent *followed,
+                             gmi_load *load, gmi_load_by *by) {
+    const double k = moved->law.stiffness, d = moved->law.damping;
+    const double tau = gmi_side_sign(side) * moved->pair->face_advance / moved->pair->face_width;
+    const double of_along = -tau * moved->engagement.wheel_base_radius;
+    const gmi_rates *rates = &followed->rates;
+    const double touching = followed->contact[GMI_WHOLE];
+    const double arm = followed->arm[GMI_WHOLE] / touching;
+    const double speed = rates->delta + of_along * rates->along - rates->across * arm;
+
+    /* The mean, by the coordinates and by the rates. */
+    double speed_by[GMI_LOAD_VARIABLES];
+    for (int of = 0; of < GMI_COORDINATES; ++of) {
+        speed_by[of] =
+            (followed->flow_by[of] - speed * followed->contact_by[of][GMI_WHOLE]) / touching;
+    }
+    speed_by[GMI_BY_ORIGIN] -= rates->across * tau;
+    speed_by[GMI_BY_LENGTH] += rates->across * tau;
+    speed_by[GMI_BY_AXIAL] += rates->across;
+    speed_by[GMI_BY_DELTA_RATE] = 1.0;
+    speed_by[GMI_BY_ALONG_RATE] = of_along;
+    speed_by[GMI_BY_ACROSS_RATE] = -arm;
+
+    for (int weight = 0; weight < GMI_WEIGHTS; ++weight) {
+        const double contact = followed->contact[weight];
+        load->force[weight] = k * followed->sum[weight] + d * speed * contact;
+        for (int of = 0; of < GMI_LOAD_VARIABLES; ++of) {
+            by->force[of][weight] = d * contact * speed_by[of];
+            if (of < GMI_COORDINATES) {
+                by->force[of][weight] +=
+                    k * followed->sum_by[of][weight] + d * speed * followed->contact_by[of][weight];
+            }
+        }
+    }
+}
+
+/* What the tip of one gear changes. */
+static OWN_STACK void add_tip(const gm_pair *pair, const gmi_engagement *at, int side, int role,
+                              const side_motion *motion, const gmi_tip_tangent *tip,
+                              gm_tangent *tangent) {
+    for (int part = 0; part < GMI_TIP_PARTS; ++part) {
+        gmi_wrench_map map, map_by[2];
+        side_gradient gradient;
+        gmi_wrench_map_tip(pair, at, role, part, side, &map, map_by);
+        find_gradient(motion, tip->by[part], 0, &gradient);
+        add_wrenches(&map, map_by, &gradient, tip->sum[part], tangent);
+    }
+}
+
+static OWN_STACK void add_pressed_corners(const gm_mesh *moved, const gm_pose *pose_rate, int side,
+                                          const gmi_corner_tangent *followed, gm_tangent *tangent) {
+    const gm_pair *pair = moved->pair;
+    const gmi_engagement *at = &moved->engagement;
+    gmi_load load;
+    gmi_load_by by;
+    const gmi_load_by *found = &by;
+    find_corner_load(moved, side, followed, &load, &by);
+    if (!(load.force[GMI_WHOLE] > 0.0)) {
+        return;
+    }
+    side_motion motion;
+    find_side_motion(moved, side, &followed->rates, pose_rate, &motion);
+    add_force(pair, at, side, &motion, load.force, found->force, tangent);
+    for (int role = GM_PINION; role <= GM_WHEEL; ++role) {
+        add_tip(pair, at, side, role, &motion, &followed->tips[role], tangent);
+    }
+}
+
+/* Adds a side whose lines go on beyond the path of contact. */
+static OWN_STACK void add_corner_side(const gm_mesh *moved, const gm_position *position,
+                                      const gm_pose *pose_rate, const gmi_rates *rates, int side,
+                                      gm_tangent *tangent) {
+    if (gmi_side_is_clear(&moved->engagement, &moved->side[side], side, position->offset)) {
+        return;
+    }
+    gmi_corner_tangent followed;
+    memset(&followed, 0, sizeof followed);
+    followed.rates = *rates;
+    gmi_side_sum_corner_tangent(moved, side, position, &followed);
+    if (followed.contact[GMI_WHOLE] > 0.0) {
+        add_pressed_corners(moved, pose_rate, side, &followed, tangent);
+    }
+}
+
 static int find_tangent(const gm_mesh *mesh, const gm_motion *motion, gm_tangent *tangent) {
     if (mesh == NULL || motion == NULL) {
         return GM_ERR_NULL;
     }
-    if (mesh->elastic != NULL || mesh->has_corners) {
+    if (mesh->elastic != NULL || (mesh->has_corners && mesh->friction.is_on)) {
         return GM_ERR_PARAMETER;
     }
 
@@ -241,7 +331,11 @@ static int find_tangent(const gm_mesh *mesh, const gm_motion *motion, gm_tangent
 
     set_tangent(tangent, 0.0);
     for (int side = GM_DRIVE; side <= GM_COAST; ++side) {
-        add_side(&moved, &position, &motion->pose_rate, &rates[side], side, tangent);
+        if (moved.has_corners) {
+            add_corner_side(&moved, &position, &motion->pose_rate, &rates[side], side, tangent);
+        } else {
+            add_side(&moved, &position, &motion->pose_rate, &rates[side], side, tangent);
+        }
     }
     return GM_OK;
 }

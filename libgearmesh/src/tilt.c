@@ -281,6 +281,19 @@ void gmi_tilt_beyond(const gm_pair *pair, const gmi_engagement *at, int side, do
     beyond->by_delta = by[GMI_BY_DELTA];
 }
 
+void gmi_tilt_beyond_by(const gm_pair *pair, const gmi_engagement *at, int side, double rho_origin,
+                        int role, double by[GMI_COORDINATES][2]) {
+    const tilted line = tilted_of(pair, at, side, rho_origin);
+    const int place = role == GM_PINION ? ROLL_PINION : ROLL_WHEEL;
+    double at_zero[GMI_COORDINATES], at_one[GMI_COORDINATES];
+    place_gradient(&line, 0.0, place, at_zero);
+    place_gradient(&line, 1.0, place, at_one);
+    for (int k = 0; k < GMI_COORDINATES; ++k) {
+        by[k][0] = at_zero[k];
+        by[k][1] = at_one[k] - at_zero[k];
+    }
+}
+
 /* ---------------------------------------------------------------------------------------------
  * The overlap along a line
  * ------------------------------------------------------------------------------------------- */
@@ -383,6 +396,19 @@ double gmi_tilt_bound(const gm_pair *pair, const gmi_engagement *at, int side, d
 
     /* The gain acts on any delta. */
     return first_order + second_order + fabs(gain - 1.0) * pair->transverse_base_pitch;
+}
+
+double gmi_tilt_bound_by_roll(const gm_pair *pair, const gmi_engagement *at, int side) {
+    const tilted line = tilted_of(pair, at, side, 0.0);
+    const double a = fabs(line.a), g = fabs(line.g), tau = fabs(line.tau);
+    const double zeta =
+        gmi_larger(fabs(line.zeta.at_zero), fabs(line.zeta.at_zero + line.zeta.per_t1));
+    const double rho_w =
+        gmi_larger(fabs(at->tip_roll_length[GM_WHEEL]), fabs(at->start_roll_length[GM_WHEEL])) +
+        fabs(line.length);
+    const double u = zeta + tau * rho_w;
+    return fabs(1.0 + line.tau * line.g) * g * tau +
+           0.5 * (g * g + a * a * tau * (tau + 2.0 * u / fabs(line.length)));
 }
 
 double gmi_rates_mean_approach(const gmi_rates *rates, const gm_pair *pair,

@@ -150,6 +150,55 @@ void gmi_wrench_add_tip(const gm_pair *pair, const gmi_engagement *at, const gmi
 }
 
 /*
+ * As maps, in the frame of the drawing, where n is t: what is times sin(Delta) = (r_b gap' - (r_bp + r_bw) (1 - cos(Delta))) / T
+ * and times 1 - cos(Delta). turned: force on the wheel for the triple's first number; arm: where its third one is.
+ */
+static gmi_wrench_map map_of_tip(const gm_pair *pair, const double turned[2], const double arm[2],
+                                 double axial_share) {
+    const double z = pair->face_start, width = pair->face_width;
+    const gmi_wrench_map map = {.force = {turned[0], turned[1], 0.0},
+                                .by_t1 = {-width * turned[1], width * turned[0]},
+                                .by_rho = {axial_share * arm[1], -axial_share * arm[0], 0.0},
+                                .pinion = {-z * turned[1], z * turned[0], 0.0},
+                                .wheel = {-z * turned[1], z * turned[0], 0.0}};
+    return map;
+}
+
+void gmi_wrench_map_tip(const gm_pair *pair, const gmi_engagement *at, int role, int part, int side,
+                        gmi_wrench_map *map, gmi_wrench_map by[2]) {
+    const double sign = gmi_side_sign(side);
+    const gmi_plane plane = gmi_plane_of(at, sign);
+    const double *e = plane.e, *n = plane.t;
+    const double base_sum = pair->pinion.base_radius + at->wheel_base_radius;
+    const double tip_base = role == GM_PINION ? pair->pinion.base_radius : at->wheel_base_radius;
+    const double per_length = 1.0 / at->line_of_action;
+    const double away = role == GM_PINION ? -1.0 : 1.0;
+    const double axial_share = -away * sign * pair->face_advance / pair->face_width;
+
+    /* Along n goes sin(Delta), against e the rest of the turn. */
+    const int is_versine = part == GMI_TIP_VERSINE;
+    const double along_n = (is_versine ? -base_sum : tip_base) * per_length;
+    const double along_e = is_versine ? -1.0 : 0.0;
+    const double turned[2] = {along_n * n[0] + along_e * e[0], along_n * n[1] + along_e * e[1]};
+    *map = map_of_tip(pair, turned, is_versine ? e : n, axial_share);
+    if (!is_versine) { /* the arm of the tip's own gear is shorter */
+        *(role == GM_PINION ? &map->pinion[2] : &map->wheel[2]) = away * sign * tip_base;
+    }
+
+    /* As the wheel's axis moves, T changes and e turns towards n, n away from e. */
+    for (int k = 0; k < 2; ++k) {
+        const double turn = n[k] * per_length;
+        const double along_n_by = -along_n * per_length * (e[k] + base_sum * turn);
+        double turned_by[2], arm_by[2];
+        for (int l = 0; l < 2; ++l) {
+            turned_by[l] = along_n_by * n[l] + turn * (along_e * n[l] - along_n * e[l]);
+            arm_by[l] = is_versine ? turn * n[l] : -turn * e[l];
+        }
+        by[k] = map_of_tip(pair, turned_by, arm_by, axial_share);
+    }
+}
+
+/*
  * Friction acts across the line of action, on the wheel as the pinion's flank moves there: friction * (-sign cos(alpha),
  * sin(alpha), 0), at the same points. about_wheel: of the friction about that axis.
  */
