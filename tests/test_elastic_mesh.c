@@ -5,6 +5,7 @@
  * Elastic teeth as the law of a mesh, through the public interface: the check values of an independent implementation, and
  * what physics demands of any pair, flank, pose and side.
  */
+#include "elastic_mesh.h"
 #include "gearmesh/gearmesh.h"
 #include "gm_test.h"
 #include "random_gears.h"
@@ -235,6 +236,42 @@ static double pressed_offset(elastic_mesh *m, int side, double angle) {
                                         (double)NAN, m->workspace, &offset, NULL),
                   GM_OK);
     return offset;
+}
+
+/* Results of all positions, each from the one before; is_wide: with vectors of four doubles. */
+enum { WIDE_STEPS = 24 };
+
+static void evaluate_all(elastic_mesh *m, int is_wide, double x, gm_mesh_result *results) {
+    ((gmi_elastic_mesh *)(uintptr_t)m->mesh->elastic)->law.is_wide = is_wide;
+    memset(results, 0, WIDE_STEPS * sizeof *results);
+    forget(m);
+    for (int k = 0; k < WIDE_STEPS; ++k) {
+        const double angle = 0.13 * k * m->pair.pinion.pitch_angle;
+        const gm_state state = pressed_state(m, angle, x * (1.0 + 0.1 * (k % 5)));
+        GM_ASSERT_INT(gm_mesh_evaluate(m->mesh, &state, GM_WANT_DERIVATIVES | GM_WANT_WRENCH,
+                                       m->workspace, &results[k]),
+                      GM_OK);
+    }
+}
+
+/* What is compiled once more for such vectors does the same operations in the same order. */
+static void vectors_of_four_give_the_same_bits(void) {
+    for (int k = 0; k < VARIANTS; ++k) {
+        gm_test_context("variant %d", k);
+        variant v;
+        variant_make(&v, k);
+        const double x = pressed_offset(&v.mesh, k % 3 == 0 ? GM_COAST : GM_DRIVE, 0.0);
+        gm_mesh_result plain[WIDE_STEPS], wide[WIDE_STEPS];
+        const int is_wide = v.mesh.mesh->elastic->law.is_wide;
+        GM_ASSERT_INT(is_wide, gmi_processor_is_wide());
+        evaluate_all(&v.mesh, 0, x, plain);
+        evaluate_all(&v.mesh, is_wide, x, wide);
+        GM_ASSERT(plain[0].force != 0.0);
+        for (int n = 0; n < WIDE_STEPS; ++n) {
+            GM_ASSERT_INT(memcmp(&plain[n], &wide[n], sizeof plain[n]), 0);
+        }
+        variant_free(&v);
+    }
 }
 
 /* Three values of a quantity around a state decide: the middle difference, and whether there is a kink. */
@@ -1165,6 +1202,7 @@ int main(int argc, char **argv) {
     static const gm_test tests[] = {
         GM_TEST(check_values_are_met),
         GM_TEST(derivatives_are_those_of_differences),
+        GM_TEST(vectors_of_four_give_the_same_bits),
         GM_TEST(roll_at_held_approach_is_differentiated_exactly),
         GM_TEST(energy_is_kept_around_closed_paths),
         GM_TEST(coast_is_drive_in_a_mirror),

@@ -34,6 +34,7 @@
 #define GEARMESH_ELASTIC_H
 
 #include "tooth_compliance.h"
+#include "wide.h"
 
 #include <stddef.h>
 
@@ -123,6 +124,7 @@ typedef struct gmi_elastic_layer {
 typedef struct gmi_elastic {
     int stations;
     int lines_max;
+    int is_wide; /* whether the processor has vectors of four doubles, see wide.h */
     double face_width;
     double spacing, per_spacing; /* of the stations (m, 1/m) */
     double hertz_compliance;     /* B (m per N/m) */
@@ -401,6 +403,18 @@ void gmi_elastic_differentiate(const gmi_elastic *law, gmi_elastic_work *work,
 void gmi_elastic_differentiate_functional(const gmi_elastic *law, gmi_elastic_work *work,
                                           const gmi_elastic_functional *functional,
                                           double *by_deviation, gmi_elastic_gradient *gradient);
+
+/* The same on processors with vectors of four doubles: elastic_wide.c, not to be called but from the functions above. */
+#if GMI_HAS_WIDE
+int gmi_wide_place(const gmi_elastic *law, const gmi_elastic_lines_at *at, gmi_elastic_work *work);
+int gmi_wide_solve(const gmi_elastic *law, gmi_elastic_work *work, double approach,
+                   gmi_elastic_result *result);
+void gmi_wide_differentiate(const gmi_elastic *law, gmi_elastic_work *work,
+                            gmi_elastic_gradient *force, gmi_elastic_gradient *energy);
+void gmi_wide_differentiate_functional(const gmi_elastic *law, gmi_elastic_work *work,
+                                       const gmi_elastic_functional *functional,
+                                       double *by_deviation, gmi_elastic_gradient *gradient);
+#endif
 
 /* ---------------------------------------------------------------------------------------------
  * Shared between the sources

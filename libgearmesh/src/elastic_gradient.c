@@ -71,8 +71,8 @@ static double straight_functional(const gmi_elastic *law, const gmi_elastic_work
     return sum;
 }
 
-static double straight_energy(const gmi_elastic *law, const gmi_elastic_work *work,
-                              const double *rate_by_p) {
+static double straight_energy_by(const gmi_elastic *law, const gmi_elastic_work *work,
+                                 const double *rate_by_p) {
     double sum = 0.0;
     for (int p = 0; p < 2 * work->slots; ++p) {
         if (work->slope[p] >= 1.0) {
@@ -222,7 +222,7 @@ static void differentiate_energy(const gmi_elastic *law, gmi_elastic_work *work,
                  work->tooth_by_roll, work->rate_by_roll, work->scratch);
     energy->by_roll = gmi_elastic_sum(count, work->scratch);
     if (work->straight) {
-        energy->by_roll -= straight_energy(law, work, work->rate_by_roll);
+        energy->by_roll -= straight_energy_by(law, work, work->rate_by_roll);
     }
     if (work->at.slopes > 1) {
         double sum = 0.0;
@@ -231,7 +231,7 @@ static void differentiate_energy(const gmi_elastic *law, gmi_elastic_work *work,
                                      work->tooth_by_action[p] * work->deflection[p]);
         }
         if (work->straight) {
-            sum -= straight_energy(law, work, work->rate_by_action);
+            sum -= straight_energy_by(law, work, work->rate_by_action);
         }
         energy->by_action = sum;
     }
@@ -239,6 +239,7 @@ static void differentiate_energy(const gmi_elastic *law, gmi_elastic_work *work,
 
 void gmi_elastic_differentiate(const gmi_elastic *law, gmi_elastic_work *work,
                                gmi_elastic_gradient *force, gmi_elastic_gradient *energy) {
+    GMI_CALL_WIDE(law, gmi_wide_differentiate(law, work, force, energy))
     static const gmi_elastic_functional unit = {NULL, NULL, NULL, NULL};
     memset(force, 0, sizeof *force);
     memset(energy, 0, sizeof *energy);
@@ -258,6 +259,8 @@ void gmi_elastic_differentiate(const gmi_elastic *law, gmi_elastic_work *work,
 void gmi_elastic_differentiate_functional(const gmi_elastic *law, gmi_elastic_work *work,
                                           const gmi_elastic_functional *functional,
                                           double *by_deviation, gmi_elastic_gradient *gradient) {
+    GMI_CALL_WIDE(law,
+                  gmi_wide_differentiate_functional(law, work, functional, by_deviation, gradient))
     const int count = 2 * work->slots;
     memset(gradient, 0, sizeof *gradient);
     if (!work->touching) {

@@ -222,6 +222,7 @@ int gmi_elastic_init(gmi_elastic *law, const gmi_elastic_params *params,
     }
     law->stations = params->stations;
     law->lines_max = params->lines;
+    law->is_wide = gmi_processor_is_wide();
     law->face_width = params->face_width;
     law->spacing = params->face_width / (double)(params->stations - 1);
     law->per_spacing = 1.0 / law->spacing;

@@ -365,114 +365,6 @@ static int place(side_view *view, const gm_position *position, int wanted, gmi_e
     return gmi_elastic_place(law, &lines, work);
 }
 
-/* Whether there is anything at all beside the drawing. */
-static int is_drawn(const gm_mesh *mesh, int side) {
-    const gmi_side *prepared = &mesh->side[side];
-    return prepared->pinion == NULL && prepared->wheel == NULL && !prepared->is_tilted;
-}
-
-/* Arrays for the tables of a gear, in what is free before the balance is sought: matrices and forces of the points. */
-static gmi_surface_cells cells_in(const gmi_elastic_work *work, int role) {
-    const int count = 2 * work->slots;
-    double *free = work->table[2 * role];
-    const gmi_surface_cells cells = {free,
-                                     free + count,
-                                     role == GM_PINION ? work->force : work->stiffness,
-                                     work->table[2 * role + 1],
-                                     work->table[2 * role + 1] + count,
-                                     role == GM_PINION ? work->load : work->slope,
-                                     role == GM_PINION ? work->approach_at : work->deflection};
-    return cells;
-}
-
-/* Beyond the path the flanks end: on from there as the slope says, for a while. */
-static void hold_flanks(gmi_elastic_work *work) {
-    for (int p = 0; p < 2 * work->slots; ++p) {
-        if (work->beyond[p] != 0.0) {
-            const gmi_elastic_hold hold = gmi_elastic_hold_at(&work->at, work->beyond[p]);
-            work->deviation[p] += hold.moved * work->deviation_by_roll[p];
-            work->deviation_by_roll[p] *= hold.by_roll;
-        }
-    }
-}
-
-/* Deviations of both flanks at all points of a side, with their slopes. */
-static void set_material(const side_view *view, gmi_elastic_work *work) {
-    const gm_mesh *mesh = view->mesh;
-    const gmi_engagement *at = &mesh->engagement;
-    const gmi_surface_points points = {.count = 2 * work->slots,
-                                       .t1_from = at->face_from,
-                                       .per_place = 1.0 / mesh->pair->face_width,
-                                       .place = work->z,
-                                       .roll = work->roll,
-                                       .value = work->deviation,
-                                       .by_place = work->deviation_by_z,
-                                       .by_roll = work->deviation_by_roll};
-    const size_t bytes = sizeof(double) * (size_t)points.count;
-    memset(work->deviation, 0, bytes);
-    memset(work->deviation_by_roll, 0, bytes);
-    memset(work->deviation_by_z, 0, bytes);
-    if (is_drawn(mesh, view->side)) {
-        return;
-    }
-
-    /* Where all points are in the tables of both gears. */
-    const gmi_surface_gear gear[2] = {
-        gmi_surface_gear_of(mesh, view->side, GM_PINION, at->line_of_action),
-        gmi_surface_gear_of(mesh, view->side, GM_WHEEL, at->line_of_action)};
-    gmi_surface_cells cells[2];
-    for (int role = GM_PINION; role <= GM_WHEEL; ++role) {
-        cells[role] = cells_in(work, role);
-        if (gear[role].tables != NULL) {
-            gmi_surface_find(&points, &gear[role], &cells[role]);
-        }
-    }
-
-    /* Line by line, each with the teeth that meet on it; both points of each part. */
-    for (int row = 0; row < work->count; ++row) {
-        const gmi_elastic_line *line = &work->line[row];
-        const gmi_line_flanks flanks =
-            gmi_line_flanks_of(mesh, view->side, &view->lines, &view->teeth, line->index);
-        const double pitch = flanks.pinion.pitch + flanks.wheel.pitch;
-        for (int half = 0; half < 2; ++half) {
-            const int from = line->slot + half * work->slots, to = from + line->elements;
-            for (int p = from; p < to && pitch != 0.0; ++p) {
-                work->deviation[p] = pitch;
-            }
-            if (gear[GM_PINION].tables != NULL) {
-                gmi_surface_gather(&cells[GM_PINION], &gear[GM_PINION], flanks.pinion.values, from,
-                                   to);
-            }
-            if (gear[GM_WHEEL].tables != NULL) {
-                gmi_surface_gather(&cells[GM_WHEEL], &gear[GM_WHEEL], flanks.wheel.values, from,
-                                   to);
-            }
-        }
-    }
-
-    /* What all of them have there. */
-    for (int role = GM_PINION; role <= GM_WHEEL; ++role) {
-        if (gear[role].tables != NULL) {
-            gmi_surface_add_cells(&points, &gear[role], &cells[role]);
-            gmi_surface_add_ramps(&points, &gear[role]);
-        }
-    }
-    if (view->has_tips) {
-        hold_flanks(work);
-    }
-
-    /* And what the tilt of the axes makes of it, which goes on with the lines. */
-    for (int row = 0; row < work->count && at->is_tilted; ++row) {
-        const gmi_elastic_line *line = &work->line[row];
-        const gmi_line_flanks flanks =
-            gmi_line_flanks_of(mesh, view->side, &view->lines, &view->teeth, line->index);
-        for (int half = 0; half < 2; ++half) {
-            const int from = line->slot + half * work->slots;
-            gmi_surface_add_tilt(&points, &flanks, from, from + line->elements);
-        }
-    }
-}
-
 /* ---------------------------------------------------------------------------------------------
  * One evaluation
  * ------------------------------------------------------------------------------------------- */
@@ -597,7 +489,7 @@ static int elastic_sum(const gm_mesh *mesh, int side, const gm_position *positio
     gmi_elastic_result result;
     int status = place(&view, position, wanted, work);
     if (status == GM_OK) {
-        set_material(&view, work);
+        gmi_elastic_set_material(mesh, side, &view.lines, &view.teeth, work);
         work->is_entering = view.has_tips && gmi_elastic_edges_add(&view.tips, view.approach,
                                                                    mesh->side[side].peak, work);
         status = solve(view.elastic, work, view.gain * view.approach, &result);

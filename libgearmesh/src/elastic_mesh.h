@@ -111,6 +111,17 @@ static inline int gmi_elastic_is_uneven(const gm_mesh *mesh, int role) {
 }
 
 /*
+ * elastic_material.c: deviations of both flanks at all points of a side as placed, with their slopes; teeth: those of
+ * line lines->first.
+ */
+void gmi_elastic_set_material(const gm_mesh *mesh, int side, const gmi_lines *lines,
+                              const gmi_teeth *teeth, gmi_elastic_work *work);
+#if GMI_HAS_WIDE
+void gmi_wide_set_material(const gm_mesh *mesh, int side, const gmi_lines *lines,
+                           const gmi_teeth *teeth, gmi_elastic_work *work);
+#endif
+
+/*
  * The sums of one side by the law of the mesh, without its cache; elastic teeth need the workspace. Theirs are what a mesh of
  * constant stiffness K (the law's, of one pair of teeth) has to overlap for the same force: sum = F / K,
  * contact = dF/dx / K. GM_OK, GM_STATE_OUT_OF_RANGE (more lines than there is room for), GM_NO_CONVERGENCE.

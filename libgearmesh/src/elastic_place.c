@@ -2,7 +2,7 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 
 /*
- * The workspace of elastic teeth, and where its lines of contact and points are. Each line is cut at the stations and at
+ * Where the lines of contact of elastic teeth and their points are. Each line is cut at the stations and at
  * the ends of the path; every part has two Gauss points. At each point the compliance of both teeth and the rate of the
  * contact law come from the tables of the law.
  */
@@ -20,124 +20,6 @@
 
 /* Gauss points of a part, as shares of it: (1 -+ 1/sqrt(3)) / 2. */
 static const double gauss[2] = {0.21132486540518711775, 0.78867513459481288225};
-
-/* Sizes of the arrays of a workspace, in doubles. */
-typedef struct work_sizes {
-    size_t points, slots, nodes, front, factor, ends, carry;
-} work_sizes;
-
-static work_sizes find_sizes(int stations, int lines) {
-    const size_t n = (size_t)stations, rows = (size_t)lines + 1;
-    const work_sizes sizes = {2 * (size_t)lines * (n - 1),
-                              (size_t)lines * (n - 1),
-                              rows * n,
-                              2 * rows * (2 * rows + 2),
-                              2 * n * rows * rows,
-                              8 * (size_t)lines,
-                              rows * (rows + 2)};
-    return sizes;
-}
-
-enum { POINT_ARRAYS = 28, TABLE_ARRAYS = 4, PART_ARRAYS = 4, NODE_ARRAYS = 7, INDEX_ARRAYS = 4 };
-
-static int sizes_fit(int stations, int lines) {
-    return stations >= 2 && stations <= GMI_ELASTIC_STATIONS_MAX && lines >= 1 &&
-           lines <= GMI_ELASTIC_LINES_MAX;
-}
-
-size_t gmi_elastic_work_size(int stations, int lines) {
-    if (!sizes_fit(stations, lines)) {
-        return 0;
-    }
-    const work_sizes sizes = find_sizes(stations, lines);
-    const size_t doubles = (POINT_ARRAYS + 2 * TABLE_ARRAYS) * sizes.points +
-                           (GMI_ELASTIC_MATRICES + PART_ARRAYS) * sizes.slots +
-                           NODE_ARRAYS * sizes.nodes + sizes.front + sizes.factor + sizes.ends +
-                           sizes.carry;
-
-    /* Whole doubles, so that what comes behind is aligned as well. */
-    const size_t bytes = (sizeof(int) * INDEX_ARRAYS + sizeof(gmi_elastic_run)) * (size_t)stations;
-    return sizeof(double) * (doubles + (bytes + sizeof(double) - 1) / sizeof(double));
-}
-
-static double *take(double **memory, size_t count) {
-    double *array = *memory;
-    *memory += count;
-    return array;
-}
-
-void gmi_elastic_work_init(gmi_elastic_work *work, int stations, int lines, void *memory) {
-    const work_sizes sizes = find_sizes(stations, lines);
-    double *next = memory;
-    memset(work, 0, sizeof *work);
-    memset(memory, 0, gmi_elastic_work_size(stations, lines));
-    work->stations = stations;
-    work->lines_max = lines;
-
-    double **const points[POINT_ARRAYS] = {&work->z,
-                                           &work->roll,
-                                           &work->beyond,
-                                           &work->weight,
-                                           &work->deviation,
-                                           &work->deviation_by_roll,
-                                           &work->deviation_by_z,
-                                           &work->load,
-                                           &work->approach_at,
-                                           &work->force,
-                                           &work->stiffness,
-                                           &work->by_deviation,
-                                           &work->entry_slope,
-                                           &work->entry_curvature,
-                                           &work->place,
-                                           &work->tooth,
-                                           &work->tooth_by_roll,
-                                           &work->tooth_by_action,
-                                           &work->rate,
-                                           &work->rate_by_roll,
-                                           &work->rate_by_action,
-                                           &work->deflection,
-                                           &work->slope,
-                                           &work->change_at,
-                                           &work->expected,
-                                           &work->scratch,
-                                           &work->pull,
-                                           &work->tooth_adjoint};
-    for (int k = 0; k < POINT_ARRAYS; ++k) {
-        *points[k] = take(&next, sizes.points);
-    }
-    for (int k = 0; k < TABLE_ARRAYS; ++k) {
-        work->table[k] = take(&next, 2 * sizes.points);
-    }
-    work->matrix = take(&next, GMI_ELASTIC_MATRICES * sizes.slots);
-    for (int k = 0; k < PART_ARRAYS; ++k) {
-        work->parts[k] = take(&next, sizes.slots);
-    }
-
-    double **const nodes[NODE_ARRAYS] = {&work->state, &work->change,   &work->adjoint,
-                                         &work->last,  &work->by_place, &work->last_step,
-                                         &work->other};
-    for (int k = 0; k < NODE_ARRAYS; ++k) {
-        *nodes[k] = take(&next, sizes.nodes);
-    }
-    work->front = take(&next, sizes.front);
-    work->factor = take(&next, sizes.factor);
-    work->carry = take(&next, sizes.carry);
-    work->end_record = take(&next, sizes.ends);
-
-    /* Behind the doubles, so that all are aligned. */
-    int *indices = (int *)(void *)next;
-    work->factor_at = indices;
-    work->low = indices + stations;
-    work->high = work->low + stations;
-    work->traffic = work->high + stations;
-    work->run = (gmi_elastic_run *)(void *)(work->traffic + stations);
-}
-
-void gmi_elastic_work_reset(gmi_elastic_work *work) {
-    memset(work->state, 0, sizeof(double) * (size_t)(work->lines_max + 1) * (size_t)work->stations);
-    work->warm = 0;
-    work->touching = 0;
-}
 
 /* ---------------------------------------------------------------------------------------------
  * Lines
@@ -518,6 +400,7 @@ static void add_line(const gmi_elastic *law, gmi_elastic_work *work, int k, cons
 
 int gmi_elastic_place(const gmi_elastic *law, const gmi_elastic_lines_at *at,
                       gmi_elastic_work *work) {
+    GMI_RETURN_WIDE(law, gmi_wide_place(law, at, work))
     span parts[GMI_ELASTIC_LINES_MAX + 1];
     work->at = *at;
     work->count = 0;
@@ -548,6 +431,8 @@ int gmi_elastic_place(const gmi_elastic *law, const gmi_elastic_lines_at *at,
  * Between the points
  * ------------------------------------------------------------------------------------------- */
 
+/* One at a time, which is no work for vectors. */
+#ifndef GMI_IN_WIDE
 double gmi_elastic_load_at(const gmi_elastic *law, const gmi_elastic_work *work, int row, double z,
                            double deviation, double rate_factor, double *gamma) {
     const gmi_elastic_lines_at *at = &work->at;
@@ -591,3 +476,4 @@ double gmi_elastic_load_at(const gmi_elastic *law, const gmi_elastic_work *work,
     gmi_hertz_evaluate(law->hertz_compliance, rate * rate_factor, *gamma, &contact);
     return contact.load;
 }
+#endif

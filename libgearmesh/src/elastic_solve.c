@@ -106,7 +106,8 @@ static double energy_at(const gmi_elastic *law, gmi_elastic_work *work, double x
  * ------------------------------------------------------------------------------------------- */
 
 /* rows += part * other, over the stations that lines touch. */
-static void add_rows(const gmi_elastic_work *work, double part, const double *other, double *rows) {
+static void add_multiple(const gmi_elastic_work *work, double part, const double *other,
+                         double *rows) {
     for (int row = 0; row <= work->count; ++row) {
         const gmi_elastic_span span = gmi_elastic_span_of(work, row);
         const double *restrict from = other + span.at;
@@ -140,7 +141,7 @@ static void find_adjoint(gmi_elastic_work *work) {
 /* The step was too long: goes back, and halves it until the energy falls as it should. `fall`: what it promised. */
 static void shorten(const gmi_elastic *law, gmi_elastic_work *work, double x, double fall) {
     const double after = energy_at(law, work, x);
-    add_rows(work, -1.0, work->last_step, work->state);
+    add_multiple(work, -1.0, work->last_step, work->state);
     const double before = energy_at(law, work, x);
     double part = 1.0;
     for (int k = 0; k < HALVINGS_MAX; ++k) {
@@ -148,14 +149,14 @@ static void shorten(const gmi_elastic *law, gmi_elastic_work *work, double x, do
             break;
         }
         part *= 0.5;
-        add_rows(work, part, work->last_step, work->state);
+        add_multiple(work, part, work->last_step, work->state);
         const double now = energy_at(law, work, x);
-        add_rows(work, -part, work->last_step, work->state);
+        add_multiple(work, -part, work->last_step, work->state);
         if (now <= before - ARMIJO * part * fall) {
             break;
         }
     }
-    add_rows(work, part, work->last_step, work->state);
+    add_multiple(work, part, work->last_step, work->state);
 }
 
 /* ---------------------------------------------------------------------------------------------
@@ -175,9 +176,9 @@ static void predict(gmi_elastic_work *work, double x) {
     memcpy(work->last, work->state,
            sizeof(double) * (size_t)(work->lines_max + 1) * (size_t)work->stations);
     const double rolled = place_of(work) - work->warm_place;
-    add_rows(work, x - work->approach, work->adjoint, work->state);
+    add_multiple(work, x - work->approach, work->adjoint, work->state);
     if (work->warm > 1 && fabs(rolled) <= FARTHEST * fabs(work->rolled)) {
-        add_rows(work, rolled, work->by_place, work->state);
+        add_multiple(work, rolled, work->by_place, work->state);
     }
 }
 
@@ -315,6 +316,7 @@ static void find_stiffness(gmi_elastic_work *work, gmi_elastic_result *result) {
 
 int gmi_elastic_solve(const gmi_elastic *law, gmi_elastic_work *work, double approach,
                       gmi_elastic_result *result) {
+    GMI_RETURN_WIDE(law, gmi_wide_solve(law, work, approach, result))
     if (work->count == 0) {
         answer_nothing(work, result);
         return GM_OK;
@@ -341,7 +343,7 @@ int gmi_elastic_solve(const gmi_elastic *law, gmi_elastic_work *work, double app
             continue;
         }
         gmi_elastic_follow(work);
-        add_rows(work, 1.0, work->change, work->state);
+        add_multiple(work, 1.0, work->change, work->state);
         if (fall <= root * root * scale) {
             finish(law, work, approach, result);
             scale = result->energy;

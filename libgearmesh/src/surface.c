@@ -22,7 +22,7 @@ static surface_map map_of(const gmi_surface_points *at, const gmi_surface_gear *
     return map;
 }
 
-APART void find_cells(int count, const surface_map *map, const gmi_grid *grid,
+APART void find_nodes(int count, const surface_map *map, const gmi_grid *grid,
                       const double *restrict place, const double *restrict roll,
                       double *restrict node, double *restrict face, double *restrict profile) {
     const double face_from = map->face_from, per_place = map->per_place;
@@ -43,7 +43,7 @@ APART void find_cells(int count, const surface_map *map, const gmi_grid *grid,
 void gmi_surface_find(const gmi_surface_points *at, const gmi_surface_gear *gear,
                       const gmi_surface_cells *cells) {
     const surface_map map = map_of(at, gear);
-    find_cells(at->count, &map, gear->grid, at->place, at->roll, cells->node, cells->face,
+    find_nodes(at->count, &map, gear->grid, at->place, at->roll, cells->node, cells->face,
                cells->profile);
 }
 
@@ -133,6 +133,8 @@ void gmi_surface_add_tilt(const gmi_surface_points *at, const gmi_line_flanks *l
     }
 }
 
+/* One point at a time is no work for vectors. */
+#ifndef GMI_IN_WIDE
 double gmi_line_flanks_at(const gmi_line_flanks *line, int side, double t1, double roll,
                           double reach, double *by_roll) {
     double value = line->pinion.pitch + line->wheel.pitch, by_t1 = 0.0, by_origin = 0.0, a[7];
@@ -155,3 +157,4 @@ double gmi_line_flanks_at(const gmi_line_flanks *line, int side, double t1, doub
     }
     return value;
 }
+#endif

@@ -8,6 +8,7 @@
  *
  *     evaluations FILE --write     writes the pair, and prints
  *     evaluations FILE             reads the pair, and prints
+ *     evaluations FILE --plain     the same without vectors of four doubles, even if the processor has them
  *
  * So are elastic teeth, whose tables are made with it: the law of a mesh is replaced by that of the file.
  */
@@ -25,6 +26,7 @@ enum { FACE_NODES = 9, PROFILE_NODES = 13, OTHER_FACE_NODES = 6, STATES = 700, P
 enum { ELASTIC_STATES = 150 };
 
 static const double degree = 0.017453292519943295;
+static int is_plain;
 
 static double uniform(uint64_t *seed, double low, double high) {
     *seed = *seed * UINT64_C(6364136223846793005) + UINT64_C(1442695040888963407);
@@ -174,7 +176,9 @@ static void print_elastic(const prepared *given, const gm_flanks *pinion, const 
     gmi_elastic_mesh *elastic = (gmi_elastic_mesh *)(uintptr_t)mesh->elastic;
     mesh->engagement = given->engagement;
     mesh->law = given->mean;
+    const int is_wide = elastic->law.is_wide;
     elastic->law = given->law;
+    elastic->law.is_wide = is_wide && !is_plain;
     elastic->tips = given->tips;
     elastic->body_compliance = given->body_compliance;
     const size_t size = gm_workspace_size(mesh);
@@ -253,8 +257,9 @@ int main(int argc, char **argv) {
     static prepared pairs[PAIRS];
     uint64_t seed = 11;
     const int writes = argc == 3 && strcmp(argv[2], "--write") == 0;
-    if (argc != 2 && !writes) {
-        stop("usage: evaluations FILE [--write]");
+    is_plain = argc == 3 && strcmp(argv[2], "--plain") == 0;
+    if (argc != 2 && !writes && !is_plain) {
+        stop("usage: evaluations FILE [--write | --plain]");
     }
 
     if (writes) {

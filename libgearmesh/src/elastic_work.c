@@ -1,0 +1,129 @@
+/* SPDX-FileCopyrightText: The gearmesh authors */
+/* SPDX-License-Identifier: BSD-3-Clause */
+
+/*
+ * The workspace of elastic teeth: its arrays in the memory of the caller.
+ */
+#include "elastic.h"
+
+#include "internal.h"
+
+#include <string.h>
+
+/* Sizes of the arrays of a workspace, in doubles. */
+typedef struct work_sizes {
+    size_t points, slots, nodes, front, factor, ends, carry;
+} work_sizes;
+
+static work_sizes find_sizes(int stations, int lines) {
+    const size_t n = (size_t)stations, rows = (size_t)lines + 1;
+    const work_sizes sizes = {2 * (size_t)lines * (n - 1),
+                              (size_t)lines * (n - 1),
+                              rows * n,
+                              2 * rows * (2 * rows + 2),
+                              2 * n * rows * rows,
+                              8 * (size_t)lines,
+                              rows * (rows + 2)};
+    return sizes;
+}
+
+enum { POINT_ARRAYS = 28, TABLE_ARRAYS = 4, PART_ARRAYS = 4, NODE_ARRAYS = 7, INDEX_ARRAYS = 4 };
+
+static int sizes_fit(int stations, int lines) {
+    return stations >= 2 && stations <= GMI_ELASTIC_STATIONS_MAX && lines >= 1 &&
+           lines <= GMI_ELASTIC_LINES_MAX;
+}
+
+size_t gmi_elastic_work_size(int stations, int lines) {
+    if (!sizes_fit(stations, lines)) {
+        return 0;
+    }
+    const work_sizes sizes = find_sizes(stations, lines);
+    const size_t doubles = (POINT_ARRAYS + 2 * TABLE_ARRAYS) * sizes.points +
+                           (GMI_ELASTIC_MATRICES + PART_ARRAYS) * sizes.slots +
+                           NODE_ARRAYS * sizes.nodes + sizes.front + sizes.factor + sizes.ends +
+                           sizes.carry;
+
+    /* Whole doubles, so that what comes behind is aligned as well. */
+    const size_t bytes = (sizeof(int) * INDEX_ARRAYS + sizeof(gmi_elastic_run)) * (size_t)stations;
+    return sizeof(double) * (doubles + (bytes + sizeof(double) - 1) / sizeof(double));
+}
+
+static double *take(double **memory, size_t count) {
+    double *array = *memory;
+    *memory += count;
+    return array;
+}
+
+void gmi_elastic_work_init(gmi_elastic_work *work, int stations, int lines, void *memory) {
+    const work_sizes sizes = find_sizes(stations, lines);
+    double *next = memory;
+    memset(work, 0, sizeof *work);
+    memset(memory, 0, gmi_elastic_work_size(stations, lines));
+    work->stations = stations;
+    work->lines_max = lines;
+
+    double **const points[POINT_ARRAYS] = {&work->z,
+                                           &work->roll,
+                                           &work->beyond,
+                                           &work->weight,
+                                           &work->deviation,
+                                           &work->deviation_by_roll,
+                                           &work->deviation_by_z,
+                                           &work->load,
+                                           &work->approach_at,
+                                           &work->force,
+                                           &work->stiffness,
+                                           &work->by_deviation,
+                                           &work->entry_slope,
+                                           &work->entry_curvature,
+                                           &work->place,
+                                           &work->tooth,
+                                           &work->tooth_by_roll,
+                                           &work->tooth_by_action,
+                                           &work->rate,
+                                           &work->rate_by_roll,
+                                           &work->rate_by_action,
+                                           &work->deflection,
+                                           &work->slope,
+                                           &work->change_at,
+                                           &work->expected,
+                                           &work->scratch,
+                                           &work->pull,
+                                           &work->tooth_adjoint};
+    for (int k = 0; k < POINT_ARRAYS; ++k) {
+        *points[k] = take(&next, sizes.points);
+    }
+    for (int k = 0; k < TABLE_ARRAYS; ++k) {
+        work->table[k] = take(&next, 2 * sizes.points);
+    }
+    work->matrix = take(&next, GMI_ELASTIC_MATRICES * sizes.slots);
+    for (int k = 0; k < PART_ARRAYS; ++k) {
+        work->parts[k] = take(&next, sizes.slots);
+    }
+
+    double **const nodes[NODE_ARRAYS] = {&work->state, &work->change,   &work->adjoint,
+                                         &work->last,  &work->by_place, &work->last_step,
+                                         &work->other};
+    for (int k = 0; k < NODE_ARRAYS; ++k) {
+        *nodes[k] = take(&next, sizes.nodes);
+    }
+    work->front = take(&next, sizes.front);
+    work->factor = take(&next, sizes.factor);
+    work->carry = take(&next, sizes.carry);
+    work->end_record = take(&next, sizes.ends);
+
+    /* Behind the doubles, so that all are aligned. */
+    int *indices = (int *)(void *)next;
+    work->factor_at = indices;
+    work->low = indices + stations;
+    work->high = work->low + stations;
+    work->traffic = work->high + stations;
+    work->run = (gmi_elastic_run *)(void *)(work->traffic + stations);
+}
+
+void gmi_elastic_work_reset(gmi_elastic_work *work) {
+    memset(work->state, 0, sizeof(double) * (size_t)(work->lines_max + 1) * (size_t)work->stations);
+    work->warm = 0;
+    work->touching = 0;
+}

@@ -1,0 +1,63 @@
+/* SPDX-FileCopyrightText: The gearmesh authors */
+/* SPDX-License-Identifier: BSD-3-Clause */
+
+/*
+ * Vectors of four doubles where the processor has them. A library for any x86-64 processor has vectors of two (SSE2), and
+ * most processors today have those of four (AVX2). So elastic_wide.c compiles the sources of one evaluation of elastic
+ * teeth once more, for AVX2 and under other names. gmi_elastic_init() asks the processor once and keeps the answer in the
+ * law, and each of the few functions by which an evaluation is entered begins with a line that hands over to the wide copy.
+ * Both copies do the same operations in the same order, and none fuses a product with a sum: the bits are the same.
+ *
+ * Nothing of this is there for other compilers and processors, on Windows (where gcc does not align the stack for it),
+ * where all is compiled for AVX2 anyway or for size, and with GEARMESH_WITHOUT_AVX2 (CMake: -DGEARMESH_AVX2=OFF).
+ */
+#ifndef GEARMESH_WIDE_H
+#define GEARMESH_WIDE_H
+
+#if defined(__GNUC__) && defined(__x86_64__) && !defined(_WIN32) && !defined(__AVX2__) &&          \
+    !defined(__OPTIMIZE_SIZE__) && !defined(GEARMESH_WITHOUT_AVX2)
+#define GMI_HAS_WIDE 1
+#else
+#define GMI_HAS_WIDE 0
+#endif
+
+/* What an evaluation is entered by begins with one of these: for a function with a result, and for one without. */
+#if GMI_HAS_WIDE && !defined(GMI_IN_WIDE)
+#define GMI_RETURN_WIDE(law, call)                                                                 \
+    if ((law)->is_wide) {                                                                          \
+        return call;                                                                               \
+    }
+#define GMI_CALL_WIDE(law, call)                                                                   \
+    if ((law)->is_wide) {                                                                          \
+        call;                                                                                      \
+        return;                                                                                    \
+    }
+#else
+#define GMI_RETURN_WIDE(law, call)
+#define GMI_CALL_WIDE(law, call)
+#endif
+
+/* Whether processor and system have AVX2: bits of CPUID, and that the system keeps the registers of each process. */
+#if GMI_HAS_WIDE
+#include <cpuid.h>
+
+static inline int gmi_processor_is_wide(void) {
+    unsigned a, b, c, d, kept, upper;
+    if (__get_cpuid_max(0, 0) < 7) {
+        return 0;
+    }
+    __cpuid(1, a, b, c, d);
+    if ((c & bit_OSXSAVE) == 0 || (c & bit_AVX) == 0) {
+        return 0;
+    }
+    __asm__ volatile("xgetbv" : "=a"(kept), "=d"(upper) : "c"(0));
+    __cpuid_count(7, 0, a, b, c, d);
+    return (kept & 6) == 6 && (b & bit_AVX2) != 0;
+}
+#else
+static inline int gmi_processor_is_wide(void) {
+    return 0;
+}
+#endif
+
+#endif
