@@ -152,6 +152,12 @@ static void lines_may_lie_across_what_is_read_at_a_time(void) {
         /* A wrong row behind it is told with its line. */
         sprintf(end + length, "\n5,drive,0,0,1\n5,drive,0,1,2x5\n");
         refused(text, 4, "'2x5'", "must be a number");
+
+        /* And so is a carriage return within a line. */
+        if (length % 16 == 0) {
+            sprintf(end + length, "\n5,drive,0,0,1\n5,drive,0\r,1,2.5\n");
+            refused(text, 4, "carriage return", "LF or CRLF");
+        }
     }
 }
 

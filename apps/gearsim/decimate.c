@@ -58,20 +58,27 @@ enum { INTERVALS = 256 }; /* of Simpson's rule */
 /*
  * Weight of the ideal low-pass at half the row's rate over the gain of the mean, at a distance in samples: its inverse
  * transform, the integral of cos(2 pi f distance) / gain(f) from -1/(2 factor) to 1/(2 factor), by Simpson's rule. At most
- * 7.5 periods of the cosine fall into half of it: 256 intervals leave an error of 1e-7.
+ * 7.5 periods of the cosine fall into half of it: 256 intervals leave an error of 1e-7. From one frequency to the next the
+ * cosine turns by the same angle, which takes less than a tenth of its time and is good to 256 roundings.
  */
 static double ideal_weight(enum sample_kind kind, const double gains[], double distance,
                            int factor) {
     const double step = 0.5 / factor / INTERVALS;
+    const double angle = 2.0 * pi * step * distance;
+    const double turn[2] = {cos(angle), sin(angle)};
+    double now[2] = {1.0, 0.0};
     double sum = 0.0;
 
     if (kind == SAMPLE_VALUES || kind == SAMPLE_BEHIND) {
         return sinc(distance / factor);
     }
     for (int k = 0; k <= INTERVALS; ++k) {
-        const double f = k * step;
         const double share = k == 0 || k == INTERVALS ? 1.0 : k % 2 == 1 ? 4.0 : 2.0;
-        sum += share * cos(2.0 * pi * f * distance) / gains[k];
+        const double cosine = now[0] * turn[0] - now[1] * turn[1];
+
+        sum += share * now[0] / gains[k];
+        now[1] = now[0] * turn[1] + now[1] * turn[0];
+        now[0] = cosine;
     }
     return 2.0 * factor * sum * step / 3.0;
 }

@@ -114,28 +114,57 @@ static const char *behind_number(const char *text, int exponent, char last, doub
     return end != NULL && *end == last ? end + 1 : NULL;
 }
 
+/* How rows begin that follow each other along the profile: with the same tooth, flank and t1. */
+typedef struct row_beginning {
+    char text[32];
+    size_t length; /* 0: none is known */
+    int slot;
+    double face;
+} row_beginning;
+
+/* Reads it in a plain row, and keeps it if it is short enough; returns what follows it, or NULL. */
+static const char *read_beginning(const char *text, int teeth, row_beginning *begins) {
+    if (begins->length > 0 && strncmp(text, begins->text, begins->length) == 0) {
+        return text + begins->length;
+    }
+    begins->length = 0;
+
+    int tooth = 0;
+    const char *flank = behind_tooth(text, teeth, &tooth);
+    if (flank == NULL) {
+        return NULL;
+    }
+    const char *coast = behind_word(flank, gmi_side_name(GM_COAST));
+    const char *face = coast != NULL ? coast : behind_word(flank, gmi_side_name(GM_DRIVE));
+    const char *end = behind_number(face, 0, ',', &begins->face);
+    if (end == NULL || !is_position(begins->face)) {
+        return NULL;
+    }
+
+    begins->slot = gmi_slot(tooth, coast != NULL ? GM_COAST : GM_DRIVE);
+    const size_t length = (size_t)(end - text);
+    if (length <= sizeof begins->text) {
+        memcpy(begins->text, text, length);
+        begins->length = length;
+    }
+    return end;
+}
+
 /*
  * A row as programs write it: no blanks, one tooth and flank, plain numbers. Nearly all rows of nearly all files are of
  * this kind, and read twice as fast as by read_row(). 0: a row of another kind, or a wrong one.
  */
-static int read_plain_row(const gmi_table *table, int teeth, gmi_row *row) {
-    int tooth = 0;
-    const char *flank = behind_tooth(table->text, teeth, &tooth);
-    if (flank == NULL) {
-        return 0;
-    }
-    const char *coast = behind_word(flank, gmi_side_name(GM_COAST));
-    const char *text = coast != NULL ? coast : behind_word(flank, gmi_side_name(GM_DRIVE));
+static int read_plain_row(const gmi_table *table, int teeth, row_beginning *begins, gmi_row *row) {
+    const char *text = read_beginning(table->text, teeth, begins);
 
-    text = behind_number(text, 0, ',', &row->position[GMI_FACE]);
     text = behind_number(text, 0, ',', &row->position[GMI_PROFILE]);
     text = behind_number(text, MICRO, '\0', &row->value);
-    if (text == NULL || !is_position(row->position[GMI_FACE]) ||
-        !is_position(row->position[GMI_PROFILE])) {
+    if (text == NULL || !is_position(row->position[GMI_PROFILE])) {
         return 0;
     }
+    row->position[GMI_FACE] = begins->face;
     row->line = table->line;
-    row->slot = gmi_slot(tooth, coast != NULL ? GM_COAST : GM_DRIVE);
+    row->slot = begins->slot;
     return 1;
 }
 
@@ -162,13 +191,14 @@ static int read_row(const gmi_table *table, int teeth, gmi_row *row) {
 }
 
 static int read_rows(loader *load, gmi_table *table) {
+    row_beginning begins = {.length = 0};
     int more = 0;
     while ((more = gmi_table_line(table)) > 0) {
         gmi_row *row = gmi_rows_room(&load->rows);
         if (row == NULL) {
             return gmi_error_memory(load->error);
         }
-        if (!read_plain_row(table, load->teeth, row)) {
+        if (!read_plain_row(table, load->teeth, &begins, row)) {
             more = gmi_table_split(table);
             const int status = more > 0 ? read_row(table, load->teeth, row) : more;
             if (status != GM_IO_OK) {
@@ -227,7 +257,7 @@ static int make_deviations(loader *load, gm_deviations *deviations) {
 static int load_deviations(loader *load, gm_deviations *deviations, const char *path) {
     int status = read_file(load, path);
     if (status == GM_IO_OK) {
-        status = gmi_grid_find(&load->grid, &load->rows, load->error);
+        status = gmi_grid_find(&load->grid, &load->rows, load->row_count, load->error);
     }
     if (status == GM_IO_OK) {
         status = gmi_grid_fill(&load->grid, &load->rows, load->row_count, load->values, load->slots,

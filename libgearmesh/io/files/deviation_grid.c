@@ -42,12 +42,16 @@ static int bucket_of(double position) {
     return (int)(position * BUCKETS_TO_ONE + 2.5);
 }
 
-static void count_positions(positions *seen, const gmi_rows *rows, int slot, int axis) {
+/* Of the rows of a slot, of which there are so many. */
+static void count_positions(positions *seen, const gmi_rows *rows, int slot, size_t row_count,
+                            int axis) {
+    size_t left = row_count;
     gmi_rows_place place;
-    for (const gmi_row *row = gmi_rows_first(&place, rows); row; row = gmi_rows_next(&place)) {
+    for (const gmi_row *row = gmi_rows_first(&place, rows); left > 0; row = gmi_rows_next(&place)) {
         if (row->slot != slot) {
             continue;
         }
+        --left;
 
         const double position = row->position[axis];
         ++seen->histogram[bucket_of(position)];
@@ -135,24 +139,27 @@ static int check_axis(const positions *seen, int nodes, int axis, gm_io_error *e
     return GM_IO_OK;
 }
 
-static int find_axis(gmi_grid *grid, const gmi_rows *rows, int axis, gm_io_error *error) {
+static int find_axis(gmi_grid *grid, const gmi_rows *rows, size_t row_count, int axis,
+                     gm_io_error *error) {
     positions seen = {NULL, NULL, NULL};
     seen.histogram = calloc(BUCKETS, sizeof *seen.histogram);
     if (seen.histogram == NULL) {
         return gmi_error_memory(error);
     }
-    count_positions(&seen, rows, grid->slot, axis);
+    count_positions(&seen, rows, grid->slot, row_count, axis);
     grid->nodes[axis] = count_grid_lines(seen.histogram);
     free(seen.histogram);
     return check_axis(&seen, grid->nodes[axis], axis, error);
 }
 
-int gmi_grid_find(gmi_grid *grid, const gmi_rows *rows, gm_io_error *error) {
+int gmi_grid_find(gmi_grid *grid, const gmi_rows *rows, const size_t *row_count,
+                  gm_io_error *error) {
     gmi_rows_place place;
     grid->slot = gmi_rows_first(&place, rows)->slot;
 
-    const int status = find_axis(grid, rows, GMI_FACE, error);
-    return status != GM_IO_OK ? status : find_axis(grid, rows, GMI_PROFILE, error);
+    const size_t count = row_count[grid->slot];
+    const int status = find_axis(grid, rows, count, GMI_FACE, error);
+    return status != GM_IO_OK ? status : find_axis(grid, rows, count, GMI_PROFILE, error);
 }
 
 /* ---------------------------------------------------------------------------------------------

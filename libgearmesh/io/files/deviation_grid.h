@@ -25,7 +25,8 @@ typedef struct gmi_grid {
 } gmi_grid;
 
 /** Finds the grid of the set that the first row belongs to. */
-int gmi_grid_find(gmi_grid *grid, const gmi_rows *rows, gm_io_error *error);
+int gmi_grid_find(gmi_grid *grid, const gmi_rows *rows, const size_t *row_count,
+                  gm_io_error *error);
 
 /** Nodes of one set. */
 size_t gmi_grid_size(const gmi_grid *grid);

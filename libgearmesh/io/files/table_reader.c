@@ -32,6 +32,10 @@ static int fail(const gmi_table *table, const char *message) {
     return gmi_error_set(table->error, GM_IO_ERR_FORMAT, table->line, "%s", message);
 }
 
+static int has_byte(const char *text, size_t length, char byte) {
+    return memchr(text, byte, length) != NULL;
+}
+
 /* Moves what is left to the front of the buffer and reads more behind it: 1 = there is more, 0 = end of the file, < 0 =
  * gm_io_status. */
 static int refill(gmi_table *table) {
@@ -44,6 +48,12 @@ static int refill(gmi_table *table) {
     if (ferror(table->file)) {
         return gmi_error_file(table->error, left > 0 ? table->line : 0, "read", errno);
     }
+
+    /* Most files have neither, which is seen here for many lines at once. */
+    const char *added = table->buffer + left;
+    const size_t length = table->end - left;
+    table->is_odd = (left > 0 && table->is_odd) || has_byte(added, length, '\0') ||
+                    has_byte(added, length, '\r');
     return table->end > left;
 }
 
@@ -66,10 +76,6 @@ static char *find_end(gmi_table *table, int *status) {
     }
 }
 
-static int has_zero(const char *text, size_t length) {
-    return memchr(text, '\0', length) != NULL;
-}
-
 static int fail_zero(const gmi_table *table) {
     return fail(table,
                 "the file must be plain UTF-8 text with comma separated values (got a zero byte)");
@@ -80,12 +86,13 @@ static int skip_rest(gmi_table *table) {
     const size_t kept = GMI_LINE_LENGTH + 1; /* with its end */
     memmove(table->buffer, table->text, kept);
     table->text = table->buffer;
+    table->is_odd = 1; /* what is read here is looked at line by line */
 
     for (;;) {
         const char *rest = table->buffer + table->begin;
         const size_t size = table->end - table->begin;
         const char *end = memchr(rest, '\n', size);
-        if (has_zero(rest, end != NULL ? (size_t)(end - rest) : size)) {
+        if (has_byte(rest, end != NULL ? (size_t)(end - rest) : size, '\0')) {
             return fail_zero(table);
         }
         if (end != NULL) {
@@ -107,7 +114,7 @@ static int skip_rest(gmi_table *table) {
 
 /* A line of more than what is kept: right if it is a comment, of which the beginning stays. */
 static int read_long_line(gmi_table *table) {
-    if (has_zero(table->text, GMI_LINE_LENGTH + 1)) {
+    if (has_byte(table->text, GMI_LINE_LENGTH + 1, '\0')) {
         return fail_zero(table);
     }
     if (*skip_blanks(table->text) != '#') {
@@ -139,7 +146,7 @@ int gmi_lines_next(gmi_table *table) {
     if (length > GMI_LINE_LENGTH) {
         length = GMI_LINE_LENGTH;
         status = read_long_line(table);
-    } else if (has_zero(table->text, length)) {
+    } else if (table->is_odd && has_byte(table->text, length, '\0')) {
         status = fail_zero(table);
     } else {
         table->begin += length + (end != NULL);
@@ -154,7 +161,7 @@ int gmi_lines_next(gmi_table *table) {
         --length;
     }
     table->text[length] = '\0';
-    if (memchr(table->text, '\r', length) != NULL) {
+    if (table->is_odd && has_byte(table->text, length, '\r')) {
         return fail(table,
                     "lines must end with LF or CRLF (got a carriage return within the line)");
     }

@@ -35,6 +35,7 @@ typedef struct gmi_table {
     char *fields[GMI_MAX_COLUMNS]; /**< [column_count] of the row last read, within text */
     char *text;                    /**< the line last read, within the buffer */
     size_t begin, end;             /**< of what is in the buffer and not read yet */
+    int is_odd;                    /**< a zero byte or a carriage return may be in it */
     char buffer[GMI_BUFFER_SIZE];
 } gmi_table;
 
