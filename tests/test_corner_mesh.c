@@ -1021,6 +1021,59 @@ static void loads_of_spur_lines_are_the_force(void) {
     GM_ASSERT(alone > 10);
 }
 
+/* Spur gears: friction of each line is mu_r times its force, and takes that times the sliding speed of its points. */
+static void points_slide_as_friction_has_it(void) {
+    const double mu = 0.1, creep = 0.02, width = 12e-3;
+    int slow = 0, either_way[2] = {0, 0};
+    for (int k = 0; k < 4 * 300; ++k) {
+        /* External and in a ring, with edges and without, either way round, on drive and coast flanks. */
+        const int is_ring = k % 2, corners = k / 2 % 2 ? GM_CORNER_ON : GM_CORNER_OFF;
+        const double side = k / 4 % 2 ? 1.0 : -1.0, speed = k / 8 % 2 ? 3.0 : -40.0;
+        gm_pair_params gears;
+        gm_pair pair;
+        gm_pair_params_default(&gears);
+        gears.pinion_teeth = 25;
+        gears.wheel_teeth = is_ring ? -68 : 37;
+        gears.normal_module = 2e-3;
+        gears.normal_pressure_angle = 0.349;
+        gears.center_distance = 1e-3 * (is_ring ? 43.0 : 62.1);
+        gears.face_width = width;
+        gears.backlash = 80e-6;
+        GM_ASSERT_INT(gm_pair_init(&pair, &gears), GM_OK);
+        gm_mesh_params params = params_with(corners, 0.0);
+        params.friction_coefficient = mu;
+        params.friction_speed = creep;
+        room where;
+        gm_mesh *mesh;
+        GM_ASSERT_INT(
+            gm_mesh_init(&mesh, &params, &pair, NULL, NULL, where.memory, sizeof where.memory),
+            GM_OK);
+
+        gm_position position;
+        gm_line_load_point points[400];
+        gm_line_loads loads;
+        gm_mesh_result r;
+        gm_test_context("place %d", k);
+        (void)gm_position_from_pinion_angle(&pair, 0.0011 * k, side * (40e-6 + 8e-6), 1e-4,
+                                            &position);
+        position.pinion_speed = speed;
+        GM_ASSERT_INT(gm_mesh_evaluate_at(mesh, &position, 0, NULL, &r), GM_OK);
+        GM_ASSERT_INT(gm_mesh_line_loads(mesh, &position, NULL, points, 400, &loads), GM_OK);
+        double loss = 0.0, largest = 0.0;
+        for (int n = 0; n < loads.points; n += 17) {
+            const double v = points[n].sliding_speed;
+            loss += mu * v * v / sqrt(v * v + creep * creep) * points[n].line_load * width;
+            largest = fmax(largest, mu * fabs(v) * points[n].line_load * width);
+            slow += fabs(v) < creep;
+            ++either_way[v > 0.0];
+            GM_ASSERT(points[n].sliding_speed == points[n + 16].sliding_speed);
+        }
+        GM_ASSERT_ABS(loss, r.loss, 1e-9 * largest);
+    }
+    GM_ASSERT(slow > 20);
+    GM_ASSERT(either_way[0] > 300 && either_way[1] > 300);
+}
+
 /* Between tilted axes the load of a spur line is next to a parabola: Simpson's rule over the 17 stations has its integral,
  * up to what the tilt moves the ends of the wheel's face by. And the force acts where it is. */
 static void loads_of_tilted_spur_lines_are_the_force(void) {
@@ -1134,6 +1187,7 @@ int main(int argc, char **argv) {
         GM_TEST(equilibrium_carries_the_torque),
         GM_TEST(lines_are_loaded_as_the_overlap_says),
         GM_TEST(loads_of_spur_lines_are_the_force),
+        GM_TEST(points_slide_as_friction_has_it),
         GM_TEST(loads_of_tilted_spur_lines_are_the_force),
         GM_TEST(what_corners_do_not_go_with_is_refused),
     };

@@ -952,6 +952,7 @@ static void line_loads_are_the_force(void) {
         gm_line_load_point points[400];
         gm_line_loads loads;
         GM_ASSERT(gm_mesh_line_load_points(m.mesh) <= 400);
+        position.pinion_speed = 30.0;
         GM_ASSERT_INT(gm_mesh_line_loads(m.mesh, &position, m.workspace, points, 400, &loads),
                       GM_OK);
 
@@ -967,6 +968,10 @@ static void line_loads_are_the_force(void) {
             GM_ASSERT_REL(p->pinion_roll_length + p->wheel_roll_length, m.pair.line_of_action,
                           k == 0 ? 1e-12 : 1e-3);
             GM_ASSERT((p->gap < 0.0) == (p->line_load > 0.0));
+            const gm_gear *pinion = &m.pair.pinion, *wheel = &m.pair.wheel;
+            const double both = 30.0 * (1.0 + pinion->base_radius / wheel->base_radius);
+            const double pitch_point = pinion->base_radius * tan(m.pair.working_pressure_angle);
+            GM_ASSERT_ABS(p->sliding_speed, both * (p->pinion_roll_length - pitch_point), 1e-12);
             const double radius = p->pinion_roll_length * p->wheel_roll_length /
                                   (p->pinion_roll_length + p->wheel_roll_length);
             GM_ASSERT_REL(p->pressure,

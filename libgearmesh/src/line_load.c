@@ -59,6 +59,7 @@ typedef struct side_lines {
     gmi_lines lines;
     gmi_teeth teeth;
     double delta;           /* ideal penetration (m) */
+    double speeds[2];       /* [enum gm_role] of both gears, in the signs of ISO 21771 (rad/s) */
     double reach;           /* rho_p + rho_w (m) */
     gmi_elastic_work *work; /* solved; NULL with constant stiffness */
     gmi_elastic_tips tips;  /* of lines that go on beyond the path, of elastic teeth */
@@ -82,9 +83,15 @@ static double pressure_of(const gm_mesh *mesh, double line_load, double roll, do
 /* Where one point of a line touches with constant stiffness. */
 typedef struct place {
     double rolls[2]; /* [enum gm_role] roll lengths, in the signs of ISO 21771 (m) */
+    double arms[2];  /* likewise of the tangent along which the flanks slide, about both axes (m) */
     double material; /* of both flanks, which end with their tables, less the gap of an edge (m) */
     int is_edge;
 } place;
+
+/* How fast flanks slide on each other whose tangent has these arms, as friction.c has it. */
+static double sliding_speed(const side_lines *found, double pinion_arm, double wheel_arm) {
+    return found->speeds[GM_PINION] * pinion_arm - found->speeds[GM_WHEEL] * wheel_arm;
+}
 
 static double held(double roll, double one_end, double other_end) {
     return fmin(fmax(roll, fmin(one_end, other_end)), fmax(one_end, other_end));
@@ -98,6 +105,8 @@ static void find_place(const gm_mesh *mesh, const side_lines *found, const gmi_l
     double by_roll, pinion = roll, wheel = found->reach - roll;
     where->rolls[GM_PINION] = pinion;
     where->rolls[GM_WHEEL] = wheel;
+    where->arms[GM_PINION] = roll;
+    where->arms[GM_WHEEL] = at->line_of_action - roll;
     where->is_edge = 0;
     if (!mesh->has_corners) {
         where->material = gmi_line_flanks_at(flanks, found->side, t1, roll, found->reach, &by_roll);
@@ -117,9 +126,15 @@ static void find_place(const gm_mesh *mesh, const side_lines *found, const gmi_l
         if (past > 0.0) {
             gmi_corner_at(&mesh->corners[role], fmin(past, mesh->corners[role].reach), &corner);
             where->material -= corner.gap;
+            const int mate = role == GM_PINION ? GM_WHEEL : GM_PINION;
             where->rolls[role] = at->tip_roll_length[role];
-            where->rolls[role == GM_PINION ? GM_WHEEL : GM_PINION] = corner.mate_roll;
+            where->rolls[mate] = corner.mate_roll;
             where->is_edge = 1;
+
+            /* Both arms together are the part of the centre distance along the turned normal. */
+            where->arms[mate] += corner.gain;
+            where->arms[role] = at->line_of_action * (1.0 - corner.versine) +
+                                gmi_base_sum(mesh->pair) * sin(corner.turn) - where->arms[mate];
         }
     }
 }
@@ -147,6 +162,7 @@ static gm_line_load_point point_of_overlap(const gm_mesh *mesh, const side_lines
         .wheel_roll_length = fabs(where.rolls[GM_WHEEL]),
         .line_load = fmax(0.0, overlap) * mesh->law.stiffness / pair->face_width,
         .gap = -overlap,
+        .sliding_speed = sliding_speed(found, where.arms[GM_PINION], where.arms[GM_WHEEL]),
     };
     point.pressure = where.is_edge && point.line_load > 0.0
                          ? gmi_nan()
@@ -177,6 +193,7 @@ static gm_line_load_point point_at(const gm_mesh *mesh, const side_lines *found,
         .z = pair->face_start + t1 * pair->face_width,
         .pinion_roll_length = roll,
         .wheel_roll_length = fabs(found->reach - roll),
+        .sliding_speed = sliding_speed(found, roll, mesh->engagement.line_of_action - roll),
     };
 
     /* Beyond the path a tip edge touches, where the flanks end. */
@@ -354,6 +371,10 @@ static int walk_side(walk *w, int side, const gm_position *position, gm_workspac
 
     /* Elastic teeth do not move the path by what they give way. */
     side_lines found = {.side = side, .delta = gmi_ideal_penetration(at, side, position->offset)};
+    found.speeds[GM_PINION] = position->pinion_speed;
+    found.speeds[GM_WHEEL] =
+        (pair->pinion.base_radius * position->pinion_speed - position->offset_rate) /
+        at->wheel_base_radius;
     found.work = mesh->elastic != NULL ? &workspace->side[side] : NULL;
     found.reach = at->line_of_action + (found.work != NULL ? 0.0 : found.delta);
     gm_position lines_at = *position;

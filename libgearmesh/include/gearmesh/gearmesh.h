@@ -1302,6 +1302,10 @@ typedef struct gm_line_load_point {
     double pressure;
 
     double gap; /**< between the surfaces, < 0 pressed into each other (m) */
+
+    /** v, how fast the pinion's flank slides past the wheel's across the line of action, from the speeds of the position; > 0
+     *  beyond the pitch point where the pinion turns forwards (m/s) */
+    double sliding_speed;
 } gm_line_load_point;
 
 /** What is doubtful about a load. */
@@ -1334,7 +1338,7 @@ GM_API int gm_mesh_line_load_points(const gm_mesh *mesh);
  * touch: roll lengths there are that of the tip and, of the flank it touches, that of the point where it does.
  *
  * @param[in]     mesh       the mesh, not of the simple model
- * @param[in]     position   where the gears are
+ * @param[in]     position   where the gears are; its speeds tell how the flanks slide
  * @param[in,out] workspace  as gm_mesh_evaluate()
  * @param[out]    points     [capacity]; NULL: not wanted
  * @param[in]     capacity   gm_mesh_line_load_points() is always enough

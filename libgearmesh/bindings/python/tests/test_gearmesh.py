@@ -257,6 +257,13 @@ def test_line_loads_are_uniform_with_a_constant_stiffness_and_add_up_to_the_forc
     # rho_p + rho_w is the line of action.
     assert points.pinion_roll_length + points.wheel_roll_length == pytest.approx(pair.line_of_action, rel=1e-3)
 
+    # Flanks slide by how far they are from the pitch point.
+    pinion, wheel = pair.pinion.base_radius, pair.wheel.base_radius
+    from_pitch_point = points.pinion_roll_length - pinion * np.tan(pair.working_pressure_angle)
+    assert np.all(points.sliding_speed == 0.0)
+    points = mesh.line_loads(0.1, offset, 50.0).points
+    assert points.sliding_speed == pytest.approx(50.0 * (1.0 + pinion / wheel) * from_pitch_point, rel=1e-12)
+
     # Beside each other and out of range.
     assert np.isnan(mesh.line_loads(0.1, 0.0).load.largest_line_load)
     assert len(mesh.line_loads(0.1, 1.0).points) == 0

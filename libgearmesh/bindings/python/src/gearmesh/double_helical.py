@@ -115,7 +115,7 @@ class DoubleHelical:
                                pointer("gm_mesh_result *", results)))
         return DoubleHelicalStaticResult(offsets[()], shown(results), shown(halves), apex[()])
 
-    def line_loads(self, pinion_angle: float, offset: float, apex: float) -> LineLoadsResult:
+    def line_loads(self, pinion_angle: float, offset: float, apex: float, pinion_speed: float = 0.0) -> LineLoadsResult:
         """Load along the lines of both halves, z as in the whole pair; see Mesh.line_loads(). x and `apex` as static()
         gives them."""
         position = ffi.new("gm_position *")
@@ -123,6 +123,7 @@ class DoubleHelical:
         load: Any = np.empty((), LINE_LOADS)
         status = lib.gm_position_from_pinion_angle(self.pair._struct, pinion_angle, offset, 0.0, position)
         if status >= lib.GM_OK:
+            position.pinion_speed = pinion_speed
             status = lib.gm_double_helical_line_loads(self._struct, position, apex, pointer("gm_line_load_point *", points),
                                                       points.size, pointer("gm_line_loads *", load))
         if status < lib.GM_OK:

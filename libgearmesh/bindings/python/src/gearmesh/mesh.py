@@ -183,9 +183,10 @@ class Mesh:
         check(status)
         return StaticResult(offsets[()], shown(results))
 
-    def line_loads(self, pinion_angle: float, offset: float) -> LineLoadsResult:
+    def line_loads(self, pinion_angle: float, offset: float, pinion_speed: float = 0.0) -> LineLoadsResult:
         """
-        Load along the lines of contact at one pinion angle (rad) and x (m), as static() gives it, without damping.
+        Load along the lines of contact at one pinion angle (rad) and x (m), as static() gives it, without damping. The speed
+        of the pinion (rad/s) tells how fast the flanks slide there.
 
         Of the points, those of a pair are `points[points.pinion_tooth == tooth]`. Where evaluate_offset() gives NaN, `load`
         is NaN and there are no points. Raises Error for a mesh of the simple model.
@@ -196,6 +197,7 @@ class Mesh:
         # What is refused as an angle or x is NaN in the position, and refused again.
         status = lib.gm_position_from_pinion_angle(self.pair._struct, pinion_angle, offset, 0.0, position)
         if status >= lib.GM_OK:
+            position.pinion_speed = pinion_speed
             status = lib.gm_mesh_line_loads(self._struct, position, self._workspace(),
                                             pointer("gm_line_load_point *", points), points.size,
                                             pointer("gm_line_loads *", load))
