@@ -22,7 +22,9 @@ typedef struct cvode_memory {
     void *cvode;
     SUNNonlinearSolver corrector;
     N_Vector scratch;
-    N_Vector reader;   /* takes CVODE's polynomial down, see read_polynomial() */
+    N_Vector reader; /* sees CVODE's polynomial, see read_polynomial() */
+    int known;       /* highest order of which CVODE's vector has been seen, -1: none, */
+    N_Vector vectors[ORDERS + 1]; /* and these vectors */
     int order;         /* of the polynomial below, -1: that of the last step has not been read */
     double per_length; /* of the step (1/s) */
     double polynomial[ORDERS + 1][STATES_MAX]; /* over the share of the step from its end on */
@@ -39,15 +41,14 @@ static int derivative(sunrealtype time, N_Vector state, N_Vector result, void *d
 }
 
 /* Operation of the reader: the coefficients come from the highest down. NOLINTNEXTLINE(readability-non-const-parameter) */
-static int take_down(int count, sunrealtype *factors, N_Vector *coefficients, N_Vector reader) {
+static int note_vectors(int count, sunrealtype *factors, N_Vector *coefficients, N_Vector reader) {
     cvode_memory *memory = reader->content;
     (void)factors;
 
     for (int k = 0; k < count; ++k) {
-        memcpy(memory->polynomial[count - 1 - k], NV_DATA_S(coefficients[k]),
-               (size_t)NV_LENGTH_S(coefficients[k]) * sizeof memory->polynomial[0][0]);
+        memory->vectors[count - 1 - k] = coefficients[k];
     }
-    memory->order = count - 1;
+    memory->known = count - 1;
     return 0;
 }
 
@@ -78,14 +79,14 @@ static int create(integrator *solver) {
     if (memory == NULL) {
         return -1;
     }
-    memory->order = -1;
+    memory->order = memory->known = -1;
     memory->scratch = N_VClone(solver->state);
     memory->reader = N_VNewEmpty(solver->context);
     if (memory->scratch == NULL || memory->reader == NULL) {
         return -1;
     }
     memory->reader->content = memory;
-    memory->reader->ops->nvlinearcombination = take_down;
+    memory->reader->ops->nvlinearcombination = note_vectors;
     memory->corrector = corrector_create(solver, memory->scratch);
     return memory->corrector != NULL ? set_up(solver, memory) : -1;
 }
@@ -124,16 +125,39 @@ static int restart(integrator *solver) {
 }
 
 /*
- * CVODE's polynomial, read in one call: the value at the end of the step is a sum over its coefficients, which our vector
- * gets to see (take_down()). By derivatives it would take a call for each of them.
+ * The vector of order 0 is the state at the end of the step, but for a rounding where CVODE has stopped at a time that it
+ * was given: if it were another one, the others would be too, and they are looked for again.
+ */
+static int are_those_of_the_step(const integrator *solver, const cvode_memory *memory, int order) {
+    return order <= memory->known && memcmp(NV_DATA_S(memory->vectors[0]), NV_DATA_S(solver->state),
+                                            (size_t)solver->model->states * sizeof(double)) == 0;
+}
+
+/*
+ * CVODE's polynomial: the value at the end of the step is a sum over its coefficients, which our vector gets to see. CVODE
+ * keeps each of them in a vector of its own from its first step to its last, so that they are looked for once and then
+ * read without a call. By derivatives it would take a call for each of them.
  */
 static int read_polynomial(const integrator *solver, cvode_memory *memory) {
     sunrealtype length;
+    int order;
     if (CVodeGetLastStep(memory->cvode, &length) != CV_SUCCESS ||
-        CVodeGetDky(memory->cvode, solver->time, 0, memory->reader) != CV_SUCCESS ||
-        memory->order < 0) {
+        CVodeGetLastOrder(memory->cvode, &order) != CV_SUCCESS) {
         return -1;
     }
+    if (!are_those_of_the_step(solver, memory, order)) {
+        memory->known = -1;
+        if (CVodeGetDky(memory->cvode, solver->time, 0, memory->reader) != CV_SUCCESS ||
+            order > memory->known) {
+            return -1;
+        }
+    }
+
+    for (int k = 0; k <= order; ++k) {
+        memcpy(memory->polynomial[k], NV_DATA_S(memory->vectors[k]),
+               (size_t)solver->model->states * sizeof memory->polynomial[0][0]);
+    }
+    memory->order = order;
     memory->per_length = 1.0 / length;
     return 0;
 }

@@ -196,19 +196,23 @@ response_value response_at(response *linear, double time) {
                             .rate = evaluate(part->rate, linear->terms, share)};
 }
 
+/* Whether a time is in the segment of the one before, which begins at a whole number of segments; its share there. */
+static int is_within(const response *linear, double time, double begin, double *share) {
+    *share = time * linear->per_length - begin;
+    return *share >= 0.0 && *share < 1.0;
+}
+
 void response_carried(response *linear, int count, const double times[], double carried[],
                       response_value values[]) {
     const int terms = linear->terms;
     const segment *part = NULL;
-    double begin = 0.0;
+    double begin = -1.0, share;
 
     for (int i = 0; i < count; ++i) {
-        double share = times[i] * linear->per_length - begin;
-        if (part == NULL || !(share >= 0.0 && share < 1.0)) {
+        if (begin < 0.0 || !is_within(linear, times[i], begin, &share)) {
             part = segment_at(linear, times[i], &share);
-            begin = floor(times[i] > 0.0 ? times[i] * linear->per_length : 0.0);
+            begin = (double)(int64_t)(times[i] > 0.0 ? times[i] * linear->per_length : 0.0);
         }
-
         carried[i] = evaluate(part->carried, terms, share);
         if (values != NULL) {
             values[i].offset = evaluate(part->offset, terms, share);
