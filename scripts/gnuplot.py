@@ -95,7 +95,7 @@ def draw(stem, prepare, formats=None):
     writes it as `picture . '.png'`, `.svg` and `.pdf`, or in some of these formats.
     """
     formats = formats or FORMATS
-    with tempfile.TemporaryDirectory(prefix=".gearmesh_", dir=os.path.dirname(stem) or ".") as folder:
+    with tempfile.TemporaryDirectory(prefix=program.TEMPORARY, dir=os.path.dirname(stem) or ".") as folder:
         folder = os.path.abspath(folder)
         pictures = prepare(folder)
         common = {"formats": " ".join(formats)}

@@ -19,6 +19,7 @@ import tempfile
 DEBIAN_PACKAGES = {"numpy": "python3-numpy", "scipy": "python3-scipy", "h5py": "python3-h5py"}
 HANDED_ON = "GEARMESH_HANDED_ON"  # set for a Python that a script was handed on to, not for what it starts
 WAS_HANDED_ON = os.environ.pop(HANDED_ON, None) is not None
+TEMPORARY = ".gearmesh_"  # names of what grows beside its place begin so
 CONTROLS = r"\x00-\x08\x0b-\x1f\x7f-\x9f\u2028\u2029"  # characters that tell a terminal what to do, but tab and newline
 
 
@@ -170,8 +171,10 @@ def run(work, parse):
     except BrokenPipeError:  # nobody reads what is printed; not to be told again at the end of Python
         os.dup2(os.open(os.devnull, os.O_WRONLY), 1)
         return 1
-    except (RunFailed, OSError) as error:
+    except RunFailed as error:
         status, text = 1, error
+    except OSError as error:
+        status, text = 1, _text_of(error)
     except MemoryError:
         status, text = 1, "out of memory"
     except KeyboardInterrupt:
@@ -185,6 +188,16 @@ def run(work, parse):
     except OSError:  # not to be told again at the end of Python
         os.dup2(os.open(os.devnull, os.O_WRONLY), 1)
     return status
+
+
+def _text_of(error):
+    """`FILE: why` of what the system refuses; FILE is as the user knows it."""
+    path = error.filename2 or error.filename
+    if not isinstance(path, (str, bytes)) or not error.strerror:
+        return error
+    path = os.fsdecode(path)
+    folder, name_ = os.path.split(path)
+    return f"{(folder or os.curdir) if name_.startswith(TEMPORARY) else path}: {error.strerror}"
 
 
 def _be_interrupted_by_signals():
@@ -250,7 +263,7 @@ def written(path, **options):
             yield file
         return
 
-    descriptor, part = tempfile.mkstemp(prefix=".gearmesh_", dir=os.path.dirname(path))
+    descriptor, part = tempfile.mkstemp(prefix=TEMPORARY, dir=os.path.dirname(path))
     try:
         with open(descriptor, "w", **options) as file:
             os.fchmod(descriptor, stat.S_IMODE(os.stat(path).st_mode) if is_there else 0o666 & ~_umask())

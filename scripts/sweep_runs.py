@@ -77,7 +77,7 @@ class Job:
         """Refuses keys that gearsim does not know, before anything is written; values may be wrong in single runs."""
         values = {key: value for key, value in zip(self.keys, row) if not key.startswith("class.")}
         try:
-            self._call(self.gearsim, "--quiet", "--check", *self._set(values))
+            self._call(self.gearsim, "--quiet", "--check", "--output", "-", "--set=output.load_distribution=", *self._set(values))
         except InputError as error:
             if "unknown key" in str(error) or "unknown section" in str(error):
                 raise

@@ -428,6 +428,10 @@ class Packages(Case):
         with program.written("/dev/null") as file:
             file.write("x")
         self.assertRaises(OSError, lambda: program.written("no/where").__enter__())
+        self.write("flanks.csv", FLANKS)
+        status, _, stderr = self.call("flanks", "flanks.csv", "--output", 250 * "x")
+        self.assertEqual((status, stderr), (1, f"flanks: {250 * 'x'}_topography.png: File name too long\n"))
+        os.remove("flanks.csv")
         self.assertEqual(sorted(os.listdir(".")), ["fresh", "link", "old"])
 
     def test_help_has_an_example_and_options_are_checked(self):

@@ -153,6 +153,12 @@ class Runs(Case):
             self.assertIn(message, done.stderr)
         self.assertEqual([name for name in os.listdir(self.folder) if name.startswith("x")], [])
 
+    def test_where_the_file_alone_would_write_plays_no_part(self):
+        os.mkdir(self.path("p.csv.part"))
+        done = self.finish("--gearsim", GEARSIM[0], "--vary", "load.mean_Nm=20,40", "--set", "analysis.positions=5")
+        self.assertEqual((done.returncode, done.stderr), (0, ""))
+        self.assertEqual(len(self.table()), 2)
+
     def test_a_killed_sweep_goes_on_with_nothing_lost_or_made_twice(self):
         arguments = ("--vary", "load.mean_Nm=100:400:9", "--set", "analysis.positions=40", "--jobs", "2",
                      *self.counting(delay_s=0.05))
