@@ -154,8 +154,8 @@ class Runs(Case):
         self.assertEqual([name for name in os.listdir(self.folder) if name.startswith("x")], [])
 
     def test_where_the_file_alone_would_write_plays_no_part(self):
-        os.mkdir(self.path("p.csv.part"))
-        done = self.finish("--gearsim", GEARSIM[0], "--vary", "load.mean_Nm=20,40", "--set", "analysis.positions=5")
+        done = self.finish("--gearsim", GEARSIM[0], "--vary", "load.mean_Nm=20,40", "--set", "analysis.positions=5",
+                           "--set", "output.file=no/where.csv", "--set", "output.load_distribution=no/load.csv")
         self.assertEqual((done.returncode, done.stderr), (0, ""))
         self.assertEqual(len(self.table()), 2)
 
