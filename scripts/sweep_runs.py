@@ -24,6 +24,7 @@ from program import InputError, RunFailed
 
 TASK, RESULT = 1, 2  # tags of messages
 POLL_S = 0.005
+NO_LOADS = "--set=output.load_distribution="  # behind all others: it is one file, which all runs would write
 
 
 def numbers_of(found, prefix=""):
@@ -65,8 +66,7 @@ class Job:
             settings = self._set({**self._flanks(index, values), **values}) if not os.path.exists(path) else []
             while not os.path.exists(path):
                 try:
-                    # Without the one file of line loads that all runs would write.
-                    self._call(self.gearsim, "--quiet", "--output", path, "--set=output.load_distribution=", *settings)
+                    self._call(self.gearsim, "--quiet", "--output", path, *settings, NO_LOADS)
                 except Busy:  # a run that has outlived the sweep that began it: it will be done
                     time.sleep(POLL_S)
             return numbers_of({k: v for k, v in summary.of_file(path).items() if k != "gears"})
@@ -77,7 +77,7 @@ class Job:
         """Refuses keys that gearsim does not know, before anything is written; values may be wrong in single runs."""
         values = {key: value for key, value in zip(self.keys, row) if not key.startswith("class.")}
         try:
-            self._call(self.gearsim, "--quiet", "--check", "--output", "-", "--set=output.load_distribution=", *self._set(values))
+            self._call(self.gearsim, "--quiet", "--check", "--output", "-", *self._set(values), NO_LOADS)
         except InputError as error:
             if "unknown key" in str(error) or "unknown section" in str(error):
                 raise
