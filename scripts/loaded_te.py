@@ -504,7 +504,7 @@ def write_params(gears, path, values):
             beside = os.path.dirname(gears.path) if key not in gears.settings else ""  # --set: the working folder
             target = os.path.join(beside, gears.parameters[key])
             moved[key] = os.path.relpath(target, os.path.dirname(path) or ".")
-    with open(gears.path, encoding="utf-8") as file:
+    with open(gears.path, encoding="utf-8", errors="surrogateescape") as file:
         text = file.read()
     with program.written(path) as file:
         file.write(with_values(text, {**gears.settings, **moved, **values}))

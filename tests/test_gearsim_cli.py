@@ -593,7 +593,11 @@ class Values(Case):
 
     def test_number_beyond_double(self):
         self.refused_value("load", "mean_Nm", "1e400", "must be below 1.8e308")
-        self.refused_value("load", "mean_Nm", "-1e400", "must be below 1.8e308")
+        self.refused_value("load", "mean_Nm", "-1e400", "must be above -1.8e308")
+
+    def test_characters_that_look_like_a_number_are_named(self):
+        for value, code in (("\u22125", "2212"), ("5\u00a0", "00A0"), ("\U0001d7d7", "1D7D7"), ("1\u0660", "0660")):
+            self.refused_value("load", "mean_Nm", value, f"without the character U+{code} (got ")
 
     def test_plain_numbers_are_accepted(self):
         self.write("run.ini", PARAMS)

@@ -555,6 +555,17 @@ class BrokenFiles(Case):
             for script in ("harris", "relief"):
                 self.assertIn("x.ini", self.refused(script, "x.ini", "--gearsim", GEARSIM))
 
+    def test_parameter_files_keep_what_is_no_utf8_and_no_line_end(self):
+        """As gearsim, which looks at neither in a comment."""
+        comment = b"; caf\xe9 \xe2\x80\xa8 [x] y"
+        with open(SPUR, "rb") as file:
+            self.write("x.ini", comment + b"\n" + file.read().replace(b"\n", b"\r\n"))
+        self.drawn("relief", "x.ini", "--gearsim", GEARSIM, "--set", "analysis.positions=5", "--no-pictures", "--starts", "1",
+                   "--torques", "20:40:2", "--vary", "pinion_tip_relief_um=0:20", "--tolerance", "0")
+        with open("x_relief.ini", "rb") as file:
+            self.assertIn(comment, file.read().splitlines())
+        self.assertEqual(subprocess.run([GEARSIM, "x_relief.ini", "--check", "--quiet"]).returncode, 0)
+
     def mutated(self, text, random_):
         """The text with some bytes changed, taken out, put in twice, or cut off."""
         data = bytearray(text.encode())

@@ -139,7 +139,34 @@ static const struct {
     [UNIT_RPM] = {30, 3.14159265358979323846},
 };
 
+/* Minus signs, spaces and digits that look like those of a keyboard, as documents have them: tells which it is. */
+static int not_plain(const char *text, char *fault) {
+    const unsigned char *at = (const unsigned char *)text;
+
+    while (*at != '\0' && *at < 0x80) {
+        ++at;
+    }
+    if (*at == '\0') {
+        return 0;
+    }
+
+    /* Its number in Unicode, from the bits behind the marks of UTF-8. */
+    const int more = *at >= 0xf0 ? 3 : *at >= 0xe0 ? 2 : 1;
+    unsigned code = *at & (0x3fU >> more);
+    for (int i = 1; i <= more && (at[i] & 0xc0) == 0x80; ++i) {
+        code = code << 6 | (at[i] & 0x3fU);
+    }
+    snprintf(fault, KEY_FAULT_SIZE,
+             "must be a number such as 12, -0.5 or 1e-4, without the character U+%04X (got %.80s)",
+             code, text);
+    return 1;
+}
+
 static int not_a_number(const char *text, char *fault) {
+    if (not_plain(text, fault)) {
+        return 1;
+    }
+
     const char *right = strchr(text, ',') != NULL
                             ? "must be a number with a decimal point and without separators"
                             : "must be a number such as 12, -0.5 or 1e-4 with nothing behind it";
@@ -156,7 +183,8 @@ static int read_number(const char *text, double *value, char *fault) {
     if (isfinite(*value)) {
         return 0;
     }
-    snprintf(fault, KEY_FAULT_SIZE, "must be below 1.8e308 (got %.80s)", text);
+    snprintf(fault, KEY_FAULT_SIZE, "must be %s1.8e308 (got %.80s)",
+             *value > 0 ? "below " : "above -", text);
     return 1;
 }
 
