@@ -995,9 +995,11 @@ SPECIALIZED void walk_tables(const gmi_line *line, const gmi_grid *first, const 
                                      line->from, face, s, s, &at.f));
     } else {
         same_faces = 0;
-        scaled = *second;
-        set_rates(&scaled, second->face_rate / first->face_rate);
-        second = &scaled;
+        if (second->face_rate != first->face_rate) {
+            scaled = *second;
+            set_rates(&scaled, second->face_rate / first->face_rate);
+            second = &scaled;
+        }
         const double second_v1 = line->from * second->face_rate + second->face_base;
         const int second_face = cell_of(second_v1, second->last_face);
         const double p = second_v1 - (double)second_face;
