@@ -1142,21 +1142,13 @@ static void what_corners_do_not_go_with_is_refused(void) {
     GM_ASSERT_INT(gm_mesh_params_check(&params, &field, &requirement), GM_ERR_PARAMETER);
     GM_ASSERT_STRING(field, "corner_contact");
 
-    /* No cache; and a tangent unless there is friction. */
+    /* No cache. */
     room where;
     gm_mesh *mesh;
     GM_ASSERT_INT(make_mesh(&where, &pair, NULL, NULL, GM_CORNER_ON, 0.0, &mesh), GM_OK);
-    const gm_motion motion = {.position = {.phase = 0.0}};
-    gm_tangent tangent;
-    GM_ASSERT_INT(gm_mesh_tangent(mesh, &motion, &tangent), GM_OK);
     gm_cache_params cache;
     gm_cache_params_default(&cache);
     GM_ASSERT_INT(gm_cache_size(&cache, mesh), 0);
-    params.corner_contact = GM_CORNER_ON;
-    params.friction_coefficient = 0.05;
-    GM_ASSERT_INT(
-        gm_mesh_init(&mesh, &params, &pair, NULL, NULL, where.memory, sizeof where.memory), GM_OK);
-    GM_ASSERT_INT(gm_mesh_tangent(mesh, &motion, &tangent), GM_ERR_PARAMETER);
 
     /* 10 teeth without shift are cut by the tips of 60. */
     gm_pair_params cut;

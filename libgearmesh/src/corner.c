@@ -165,6 +165,7 @@ void gmi_corner_at(const gmi_corner *corner, double roll, gmi_corner_place *plac
         (base_sum * sine + corner->line_of_action * cosine) * turn_by_roll * per_base;
     place->versine_by_roll = sine * turn_by_roll;
     place->gain_by_roll = rho_by_roll + 1.0;
+    place->gain_by_length = (start + e_way) / rho - 1.0;
 
     /* By T the turn follows from gap' by both: that of by_length by the roll. */
     place->versine_by_length = -sine * (r_g * place->versine_by_roll + sine) /
@@ -182,6 +183,15 @@ double gmi_corner_touch(const gmi_corner *corner, double overlap) {
         roll = fmin(roll - (place.gap - overlap) / place.by_roll, corner->reach);
     }
     return roll;
+}
+
+/* There rho_C^2 stays what it is: by T it grows by 2 (rho_A + e_C), by the roll by 2 rho_C rho_C'. */
+double gmi_corner_reach_by_length(const gmi_corner *corner) {
+    gmi_corner_place place;
+    gmi_corner_at(corner, corner->reach, &place);
+    const double half_by_roll = place.mate_roll * (place.gain_by_roll - 1.0);
+    const double half_by_length = corner->mate_roll + place.along - corner->reach;
+    return half_by_roll != 0.0 ? -half_by_length / half_by_roll : 0.0;
 }
 
 int gmi_corners_init(const gm_pair *pair, const gmi_engagement *at, gmi_corner corners[2]) {

@@ -29,7 +29,7 @@ typedef struct gmi_corner_place {
 
     /* By how much roll lengths of the flank touched are longer than on the line of action (m). */
     double gain;
-    double gain_by_roll;
+    double gain_by_roll, gain_by_length;
 
     /* Of that normal about the axis of the tip: d overlap / d angle (m). About the other axis it is mate_base. */
     double tip_arm;
@@ -76,7 +76,7 @@ void gmi_side_sum_corners(const gm_mesh *mesh, int side, const gm_position *posi
 
 /* What a tip makes of the wrench: its sums as two triples, each with weights as of a force. */
 enum gmi_tip_part { GMI_TIP_TURNED, GMI_TIP_VERSINE, GMI_TIP_PARTS };
-enum { GMI_TIP_VARIABLES = GMI_BY_DELTA_RATE + 1 }; /* variables that these move with */
+enum { GMI_TIP_OWN = GMI_BY_DELTA_RATE + 1 }; /* variables that these move with */
 
 /* arm, arm_t1, across; and versine, versine_t1, along of gmi_tip_load; and how they move. */
 typedef struct gmi_tip_tangent {
@@ -98,13 +98,39 @@ typedef struct gmi_corner_tangent {
     gmi_line_tangent line;   /* at hand */
 } gmi_corner_tangent;
 
-/* corner_line.c: of a side that is not clear, without friction. */
+/* corner_line.c: of a side that is not clear, but for friction. */
 void gmi_side_sum_corner_tangent(const gm_mesh *mesh, int side, const gm_position *position,
                                  gmi_corner_tangent *tangent);
+
+/* Friction: as if on the line of action, with its arm about the pinion's axis; and at tips times sine and versine of the turn. */
+enum gmi_rubbing_part {
+    GMI_RUBBING_FLANKS,
+    GMI_RUBBING_SINE,
+    GMI_RUBBING_VERSINE,
+    GMI_RUBBING_PARTS
+};
+
+typedef struct gmi_corner_rubbing {
+    gmi_rates rates; /* given */
+    double force,
+        force_by[GMI_TIP_OWN]; /* normal force at the speed of approach of parallel axes (N) */
+    double sum[GMI_RUBBING_PARTS][GMI_WEIGHTS];
+    double by[GMI_RUBBING_PARTS][GMI_TIP_VARIABLES][GMI_WEIGHTS];
+    gmi_line_tangent line; /* at hand */
+} gmi_corner_rubbing;
+
+/* The friction of the same side. */
+void gmi_side_sum_corner_rubbing(const gm_mesh *mesh, int side, const gm_position *position,
+                                 const gmi_sliding *sliding, gmi_corner_rubbing *rubbing);
+void gmi_wrench_map_tip_friction(const gm_pair *pair, const gmi_engagement *at, int part, int side,
+                                 gmi_wrench_map *map, gmi_wrench_map by[2]);
 
 /* wrench.c: the wrench of a tip as a map of one of its triples; and how it changes as the wheel's axis moves. */
 void gmi_wrench_map_tip(const gm_pair *pair, const gmi_engagement *at, int role, int part, int side,
                         gmi_wrench_map *map, gmi_wrench_map by[2]);
+
+/* The reach by T (1). */
+double gmi_corner_reach_by_length(const gmi_corner *corner);
 
 /* The roll at which the gap is as large as an overlap, or the corner is off the flank; 0 for an overlap <= 0 (m). */
 double gmi_corner_touch(const gmi_corner *corner, double overlap);

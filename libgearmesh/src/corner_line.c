@@ -21,6 +21,9 @@
 /* Of a flank without tables and ramps. */
 static const gmi_grid no_grid = {0};
 
+/* What lines are followed for: sums, or with all coordinates. */
+enum { FOLLOW_SUMS, FOLLOW_FORCES, FOLLOW_FRICTION };
+
 /* Of gmi_tilt_cuts_find(): nothing else ends a line. */
 enum { FACES_ALONE = 4 };
 
@@ -31,7 +34,8 @@ typedef struct joint {
     double gap, slope;
     double versine, across, along, gain;
     double versine_by_roll, versine_by_length;
-    double gain_by_roll, across_by_roll, along_by_roll; /* of spur gears */
+    double gain_by_roll, gain_by_length;
+    double across_by_roll, along_by_roll; /* of spur gears */
 } joint;
 
 /* The gap around one roll: a parabola from `from` on, and where the corner is. */
@@ -52,16 +56,24 @@ typedef struct view {
     gmi_grid held[2];
     parabola last; /* what was found last, of the tip of this gear: */
     int last_role;
-    gmi_line_tangent *tangent;    /* of the part at hand, where derivatives are wanted */
-    gmi_corner_tangent *followed; /* NULL = sums alone */
+    gmi_line_tangent *tangent; /* of the part at hand, where derivatives are wanted */
+    const gmi_rates *rates; /* where lines are followed with all coordinates; NULL = sums alone */
+    gmi_corner_tangent *followed; /* the forces then, */
+    gmi_corner_rubbing *rubbing;  /* or the friction */
     gmi_corner_sums *sums;        /* or NULL */
     double approach_speed;        /* (m/s) */
     double viscous;               /* damping times speed of approach (N) */
     const gmi_sliding *sliding;   /* NULL = without friction */
 } view;
 
-/* What cuts a line: a face, a roll beyond the tip of a gear, an end of its table, friction; or it ends where a corner does. */
-enum { CUT_FACE, CUT_ROLL, CUT_TABLE = CUT_ROLL + 2, CUT_FRICTION = CUT_TABLE + 2, CUT_STOP };
+/* What cuts a line: a face, a roll beyond the tip of a gear, an end of its table; where its corner ends; cuts of friction. */
+enum {
+    CUT_FACE,
+    CUT_ROLL,
+    CUT_TABLE = CUT_ROLL + 2,
+    CUT_STOP = CUT_TABLE + 2,
+    CUT_FRICTION = CUT_STOP + 2
+};
 
 /* A place at which a line is cut, and how that moves by origin and delta. */
 typedef struct cut {
@@ -69,6 +81,10 @@ typedef struct cut {
     double by[2];
     int what; /* of both gears: their first one and enum gm_role */
 } cut;
+
+static inline int is_stop(const cut *end) {
+    return end->what >= CUT_STOP && end->what < CUT_FRICTION;
+}
 
 /* One line of it. */
 typedef struct whole_line {
@@ -119,6 +135,7 @@ static void find_joint(const gmi_corner *corner, double roll, joint *found) {
     found->versine_by_roll = place.versine_by_roll;
     found->versine_by_length = place.versine_by_length;
     found->gain_by_roll = place.gain_by_roll;
+    found->gain_by_length = place.gain_by_length;
     found->across_by_roll = place.across_by_roll;
     found->along_by_roll = place.along_by_roll;
 }
@@ -288,7 +305,7 @@ static cut next_cut(const view *v, const whole_line *whole, double from, const c
     }
     for (int k = 0; k < GMI_FRICTION_CUTS && v->sliding != NULL && is_on_path; ++k) {
         take_nearer((v->sliding->friction->cuts[k] - whole->origin) * per_advance, from,
-                    -per_advance, 0.0, CUT_FRICTION, &next);
+                    -per_advance, 0.0, CUT_FRICTION + k, &next);
     }
     return next;
 }
@@ -312,9 +329,9 @@ static OWN_STACK void begin_tangent(view *v, const whole_line *whole, const int 
     gmi_line_tangent *tangent = v->tangent;
     memset(tangent, 0, sizeof *tangent);
     tangent->by[GMI_BY_DELTA][0] = 1.0;
-    if (v->followed != NULL) {
+    if (v->rates != NULL) {
         gmi_tilt_tangent(mesh->pair, &mesh->engagement, v->side, whole->origin, v->lines.delta,
-                         &v->followed->rates, tangent);
+                         v->rates, tangent);
         tangent->face_per_length = v->running[GM_WHEEL]->face_rate / mesh->pair->face_width;
     } else if (mesh->engagement.is_tilted) {
         tangent->by[GMI_BY_DELTA][0] = whole->gain;
@@ -357,7 +374,7 @@ static void take_gap_off(view *v, const whole_line *whole, int role, const parab
     part->overlap -= gap->gap + gone * (gap->slope + 0.5 * gone * gap->curvature);
     part->half_slope -= 0.5 * rate * (gap->slope + gone * gap->curvature);
     part->curvature -= 0.5 * rate * rate * gap->curvature;
-    if (v->followed != NULL) {
+    if (v->rates != NULL) {
         follow_gap(v, whole, role, gap);
     } else if (v->wanted & GMI_DERIVATIVES) {
         const double slope_0 = gap->slope + gap->curvature * (beyond->at_zero - gap->from);
@@ -574,17 +591,18 @@ static OWN_STACK void add_sums(view *v, const whole_line *whole, const gmi_line_
 }
 
 /*
- * How the ends of a part move: those of the faces under tilted axes. Other cuts stay with the flank while the line moves:
+ * How the ends of a part move: those of the faces under tilted axes, and where a corner presses as it goes off the mate's
+ * flank. Other cuts stay with the flank while the line moves:
  * what one part loses there the next one gains, so that only friction, another one on each part, is to know.
  */
 static void add_ends(view *v, const whole_line *whole, const cut *from, const cut *to,
                      const gmi_line_sum *sum) {
     const int is_tilted = v->mesh->engagement.is_tilted, slides = v->sliding != NULL;
     const int begins = from->what == CUT_FACE, ends = to->what == CUT_FACE;
-    if (begins ? is_tilted : slides) {
+    if (begins ? is_tilted : slides || is_stop(from)) {
         add_end(v->tangent, -1.0, from->t1, sum->at_from, begins ? whole->from_by : from->by);
     }
-    if (ends ? is_tilted : slides) {
+    if (ends ? is_tilted : slides || is_stop(to)) {
         add_end(v->tangent, 1.0, to->t1, sum->at_to, ends ? whole->to_by : to->by);
     }
 }
@@ -593,26 +611,48 @@ static void add_ends(view *v, const whole_line *whole, const cut *from, const cu
  * How a side moves with all its coordinates
  * ------------------------------------------------------------------------------------------- */
 
-/* The end of a line at a face of the wheel, which moves and takes f there along. A face of the pinion stays. */
-static OWN_STACK void follow_face(const view *v, const whole_line *whole, int is_beginning,
-                                  double t1, double f) {
+/* How the place of a line at a roll beyond a tip moves; by_length: of that roll. */
+static OWN_STACK void follow_place(const view *v, const whole_line *whole, int role, double t1,
+                                   double by_length, double by[GMI_COORDINATES]) {
+    const gm_mesh *mesh = v->mesh;
+    double roll_by[GMI_COORDINATES][2];
+    gmi_tilt_beyond_by(mesh->pair, &mesh->engagement, v->side, whole->origin, role, roll_by);
+    roll_by[GMI_BY_LENGTH][0] -= by_length;
+    for (int k = 0; k < GMI_COORDINATES; ++k) {
+        by[k] = -(roll_by[k][0] + roll_by[k][1] * t1) / whole->beyond[role].per_t1;
+    }
+}
+
+/* A face of the wheel moves; 0 for one of the pinion, which does not. */
+static OWN_STACK int follow_face(const view *v, const whole_line *whole, int is_beginning,
+                                 double by[GMI_COORDINATES]) {
     const gm_mesh *mesh = v->mesh;
     gmi_tilt_cuts cuts;
     gmi_line_part part;
-    double by[GMI_COORDINATES];
     gmi_tilt_cuts_find(mesh->pair, &mesh->engagement, v->side, v->lines.delta, FACES_ALONE, &cuts);
     (void)gmi_tilt_cut_line(&cuts, whole->origin, &part);
-    if (!gmi_tilt_move_end(mesh->pair, &mesh->engagement, v->side, whole->origin, v->lines.delta,
-                           &part, is_beginning, by)) {
+    return gmi_tilt_move_end(mesh->pair, &mesh->engagement, v->side, whole->origin, v->lines.delta,
+                             &part, is_beginning, by);
+}
+
+/* An end of the line takes f there along: at a face, or where a corner presses as it goes off the mate's flank. */
+static OWN_STACK void follow_end(const view *v, const whole_line *whole, int is_beginning,
+                                 const cut *end, double f) {
+    double by[GMI_COORDINATES];
+    if (is_stop(end)) {
+        const int role = end->what - CUT_STOP;
+        follow_place(v, whole, role, end->t1, gmi_corner_reach_by_length(&v->mesh->corners[role]),
+                     by);
+    } else if (end->what != CUT_FACE || !follow_face(v, whole, is_beginning, by)) {
         return;
     }
     for (int k = 0; k < GMI_COORDINATES; ++k) {
         const double moved = is_beginning ? -by[k] : by[k];
         double *sum = v->tangent->sum_by[k], *contact = v->tangent->contact_by[k];
         sum[0] += f * moved;
-        sum[1] += f * moved * t1;
+        sum[1] += f * moved * end->t1;
         contact[0] += moved;
-        contact[1] += moved * t1;
+        contact[1] += moved * end->t1;
     }
 }
 
@@ -638,119 +678,385 @@ static at_middle between(const parabola *gap, double roll, double begins, double
     return result;
 }
 
-/* Adds its product with the force, or with the force's moment, and how that moves. */
-static void add_product(const at_middle *what, const double roll_by[GMI_TIP_VARIABLES],
-                        const double load[1 + GMI_TIP_VARIABLES], int weight,
-                        double sum[GMI_WEIGHTS], double by[][GMI_WEIGHTS]) {
-    sum[weight] += what->value * load[GMI_TIP_VARIABLES];
-    for (int k = 0; k < GMI_TIP_VARIABLES; ++k) {
-        const double moved =
-            what->by_roll * roll_by[k] + (k == GMI_BY_LENGTH ? what->by_length : 0.0);
-        by[k][weight] += what->value * load[k] + moved * load[GMI_TIP_VARIABLES];
+/* The normal force of a part and its moment over t1, and how both and what touches move; behind the coordinates by the speed. */
+typedef struct part_load {
+    double force, moment;
+    double force_by[GMI_TIP_OWN], moment_by[GMI_TIP_OWN];
+    double contact_by[GMI_COORDINATES];
+} part_load;
+
+/* How a cut within a line moves with it; 0 for an end of the line. */
+static OWN_STACK int follow_cut(const view *v, const whole_line *whole, const cut *end,
+                                double by[GMI_COORDINATES]) {
+    const gm_mesh *mesh = v->mesh;
+    if (end->what == CUT_FACE || is_stop(end)) {
+        return 0;
     }
+    memset(by, 0, GMI_COORDINATES * sizeof *by);
+    by[GMI_BY_ORIGIN] = end->by[GMI_BY_ORIGIN];
+    by[GMI_BY_DELTA] = end->by[GMI_BY_DELTA];
+    if (end->what >= CUT_FRICTION) {
+        by[GMI_BY_LENGTH] = gmi_friction_cut_by_length(mesh->pair, &mesh->engagement,
+                                                       &mesh->friction, end->what - CUT_FRICTION) /
+                            v->lines.advance;
+    } else if (end->what >= CUT_TABLE) {
+        by[GMI_BY_LENGTH] = end->by[GMI_BY_DELTA]; /* of the wheel's table */
+    } else {
+        follow_place(v, whole, end->what - CUT_ROLL, end->t1, 0.0, by);
+    }
+    return 1;
 }
 
 /*
  * A cut moves with the line, and what one part loses there the next one gains: that is not the same to what goes with the
  * middle of each.
  */
-static OWN_STACK void follow_cut(const view *v, const whole_line *whole, const cut *end,
-                                 double sign, double f, double load[], double load_t1[]) {
-    if (!(f > 0.0) || end->what == CUT_FACE || end->what == CUT_STOP) {
+static void add_cut(const view *v, const whole_line *whole, const cut *end, double sign, double f,
+                    part_load *load) {
+    double by[GMI_COORDINATES];
+    if (!(f > 0.0 && follow_cut(v, whole, end, by))) {
         return;
     }
-    double by[GMI_COORDINATES] = {end->by[GMI_BY_ORIGIN], end->by[GMI_BY_DELTA]};
-    if (end->what < CUT_TABLE) {
-        const int role = end->what - CUT_ROLL;
-        double roll_by[GMI_COORDINATES][2];
-        gmi_tilt_beyond_by(v->mesh->pair, &v->mesh->engagement, v->side, whole->origin, role,
-                           roll_by);
-        for (int k = 0; k < GMI_COORDINATES; ++k) {
-            by[k] = -(roll_by[k][0] + roll_by[k][1] * end->t1) / whole->beyond[role].per_t1;
-        }
-    } else {
-        by[GMI_BY_LENGTH] = end->by[GMI_BY_DELTA]; /* of the wheel's table */
-    }
-    const double density = sign * (v->mesh->law.stiffness * f + v->viscous);
+    const double density = v->mesh->law.stiffness * f + v->viscous;
     for (int k = 0; k < GMI_COORDINATES; ++k) {
-        load[k] += density * by[k];
-        load_t1[k] += density * by[k] * end->t1;
+        const double moved = sign * by[k];
+        load->force_by[k] += density * moved;
+        load->moment_by[k] += density * moved * end->t1;
+        load->contact_by[k] += moved;
+    }
+}
+
+static OWN_STACK void find_part_load(const view *v, const whole_line *whole, const cut *from,
+                                     const cut *to, const gmi_line_sum *sum, part_load *load) {
+    const double stiffness = v->mesh->law.stiffness, damping = v->mesh->law.damping;
+    const double viscous = v->viscous;
+    const gmi_line_tangent *line = v->tangent;
+    load->force = stiffness * sum->sum + viscous * sum->contact;
+    load->moment = stiffness * sum->sum_t1 + viscous * sum->contact_t1;
+    for (int k = 0; k < GMI_COORDINATES; ++k) {
+        const double *contact_by = line->contact_by[k];
+        load->force_by[k] = stiffness * line->sum_by[k][0] + viscous * contact_by[0];
+        load->moment_by[k] = stiffness * line->sum_by[k][1] + viscous * contact_by[1];
+        load->contact_by[k] = contact_by[0];
+    }
+    load->force_by[GMI_BY_DELTA_RATE] = damping * sum->contact;
+    load->moment_by[GMI_BY_DELTA_RATE] = damping * sum->contact_t1;
+    add_cut(v, whole, from, -1.0, sum->at_from, load);
+    add_cut(v, whole, to, 1.0, sum->at_to, load);
+}
+
+/* The roll beyond a tip in the middle of the load, which moves with the line and along it. */
+static OWN_STACK double follow_roll(const view *v, const whole_line *whole, int role,
+                                    const part_load *load, double by[GMI_TIP_OWN]) {
+    const gm_mesh *mesh = v->mesh;
+    const gmi_beyond *beyond = &whole->beyond[role];
+    const double t1 = load->moment / load->force;
+    double line_by[GMI_COORDINATES][2];
+    gmi_tilt_beyond_by(mesh->pair, &mesh->engagement, v->side, whole->origin, role, line_by);
+    for (int k = 0; k < GMI_TIP_OWN; ++k) {
+        by[k] = beyond->per_t1 * (load->moment_by[k] - t1 * load->force_by[k]) / load->force;
+        by[k] += k < GMI_COORDINATES ? line_by[k][0] + line_by[k][1] * t1 : 0.0;
+    }
+    return roll_at(beyond, t1);
+}
+
+/* The gap's slope at a roll, and 1 - cos of the turn of the normal. */
+static void find_turn(const parabola *gap, double roll, at_middle *slope, at_middle *versine) {
+    const joint *a = &gap->begins, *b = &gap->ends;
+    const double gone = roll - gap->from;
+    const moved_parabola moved = by_length_of(gap);
+    slope->value = gap->slope + gone * gap->curvature;
+    slope->by_roll = gap->curvature;
+    slope->by_length = moved.slope + gone * moved.curvature;
+    *versine = between(gap, roll, a->versine, b->versine, a->versine_by_roll);
+    versine->by_length = between(gap, roll, a->versine_by_length, b->versine_by_length, 0.0).value;
+}
+
+/* How it moves by one variable, as the roll does. */
+static inline double moved_by(const at_middle *what, const double roll_by[GMI_TIP_OWN], int k) {
+    return what->by_roll * roll_by[k] + (k == GMI_BY_LENGTH ? what->by_length : 0.0);
+}
+
+/* Adds its product with the force, or with the force's moment, and how that moves. */
+static void add_product(const at_middle *what, const double roll_by[GMI_TIP_OWN], double load,
+                        const double load_by[GMI_TIP_OWN], int weight, double sum[GMI_WEIGHTS],
+                        double by[][GMI_WEIGHTS]) {
+    sum[weight] += what->value * load;
+    for (int k = 0; k < GMI_TIP_OWN; ++k) {
+        by[k][weight] += what->value * load_by[k] + moved_by(what, roll_by, k) * load;
     }
 }
 
 /* What acts at a corner, as add_tip_load() has it. */
 static OWN_STACK void follow_tip(const view *v, const whole_line *whole, int role,
-                                 const parabola *gap, const cut *from, const cut *to,
-                                 const gmi_line_sum *sum) {
-    const gm_mesh *mesh = v->mesh;
-    const double stiffness = mesh->law.stiffness, damping = mesh->law.damping;
-    const double viscous = v->viscous;
-    const gmi_line_tangent *line = v->tangent;
-
-    /* Force and moment of the part, behind how they move with the coordinates and with the speed of approach. */
-    double load[1 + GMI_TIP_VARIABLES], load_t1[1 + GMI_TIP_VARIABLES];
-    for (int k = 0; k < GMI_COORDINATES; ++k) {
-        load[k] = stiffness * line->sum_by[k][0] + viscous * line->contact_by[k][0];
-        load_t1[k] = stiffness * line->sum_by[k][1] + viscous * line->contact_by[k][1];
+                                 const parabola *gap, const part_load *load) {
+    if (load->force == 0.0) {
+        return;
     }
-    follow_cut(v, whole, from, -1.0, sum->at_from, load, load_t1);
-    follow_cut(v, whole, to, 1.0, sum->at_to, load, load_t1);
-    load[GMI_BY_DELTA_RATE] = damping * sum->contact;
-    load_t1[GMI_BY_DELTA_RATE] = damping * sum->contact_t1;
-    load[GMI_TIP_VARIABLES] = stiffness * sum->sum + viscous * sum->contact;
-    load_t1[GMI_TIP_VARIABLES] = stiffness * sum->sum_t1 + viscous * sum->contact_t1;
-    const double force = load[GMI_TIP_VARIABLES];
-    if (force == 0.0) {
+    at_middle slope, versine;
+    double roll_by[GMI_TIP_OWN];
+    const double roll = follow_roll(v, whole, role, load, roll_by);
+    find_turn(gap, roll, &slope, &versine);
+
+    /* And where the corner is. */
+    const joint *a = &gap->begins, *b = &gap->ends;
+    const at_middle across = between(gap, roll, a->across, b->across, a->across_by_roll);
+    const at_middle along = between(gap, roll, a->along, b->along, a->along_by_roll);
+    gmi_tip_tangent *tip = &v->followed->tips[role];
+    const at_middle *const turned[2] = {&slope, &versine}, *const place[2] = {&across, &along};
+    for (int part = 0; part < GMI_TIP_PARTS; ++part) {
+        double *sum = tip->sum[part];
+        double(*by)[GMI_WEIGHTS] = tip->by[part];
+        add_product(turned[part], roll_by, load->force, load->force_by, GMI_WHOLE, sum, by);
+        add_product(turned[part], roll_by, load->moment, load->moment_by, GMI_BY_T1, sum, by);
+        add_product(place[part], roll_by, load->force, load->force_by, GMI_BY_RHO, sum, by);
+    }
+}
+
+/* ---------------------------------------------------------------------------------------------
+ * How its friction moves
+ * ------------------------------------------------------------------------------------------- */
+
+/* A number and its derivatives by all that friction depends on. */
+typedef struct moving {
+    double value, by[GMI_TIP_VARIABLES];
+} moving;
+
+static void set_moving(const at_middle *what, const double roll_by[GMI_TIP_OWN], moving *result) {
+    memset(result, 0, sizeof *result);
+    result->value = what->value;
+    for (int k = 0; k < GMI_TIP_OWN; ++k) {
+        result->by[k] = moved_by(what, roll_by, k);
+    }
+}
+
+/* What a tip makes of the place on the line of action: gmi_tip_place with all derivatives. */
+typedef struct moving_tip {
+    moving lead, longer, versine, sine;
+} moving_tip;
+
+/* As tip_place_of() has it. */
+static OWN_STACK void follow_tip_place(const view *v, const whole_line *whole, int role,
+                                       const parabola *gap, const part_load *load,
+                                       moving_tip *tip) {
+    const gmi_engagement *at = &v->mesh->engagement;
+    const double base[2] = {v->mesh->pair->pinion.base_radius, at->wheel_base_radius};
+    const double base_sum = base[GM_PINION] + base[GM_WHEEL];
+    const double length = at->line_of_action;
+    at_middle slope, versine;
+    double roll_by[GMI_TIP_OWN];
+    const double roll = follow_roll(v, whole, role, load, roll_by);
+    find_turn(gap, roll, &slope, &versine);
+
+    /* The turn by the slope of the gap, and the arms by both. */
+    const joint *a = &gap->begins, *b = &gap->ends;
+    at_middle gain = between(gap, roll, a->gain, b->gain, a->gain_by_roll);
+    gain.by_length = between(gap, roll, a->gain_by_length, b->gain_by_length, 0.0).value;
+    const double sine_value = (base[role] * slope.value - base_sum * versine.value) / length;
+    const at_middle sine = {
+        sine_value, (base[role] * slope.by_roll - base_sum * versine.by_roll) / length,
+        (base[role] * slope.by_length - base_sum * versine.by_length - sine_value) / length};
+    const at_middle longer = {base_sum * sine.value - length * versine.value,
+                              base_sum * sine.by_roll - length * versine.by_roll,
+                              base_sum * sine.by_length - length * versine.by_length -
+                                  versine.value};
+    const at_middle other = {longer.value - gain.value, longer.by_roll - gain.by_roll,
+                             longer.by_length - gain.by_length};
+    set_moving(role == GM_PINION ? &other : &gain, roll_by, &tip->lead);
+    set_moving(&longer, roll_by, &tip->longer);
+    set_moving(&versine, roll_by, &tip->versine);
+    set_moving(&sine, roll_by, &tip->sine);
+}
+
+/* Sliding speed in the middle of the load; tip: NULL = on the line of action. */
+static OWN_STACK void follow_sliding(const view *v, const whole_line *whole, const part_load *load,
+                                     const moving_tip *tip, moving *speed) {
+    const gmi_sliding *s = v->sliding;
+    const double t1 = load->moment / load->force;
+    const double rho_p = whole->origin + v->lines.advance * t1;
+    const double both = s->pinion_speed + s->wheel_speed;
+    memset(speed, 0, sizeof *speed);
+    speed->value = s->pinion_speed * rho_p - s->wheel_speed * (s->line_of_action - rho_p) -
+                   s->sideways[0] - s->sideways[1] * t1;
+
+    /* The middle moves along the line, and the line with its origin. */
+    const double per_t1 = both * v->lines.advance - s->sideways[1];
+    double t1_by[GMI_TIP_OWN];
+    for (int k = 0; k < GMI_TIP_OWN; ++k) {
+        t1_by[k] = (load->moment_by[k] - t1 * load->force_by[k]) / load->force;
+        speed->by[k] = per_t1 * t1_by[k];
+    }
+    speed->by[GMI_BY_ORIGIN] += both;
+    speed->by[GMI_BY_LENGTH] -= s->wheel_speed;
+    speed->by[GMI_BY_PINION_SPEED] = rho_p;
+    speed->by[GMI_BY_WHEEL_SPEED] = -(s->line_of_action - rho_p);
+    speed->by[GMI_BY_SIDEWAYS] = -1.0;
+    speed->by[GMI_BY_SIDEWAYS_T1] = -t1;
+    if (tip == NULL) {
         return;
     }
 
-    /* The roll in its middle, which moves with the line and along it. */
-    const gmi_beyond *beyond = &whole->beyond[role];
-    const double t1 = load_t1[GMI_TIP_VARIABLES] / force;
-    const double roll = roll_at(beyond, t1);
-    double line_by[GMI_COORDINATES][2], roll_by[GMI_TIP_VARIABLES];
-    gmi_tilt_beyond_by(mesh->pair, &mesh->engagement, v->side, whole->origin, role, line_by);
-    for (int k = 0; k < GMI_TIP_VARIABLES; ++k) {
-        roll_by[k] = beyond->per_t1 * (load_t1[k] - t1 * load[k]) / force;
-        roll_by[k] += k < GMI_COORDINATES ? line_by[k][0] + line_by[k][1] * t1 : 0.0;
+    /* At a tip both arms are longer, and the wheel's axis moves across the turned tangent. */
+    const double sideways = s->sideways[0] + s->sideways[1] * t1;
+    const double forward = s->forward[0] + s->forward[1] * t1;
+    const double versine = tip->versine.value, sine = tip->sine.value;
+    const double lead = tip->lead.value, longer = tip->longer.value;
+    speed->value += both * lead - s->wheel_speed * longer + sideways * versine - forward * sine;
+    const double tip_per_t1 = s->sideways[1] * versine - s->forward[1] * sine;
+    for (int k = 0; k < GMI_TIP_OWN; ++k) {
+        speed->by[k] += both * tip->lead.by[k] - s->wheel_speed * tip->longer.by[k] +
+                        sideways * tip->versine.by[k] - forward * tip->sine.by[k] +
+                        tip_per_t1 * t1_by[k];
     }
-
-    /* The gap's slope, and where the corner is. */
-    const joint *a = &gap->begins, *b = &gap->ends;
-    const double gone = roll - gap->from;
-    const moved_parabola moved = by_length_of(gap);
-    const at_middle slope = {gap->slope + gone * gap->curvature, gap->curvature,
-                             moved.slope + gone * moved.curvature};
-    at_middle versine = between(gap, roll, a->versine, b->versine, a->versine_by_roll);
-    versine.by_length = between(gap, roll, a->versine_by_length, b->versine_by_length, 0.0).value;
-    const at_middle across = between(gap, roll, a->across, b->across, a->across_by_roll);
-    const at_middle along = between(gap, roll, a->along, b->along, a->along_by_roll);
-
-    gmi_tip_tangent *tip = &v->followed->tips[role];
-    double *turned = tip->sum[GMI_TIP_TURNED], *rest = tip->sum[GMI_TIP_VERSINE];
-    double(*turned_by)[GMI_WEIGHTS] = tip->by[GMI_TIP_TURNED];
-    double(*rest_by)[GMI_WEIGHTS] = tip->by[GMI_TIP_VERSINE];
-    add_product(&slope, roll_by, load, GMI_WHOLE, turned, turned_by);
-    add_product(&slope, roll_by, load_t1, GMI_BY_T1, turned, turned_by);
-    add_product(&across, roll_by, load, GMI_BY_RHO, turned, turned_by);
-    add_product(&versine, roll_by, load, GMI_WHOLE, rest, rest_by);
-    add_product(&versine, roll_by, load_t1, GMI_BY_T1, rest, rest_by);
-    add_product(&along, roll_by, load, GMI_BY_RHO, rest, rest_by);
+    speed->by[GMI_BY_PINION_SPEED] += lead;
+    speed->by[GMI_BY_WHEEL_SPEED] += lead - longer;
+    speed->by[GMI_BY_SIDEWAYS] += versine;
+    speed->by[GMI_BY_SIDEWAYS_T1] += versine * t1;
+    speed->by[GMI_BY_FORWARD] = -sine;
+    speed->by[GMI_BY_FORWARD_T1] = -sine * t1;
 }
 
-/* What a part adds to the tangent of the side. */
-static OWN_STACK void add_followed(view *v, const whole_line *whole, const cut *from, const cut *to,
-                                   const gmi_line_sum *sum, const int is_beyond[2], double middle) {
+/* The share of the load that rubs, by its size over what touches and by the speeds. */
+static OWN_STACK void follow_share(const view *v, const part_load *load, double contact,
+                                   const moving *speed, moving *share) {
+    const gmi_point_friction at =
+        gmi_friction_of_speed(v->sliding, load->force / contact, speed->value);
+    const gmi_rolling_by rolling = gmi_rolling_differentiate(v->sliding);
+    share->value = at.share;
+    for (int k = 0; k < GMI_TIP_VARIABLES; ++k) {
+        share->by[k] = at.by_speed * speed->by[k];
+    }
+    for (int k = 0; k < GMI_TIP_OWN; ++k) {
+        share->by[k] += at.by_load * load->force_by[k] / load->force;
+    }
+    for (int k = 0; k < GMI_COORDINATES; ++k) {
+        share->by[k] -= at.by_load * load->contact_by[k] / contact;
+    }
+    share->by[GMI_BY_LENGTH] += at.by_rolling * rolling.length;
+    share->by[GMI_BY_PINION_SPEED] += at.by_rolling * rolling.pinion_speed;
+    share->by[GMI_BY_WHEEL_SPEED] += at.by_rolling * rolling.wheel_speed;
+}
+
+/* Adds what has the value a b. */
+static void add_moving(const moving *a, const moving *b, int weight, double sum[GMI_WEIGHTS],
+                       double by[][GMI_WEIGHTS]) {
+    sum[weight] += a->value * b->value;
+    for (int k = 0; k < GMI_TIP_VARIABLES; ++k) {
+        by[k][weight] += a->value * b->by[k] + a->by[k] * b->value;
+    }
+}
+
+/* The force of friction of a part with its moments: times 1, t1 and rho_p. */
+static void weigh_share(const view *v, const whole_line *whole, const part_load *load,
+                        const moving *share, moving weighted[GMI_WEIGHTS]) {
+    const double advance = v->lines.advance, origin = whole->origin;
+    const double loads[GMI_WEIGHTS] = {load->force, load->moment,
+                                       origin * load->force + advance * load->moment};
+    for (int weight = 0; weight < GMI_WEIGHTS; ++weight) {
+        moving *result = &weighted[weight];
+        result->value = share->value * loads[weight];
+        for (int k = 0; k < GMI_TIP_VARIABLES; ++k) {
+            result->by[k] = share->by[k] * loads[weight];
+        }
+    }
+    for (int k = 0; k < GMI_TIP_OWN; ++k) {
+        const double force_by = load->force_by[k], moment_by = load->moment_by[k];
+        weighted[GMI_WHOLE].by[k] += share->value * force_by;
+        weighted[GMI_BY_T1].by[k] += share->value * moment_by;
+        weighted[GMI_BY_RHO].by[k] += share->value * (origin * force_by + advance * moment_by);
+    }
+    weighted[GMI_BY_RHO].by[GMI_BY_ORIGIN] += share->value * load->force;
+}
+
+static OWN_STACK void find_share(const view *v, const whole_line *whole, const part_load *load,
+                                 double contact, const moving_tip *tip, moving *share) {
+    moving speed;
+    follow_sliding(v, whole, load, tip, &speed);
+    follow_share(v, load, contact, &speed, share);
+}
+
+/* tip: NULL = on the line of action. */
+static OWN_STACK void add_share(const view *v, const whole_line *whole, const part_load *load,
+                                const moving *share, const moving_tip *tip) {
+    static const moving one = {1.0, {0.0}};
+    gmi_corner_rubbing *side = v->rubbing;
+    double *flanks = side->sum[GMI_RUBBING_FLANKS];
+    double(*flanks_by)[GMI_WEIGHTS] = side->by[GMI_RUBBING_FLANKS];
+    moving weighted[GMI_WEIGHTS];
+    weigh_share(v, whole, load, share, weighted);
+    for (int weight = 0; weight < GMI_WEIGHTS; ++weight) {
+        add_moving(&one, &weighted[weight], weight, flanks, flanks_by);
+    }
+    if (tip == NULL) {
+        return;
+    }
+
+    /* From the line of action to the corner. */
+    add_moving(&tip->lead, &weighted[GMI_WHOLE], GMI_BY_RHO, flanks, flanks_by);
+    for (int weight = GMI_WHOLE; weight <= GMI_BY_T1; ++weight) {
+        add_moving(&tip->sine, &weighted[weight], weight, side->sum[GMI_RUBBING_SINE],
+                   side->by[GMI_RUBBING_SINE]);
+        add_moving(&tip->versine, &weighted[weight], weight, side->sum[GMI_RUBBING_VERSINE],
+                   side->by[GMI_RUBBING_VERSINE]);
+    }
+}
+
+/* Friction of a part; gap: of the tip that it is beyond, or NULL. */
+static OWN_STACK void follow_friction(const view *v, const whole_line *whole, int role,
+                                      const parabola *gap, const part_load *load, double contact) {
+    gmi_corner_rubbing *side = v->rubbing;
+    side->force += load->force;
+    for (int k = 0; k < GMI_TIP_OWN; ++k) {
+        side->force_by[k] += load->force_by[k];
+    }
+    if (!(load->force > 0.0)) {
+        return;
+    }
+
+    moving share;
+    moving_tip tip;
+    if (gap != NULL) {
+        follow_tip_place(v, whole, role, gap, load, &tip);
+    }
+    find_share(v, whole, load, contact, gap != NULL ? &tip : NULL, &share);
+    add_share(v, whole, load, &share, gap != NULL ? &tip : NULL);
+}
+
+/* What of the coefficient is the same all over the side. */
+static OWN_STACK void finish_rubbing(const view *v) {
+    gmi_corner_rubbing *side = v->rubbing;
+    gmi_common_friction mu = {0.0, 0.0};
+    if (side->force > 0.0) { /* else damping has taken the force of the side away */
+        mu = gmi_friction_common(v->sliding, side->force);
+    }
+
+    /* By the logarithm of its power of the force over the rolling speed. */
+    const gmi_rolling_by rolling = gmi_rolling_differentiate(v->sliding);
+    double power_by[GMI_TIP_VARIABLES] = {0.0};
+    for (int k = 0; k < GMI_TIP_OWN && mu.power != 0.0; ++k) {
+        power_by[k] = mu.power * side->force_by[k] / side->force;
+    }
+    power_by[GMI_BY_LENGTH] -= mu.power * rolling.length;
+    power_by[GMI_BY_PINION_SPEED] = -mu.power * rolling.pinion_speed;
+    power_by[GMI_BY_WHEEL_SPEED] = -mu.power * rolling.wheel_speed;
+    for (int part = 0; part < GMI_RUBBING_PARTS; ++part) {
+        for (int weight = 0; weight < GMI_WEIGHTS; ++weight) {
+            double *sum = &side->sum[part][weight];
+            for (int k = 0; k < GMI_TIP_VARIABLES; ++k) {
+                double *by = &side->by[part][k][weight];
+                *by = mu.value * (*by + power_by[k] * *sum);
+            }
+            *sum *= mu.value;
+        }
+    }
+}
+
+/* Adds what a part has to the forces of the side. */
+static OWN_STACK void add_to_forces(const view *v, const whole_line *whole,
+                                    const gmi_line_sum *sum) {
     gmi_corner_tangent *side = v->followed;
     const gmi_line_tangent *line = v->tangent;
     const double *c = line->contact, *arm = line->arm, *speed = line->speed;
-    if (from->what == CUT_FACE && sum->at_from > 0.0) {
-        follow_face(v, whole, 1, from->t1, sum->at_from);
-    }
-    if (to->what == CUT_FACE && sum->at_to > 0.0) {
-        follow_face(v, whole, 0, to->t1, sum->at_to);
-    }
-
     add_weighted(v, whole, sum->sum, sum->sum_t1, side->sum);
     add_weighted(v, whole, sum->contact, sum->contact_t1, side->contact);
     add_weighted(v, whole, arm[0] * c[0] + arm[1] * c[1], arm[0] * c[1] + arm[1] * c[2], side->arm);
@@ -764,10 +1070,34 @@ static OWN_STACK void add_followed(view *v, const whole_line *whole, const cut *
     /* The moment over rho_p moves with the origin. */
     side->sum_by[GMI_BY_ORIGIN][GMI_BY_RHO] += sum->sum;
     side->contact_by[GMI_BY_ORIGIN][GMI_BY_RHO] += sum->contact;
+}
+
+/* What a part adds to the tangent of the side. */
+static OWN_STACK void add_followed(view *v, const whole_line *whole, const cut *from, const cut *to,
+                                   const gmi_line_sum *sum, const int is_beyond[2], double middle,
+                                   int follows) {
+    if (sum->at_from > 0.0) {
+        follow_end(v, whole, 1, from, sum->at_from);
+    }
+    if (sum->at_to > 0.0) {
+        follow_end(v, whole, 0, to, sum->at_to);
+    }
+
+    part_load load;
+    if (follows == FOLLOW_FRICTION) {
+        const int is_tip = is_beyond[GM_PINION] || is_beyond[GM_WHEEL];
+        const int role = is_beyond[GM_PINION] ? GM_PINION : GM_WHEEL;
+        find_part_load(v, whole, from, to, sum, &load);
+        follow_friction(v, whole, role,
+                        is_tip ? gap_at(v, &whole->beyond[role], role, middle) : NULL, &load,
+                        sum->contact);
+        return;
+    }
+    add_to_forces(v, whole, sum);
     for (int role = GM_PINION; role <= GM_WHEEL; ++role) {
         if (is_beyond[role]) {
-            follow_tip(v, whole, role, gap_at(v, &whole->beyond[role], role, middle), from, to,
-                       sum);
+            find_part_load(v, whole, from, to, sum, &load);
+            follow_tip(v, whole, role, gap_at(v, &whole->beyond[role], role, middle), &load);
         }
     }
 }
@@ -803,7 +1133,7 @@ SPECIALIZED int add_part(view *v, const whole_line *whole, const cut *from, cons
         &mesh->side[v->side], held[GM_PINION] ? &v->held[GM_PINION] : v->running[GM_PINION],
         held[GM_WHEEL] ? &v->held[GM_WHEEL] : v->running[GM_WHEEL], &part, mask, &sum);
     if (follows) {
-        add_followed(v, whole, from, to, &sum, is_beyond, middle);
+        add_followed(v, whole, from, to, &sum, is_beyond, middle, follows);
         return sum.contact > 0.0;
     }
     if (v->wanted & GMI_DERIVATIVES) {
@@ -821,12 +1151,14 @@ SPECIALIZED int add_part(view *v, const whole_line *whole, const cut *from, cons
  * ------------------------------------------------------------------------------------------- */
 
 /* A line ends where the corner of a gear no longer touches. */
-static void end_at_stop(const gmi_beyond *beyond, double stop, cut *from, cut *to) {
+static void end_at_stop(const gmi_beyond *beyond, double stop, int role, cut *from, cut *to) {
     if (beyond->per_t1 == 0.0) {
         to->t1 = beyond->at_zero <= stop ? to->t1 : from->t1;
         return;
     }
-    const cut end = {(stop - beyond->at_zero) / beyond->per_t1, {0.0, 0.0}, CUT_STOP};
+    const cut end = {(stop - beyond->at_zero) / beyond->per_t1,
+                     {-beyond->by_origin / beyond->per_t1, -beyond->by_delta / beyond->per_t1},
+                     CUT_STOP + role};
     if (beyond->per_t1 > 0.0) {
         *to = end.t1 < to->t1 ? end : *to;
     } else {
@@ -898,7 +1230,7 @@ SPECIALIZED void add_line(view *v, const gmi_flank *pinion, const gmi_flank *whe
         last = {whole.line.to, {0.0, 0.0}, CUT_FACE};
     for (int role = GM_PINION; role <= GM_WHEEL; ++role) {
         gmi_tilt_beyond(pair, at, v->side, whole.origin, delta, role, &whole.beyond[role]);
-        end_at_stop(&whole.beyond[role], v->stop[role], &from, &last);
+        end_at_stop(&whole.beyond[role], v->stop[role], role, &from, &last);
     }
 
     /* From cut to cut. */
@@ -980,10 +1312,10 @@ void gmi_side_sum_corners(const gm_mesh *mesh, int side, const gm_position *posi
     gmi_line_tangent tangent;
     v.wanted = wanted;
     v.sums = sums;
-    v.followed = NULL;
+    v.rates = NULL;
     v.tangent = &tangent;
     v.sliding = sliding;
-    follow_lines(mesh, side, position, approach_speed, 0, &v);
+    follow_lines(mesh, side, position, approach_speed, FOLLOW_SUMS, &v);
     if (sliding != NULL) {
         finish_friction(&v);
     }
@@ -994,8 +1326,22 @@ void gmi_side_sum_corner_tangent(const gm_mesh *mesh, int side, const gm_positio
     view v;
     v.wanted = GMI_DERIVATIVES | GMI_MOMENTS;
     v.sums = NULL;
+    v.rates = &tangent->rates;
     v.followed = tangent;
     v.tangent = &tangent->line;
     v.sliding = NULL;
-    follow_lines(mesh, side, position, tangent->rates.delta, 1, &v);
+    follow_lines(mesh, side, position, tangent->rates.delta, FOLLOW_FORCES, &v);
+}
+
+void gmi_side_sum_corner_rubbing(const gm_mesh *mesh, int side, const gm_position *position,
+                                 const gmi_sliding *sliding, gmi_corner_rubbing *rubbing) {
+    view v;
+    v.wanted = GMI_DERIVATIVES | GMI_MOMENTS;
+    v.sums = NULL;
+    v.rates = &rubbing->rates;
+    v.rubbing = rubbing;
+    v.tangent = &rubbing->line;
+    v.sliding = sliding;
+    follow_lines(mesh, side, position, rubbing->rates.delta, FOLLOW_FRICTION, &v);
+    finish_rubbing(&v);
 }

@@ -244,6 +244,10 @@ static gmi_varying share_of(const gmi_sliding *s, const gmi_varying *load,
     return share;
 }
 
+gmi_point_friction gmi_friction_of_speed(const gmi_sliding *sliding, double load, double speed) {
+    return friction_of(sliding, load, speed);
+}
+
 gmi_point_friction gmi_friction_at(const gmi_sliding *sliding, double rho_p, double t1,
                                    double load) {
     return friction_of(sliding, load, sliding_at(sliding, rho_p, t1));
@@ -326,13 +330,8 @@ void gmi_rubbing_add(const gmi_sliding *sliding, const gmi_load *load, const gmi
     }
 }
 
-/* The part of mu that is the same all over a side, and of it the power of the load over the rolling speed. */
-typedef struct common_part {
-    double value, power;
-} common_part;
-
-static common_part common_of(const gmi_sliding *s, double force) {
-    common_part mu = {1.0, 0.0};
+gmi_common_friction gmi_friction_common(const gmi_sliding *s, double force) {
+    gmi_common_friction mu = {1.0, 0.0};
     if (s->friction->law == GM_FRICTION_CONSTANT) {
         mu.value = s->friction->factor;
     } else if (s->friction->law == GM_FRICTION_ISO14179) {
@@ -345,9 +344,9 @@ static common_part common_of(const gmi_sliding *s, double force) {
 void gmi_rubbing_finish(const gmi_sliding *sliding, const gmi_load *load,
                         const gmi_load_by *load_by, gmi_rubbing *total, gmi_rubbing_by *by) {
     const double force = load->force[GMI_WHOLE];
-    common_part mu = {0.0, 0.0};
+    gmi_common_friction mu = {0.0, 0.0};
     if (force > 0.0) { /* else damping has taken the force of the side away */
-        mu = common_of(sliding, force);
+        mu = gmi_friction_common(sliding, force);
     }
     if (by != NULL) {
         double power_by[GMI_VARIABLES] = {0.0};
@@ -459,7 +458,7 @@ void gmi_friction_finish(const gmi_sliding *sliding, const gmi_varying *force,
     gmi_varying mu = {.value = 0.0};
     *total = none;
     if (force->value > 0.0) { /* else damping has taken the force of the side away */
-        const common_part common = common_of(sliding, force->value);
+        const gmi_common_friction common = gmi_friction_common(sliding, force->value);
         mu.value = common.value;
         for (int k = 0; k < GMI_MOTIONS && common.power != 0.0; ++k) {
             mu.by[k] =

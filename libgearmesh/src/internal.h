@@ -742,7 +742,11 @@ enum gmi_variable {
     GMI_BY_WHEEL_SPEED,                       /* (rad/s) */
     GMI_BY_SIDEWAYS,                          /* both numbers of gmi_rates (m/s) */
     GMI_BY_SIDEWAYS_T1,
-    GMI_VARIABLES
+    GMI_VARIABLES,
+
+    GMI_BY_FORWARD = GMI_VARIABLES, /* likewise; of friction at tips (m/s) */
+    GMI_BY_FORWARD_T1,
+    GMI_TIP_VARIABLES
 };
 
 /* The normal force of a part of a line or of a side, in the transverse section; and how it moves. */
@@ -1005,6 +1009,16 @@ typedef struct gmi_point_friction {
 /* load: transverse, over the common face width (N). */
 gmi_point_friction gmi_friction_at(const gmi_sliding *sliding, double rho_p, double t1,
                                    double load);
+
+/* Where the sliding speed is known. */
+gmi_point_friction gmi_friction_of_speed(const gmi_sliding *sliding, double load, double speed);
+
+/* What of the coefficient is the same all over a side, and of it the power of the side's force over the rolling speed. */
+typedef struct gmi_common_friction {
+    double value, power;
+} gmi_common_friction;
+
+gmi_common_friction gmi_friction_common(const gmi_sliding *sliding, double force);
 
 /* The logarithm of the rolling speed by both speeds, and by T. */
 typedef struct gmi_rolling_by {

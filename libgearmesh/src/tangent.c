@@ -22,9 +22,9 @@
 typedef struct side_motion {
     double sign, tau, wheel_sign;
     gmi_plane plane;
-    double pinion_arm, wheel_arm; /* d delta / d angle of both gears (m) */
-    double across[GMI_VARIABLES]; /* by a movement of the wheel's axis along t */
-    double sideways_by_axial;     /* (1/s) */
+    double pinion_arm, wheel_arm;               /* d delta / d angle of both gears (m) */
+    double across[GMI_TIP_VARIABLES];           /* by a movement of the wheel's axis along t */
+    double sideways_by_axial, forward_by_axial; /* (1/s) */
     double turning[2],
         sideways[2]; /* of tilts: their share in the sideways speeds, at t1 = 0 and per t1 (1, m) */
 } side_motion;
@@ -59,9 +59,12 @@ static OWN_STACK void find_side_motion(const gm_mesh *mesh, int side, const gmi_
     across[GMI_BY_PINION_SPEED] = across[GMI_BY_WHEEL_SPEED] = 0.0;
     across[GMI_BY_SIDEWAYS] = rates->forward[0] * turn;
     across[GMI_BY_SIDEWAYS_T1] = rates->forward[1] * turn;
+    across[GMI_BY_FORWARD] = -rates->sideways[0] * turn;
+    across[GMI_BY_FORWARD_T1] = -rates->sideways[1] * turn;
 
     /* Tilts turn what is away from the middle of the wheel's face sideways too. */
     motion->sideways_by_axial = -rates->sideways[1] / pair->face_width;
+    motion->forward_by_axial = -rates->forward[1] / pair->face_width;
     motion->turning[0] = sign * t[1];
     motion->turning[1] = -sign * t[0];
     motion->sideways[0] = pair->face_start - at->face_center;
@@ -74,14 +77,18 @@ typedef struct side_gradient {
     double by_rate[GM_COORDINATES][GMI_WEIGHTS];
 } side_gradient;
 
-/* Of the normal force, by the coordinates of the side and by its speeds of approach; is_rubbing: and by those of sliding. */
-SPECIALIZED void find_gradient(const side_motion *motion, const double by[][GMI_WEIGHTS],
-                               int is_rubbing, side_gradient *gradient) {
-    const int count = is_rubbing ? GMI_VARIABLES : GMI_LOAD_VARIABLES;
+/* What depends on a side: on its coordinates and its speeds of approach, on those of sliding too, or at tips on all. */
+enum { PRESSING, RUBBING, RUBBING_TIPS };
+
+SPECIALIZED void find_gradient(const side_motion *motion, const double by[][GMI_WEIGHTS], int what,
+                               side_gradient *gradient) {
+    const int count = what == PRESSING  ? GMI_LOAD_VARIABLES
+                      : what == RUBBING ? GMI_VARIABLES
+                                        : GMI_TIP_VARIABLES;
     const double *e = motion->plane.e, *t = motion->plane.t;
     const double sign = motion->sign, tau = motion->tau;
     for (int weight = 0; weight < GMI_WEIGHTS; ++weight) {
-        double f[GMI_VARIABLES], across = 0.0;
+        double f[GMI_TIP_VARIABLES], across = 0.0;
         for (int of = 0; of < count; ++of) {
             f[of] = by[of][weight];
             across += motion->across[of] * f[of];
@@ -106,7 +113,7 @@ SPECIALIZED void find_gradient(const side_motion *motion, const double by[][GMI_
             to_rate[tilted][weight] =
                 -sign * (e[k] * f[GMI_BY_ALONG_RATE] + t[k] * f[GMI_BY_ACROSS_RATE]);
         }
-        if (!is_rubbing) {
+        if (what == PRESSING) {
             continue;
         }
 
@@ -119,6 +126,19 @@ SPECIALIZED void find_gradient(const side_motion *motion, const double by[][GMI_
         for (int k = 0; k < 2; ++k) {
             to_rate[GM_CENTER_DISTANCE_CHANGE + k][weight] -= sign * t[k] * f[GMI_BY_SIDEWAYS];
             to_rate[GM_SKEW + k][weight] += motion->turning[k] * tilting;
+        }
+        if (what == RUBBING) {
+            continue;
+        }
+
+        /* Along the line of action as well. */
+        to[GM_AXIAL_SHIFT][weight] += motion->forward_by_axial * f[GMI_BY_FORWARD];
+        const double swinging =
+            motion->sideways[0] * f[GMI_BY_FORWARD] + motion->sideways[1] * f[GMI_BY_FORWARD_T1];
+        const double turned[2] = {-sign * e[1], sign * e[0]};
+        for (int k = 0; k < 2; ++k) {
+            to_rate[GM_CENTER_DISTANCE_CHANGE + k][weight] += sign * e[k] * f[GMI_BY_FORWARD];
+            to_rate[GM_SKEW + k][weight] += turned[k] * swinging;
         }
     }
 }
@@ -145,7 +165,7 @@ static OWN_STACK void add_rubbing(const gm_pair *pair, const gmi_engagement *at,
     gmi_wrench_map map, map_by[2];
     side_gradient gradient;
     gmi_wrench_map_friction(pair, at, side, &map, map_by);
-    find_gradient(motion, rubbing_by->force, 1, &gradient);
+    find_gradient(motion, rubbing_by->force, RUBBING, &gradient);
     add_wrenches(&map, map_by, &gradient, rubbing->force, tangent);
 }
 
@@ -156,7 +176,7 @@ static OWN_STACK void add_force(const gm_pair *pair, const gmi_engagement *at, i
     gmi_wrench_map map, map_by[2];
     side_gradient gradient;
     gmi_wrench_map_force(pair, at, side, &map, map_by);
-    find_gradient(motion, force_by, 0, &gradient);
+    find_gradient(motion, force_by, PRESSING, &gradient);
     for (int k = 0; k < GM_COORDINATES; ++k) {
         tangent->force_by[k] += motion->sign * gradient.by[k][GMI_WHOLE];
         tangent->force_by_rate[k] += motion->sign * gradient.by_rate[k][GMI_WHOLE];
@@ -270,13 +290,14 @@ static OWN_STACK void add_tip(const gm_pair *pair, const gmi_engagement *at, int
         gmi_wrench_map map, map_by[2];
         side_gradient gradient;
         gmi_wrench_map_tip(pair, at, role, part, side, &map, map_by);
-        find_gradient(motion, tip->by[part], 0, &gradient);
+        find_gradient(motion, tip->by[part], PRESSING, &gradient);
         add_wrenches(&map, map_by, &gradient, tip->sum[part], tangent);
     }
 }
 
-static OWN_STACK void add_pressed_corners(const gm_mesh *moved, const gm_pose *pose_rate, int side,
-                                          const gmi_corner_tangent *followed, gm_tangent *tangent) {
+/* 1 where it presses. */
+static OWN_STACK int add_pressed_corners(const gm_mesh *moved, const gm_pose *pose_rate, int side,
+                                         const gmi_corner_tangent *followed, gm_tangent *tangent) {
     const gm_pair *pair = moved->pair;
     const gmi_engagement *at = &moved->engagement;
     gmi_load load;
@@ -284,7 +305,7 @@ static OWN_STACK void add_pressed_corners(const gm_mesh *moved, const gm_pose *p
     const gmi_load_by *found = &by;
     find_corner_load(moved, side, followed, &load, &by);
     if (!(load.force[GMI_WHOLE] > 0.0)) {
-        return;
+        return 0;
     }
     side_motion motion;
     find_side_motion(moved, side, &followed->rates, pose_rate, &motion);
@@ -292,21 +313,62 @@ static OWN_STACK void add_pressed_corners(const gm_mesh *moved, const gm_pose *p
     for (int role = GM_PINION; role <= GM_WHEEL; ++role) {
         add_tip(pair, at, side, role, &motion, &followed->tips[role], tangent);
     }
+    return 1;
 }
 
-/* Adds a side whose lines go on beyond the path of contact. */
-static OWN_STACK void add_corner_side(const gm_mesh *moved, const gm_position *position,
-                                      const gm_pose *pose_rate, const gmi_rates *rates, int side,
-                                      gm_tangent *tangent) {
-    if (gmi_side_is_clear(&moved->engagement, &moved->side[side], side, position->offset)) {
-        return;
-    }
+/* A side whose lines go on beyond the path of contact. 1 where it presses. */
+static OWN_STACK int add_corner_side(const gm_mesh *moved, const gm_position *position,
+                                     const gm_pose *pose_rate, const gmi_rates *rates, int side,
+                                     gm_tangent *tangent) {
     gmi_corner_tangent followed;
     memset(&followed, 0, sizeof followed);
     followed.rates = *rates;
     gmi_side_sum_corner_tangent(moved, side, position, &followed);
-    if (followed.contact[GMI_WHOLE] > 0.0) {
-        add_pressed_corners(moved, pose_rate, side, &followed, tangent);
+    return followed.contact[GMI_WHOLE] > 0.0 &&
+           add_pressed_corners(moved, pose_rate, side, &followed, tangent);
+}
+
+/* The friction of flanks and tips. */
+static OWN_STACK void add_rubbed(const gm_mesh *moved, const gm_pose *pose_rate, int side,
+                                 const gmi_corner_rubbing *rubbing, gm_tangent *tangent) {
+    side_motion motion;
+    find_side_motion(moved, side, &rubbing->rates, pose_rate, &motion);
+    for (int part = 0; part < GMI_RUBBING_PARTS; ++part) {
+        gmi_wrench_map map, map_by[2];
+        side_gradient gradient;
+        if (part == GMI_RUBBING_FLANKS) {
+            gmi_wrench_map_friction(moved->pair, &moved->engagement, side, &map, map_by);
+        } else {
+            gmi_wrench_map_tip_friction(moved->pair, &moved->engagement, part, side, &map, map_by);
+        }
+        find_gradient(&motion, rubbing->by[part], RUBBING_TIPS, &gradient);
+        add_wrenches(&map, map_by, &gradient, rubbing->sum[part], tangent);
+    }
+}
+
+/* On a walk of its own along the lines: the force and the friction at once would be too much stack. */
+static OWN_STACK void add_corner_rubbing(const gm_mesh *moved, const gm_position *position,
+                                         const gm_pose *pose_rate, const gmi_rates *rates, int side,
+                                         gm_tangent *tangent) {
+    gmi_sliding sliding;
+    gmi_corner_rubbing rubbing;
+    memset(&rubbing, 0, sizeof rubbing);
+    rubbing.rates = *rates;
+    gmi_sliding_find(&moved->friction, moved->pair, &moved->engagement, position, rates, &sliding);
+    gmi_side_sum_corner_rubbing(moved, side, position, &sliding, &rubbing);
+    add_rubbed(moved, pose_rate, side, &rubbing, tangent);
+}
+
+/* Adds a side with corners, if it presses. */
+static void add_side_with_corners(const gm_mesh *moved, const gm_position *position,
+                                  const gm_pose *pose_rate, const gmi_rates *rates, int side,
+                                  gm_tangent *tangent) {
+    if (gmi_side_is_clear(&moved->engagement, &moved->side[side], side, position->offset)) {
+        return;
+    }
+    if (add_corner_side(moved, position, pose_rate, rates, side, tangent) &&
+        moved->friction.is_on) {
+        add_corner_rubbing(moved, position, pose_rate, rates, side, tangent);
     }
 }
 
@@ -314,7 +376,7 @@ static int find_tangent(const gm_mesh *mesh, const gm_motion *motion, gm_tangent
     if (mesh == NULL || motion == NULL) {
         return GM_ERR_NULL;
     }
-    if (mesh->elastic != NULL || (mesh->has_corners && mesh->friction.is_on)) {
+    if (mesh->elastic != NULL) {
         return GM_ERR_PARAMETER;
     }
 
@@ -332,7 +394,8 @@ static int find_tangent(const gm_mesh *mesh, const gm_motion *motion, gm_tangent
     set_tangent(tangent, 0.0);
     for (int side = GM_DRIVE; side <= GM_COAST; ++side) {
         if (moved.has_corners) {
-            add_corner_side(&moved, &position, &motion->pose_rate, &rates[side], side, tangent);
+            add_side_with_corners(&moved, &position, &motion->pose_rate, &rates[side], side,
+                                  tangent);
         } else {
             add_side(&moved, &position, &motion->pose_rate, &rates[side], side, tangent);
         }

@@ -267,6 +267,26 @@ void gmi_wrench_map_friction(const gm_pair *pair, const gmi_engagement *at, int 
     }
 }
 
+/* At tips, below: both arms together are longer by (r_bp + r_bw) sin(Delta) - T (1 - cos(Delta)). */
+void gmi_wrench_map_tip_friction(const gm_pair *pair, const gmi_engagement *at, int part, int side,
+                                 gmi_wrench_map *map, gmi_wrench_map by[2]) {
+    const double sign = gmi_side_sign(side);
+    const gmi_plane plane = gmi_plane_of(at, sign);
+    const double *e = plane.e, *n = plane.t;
+    const double base_sum = pair->pinion.base_radius + at->wheel_base_radius;
+    const int is_sine = part == GMI_RUBBING_SINE;
+    const double *along = is_sine ? e : n;
+    const double across[2] = {sign * along[0], sign * along[1]};
+    *map = map_of_friction(pair, across, is_sine ? base_sum : -at->line_of_action);
+
+    for (int k = 0; k < 2; ++k) {
+        const double turn = n[k] / at->line_of_action;
+        const double across_by[2] = {sign * turn * (is_sine ? n[0] : -e[0]),
+                                     sign * turn * (is_sine ? n[1] : -e[1])};
+        by[k] = map_of_friction(pair, across_by, is_sine ? 0.0 : -(e[k] + base_sum * turn));
+    }
+}
+
 /*
  * At a tip corner it acts across the turned normal: on the wheel -sign (cos(Delta) n - sin(Delta) e), with n, e and Delta as
  * above, where across the line of action is -sign n. Both arms together are the part of the centre distance along the

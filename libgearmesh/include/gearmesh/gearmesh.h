@@ -824,8 +824,8 @@ typedef struct gm_mesh_params {
     int stations; /**< along the face, 2 .. 97; docs/elastic.md has the error of each number [17] */
 
     /** enum gm_corner_contact [GM_CORNER_BY_LAW]. GM_CORNER_ON: 3D model, no tip that reaches to the mate's base
-     *  circle. Start radii then end no line. With constant stiffness gm_cache_init() refuses it, gm_mesh_tangent() where
-     *  there is friction too, and line loads have no pressure under an edge. */
+     *  circle. Start radii then end no line. With constant stiffness gm_cache_init() refuses it, and line loads have no
+     *  pressure under an edge. */
     int corner_contact;
 
     /** radius of the tip edges of elastic teeth in modules, 0.001 .. 1 [0.05] */
@@ -1108,8 +1108,8 @@ typedef struct gm_tangent {
  * @param[in]  mesh     the mesh; of constant stiffness, or that of ISO 6336-1
  * @param[in]  motion   where the gears are and how they move
  * @param[out] tangent  all of it; NaN on an error
- * @return as gm_mesh_evaluate_posed(); GM_ERR_PARAMETER for corner contact with friction, and for elastic teeth: take the
- *         derivatives by both angles of gm_mesh_evaluate(), and differences for the pose
+ * @return as gm_mesh_evaluate_posed(); GM_ERR_PARAMETER for elastic teeth: take the derivatives by both angles of
+ *         gm_mesh_evaluate(), and differences for the pose
  *
  * The wrench contains friction; the rates of both angles change how fast the flanks approach and how fast they slide.
  * Accuracy: roundings. Cost: some four evaluations with tables, and more with friction, as lines are cut into parts;
