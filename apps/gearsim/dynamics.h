@@ -13,7 +13,4 @@ int dynamics_run(const config *conf, const gear_mesh *gears);
 /* How many rows it writes when it is not cut short. */
 double dynamics_rows(const config *conf);
 
-/* Notes for the head of the result what the values of a row are. Returns 0, or an exit code after a message. */
-int dynamics_note(const gear_mesh *gears, config *conf);
-
 #endif

@@ -20,6 +20,7 @@
 #include "mesh_cache.h"
 #include "output.h"
 #include "platform.h"
+#include "sampling.h"
 #include "static_columns.h"
 #include "statics.h"
 #include "time_table.h"
@@ -72,7 +73,7 @@ static int load_and_perform(const arguments *args) {
     if (status == 0) {
         status = gear_mesh_note(&mesh, &conf);
         if (status == 0) {
-            status = dynamics_note(&mesh, &conf);
+            status = sampling_note(&mesh, &conf);
         }
         if (status == 0) {
             status = time_tables_read(&conf);

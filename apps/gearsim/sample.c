@@ -1,0 +1,57 @@
+/* SPDX-FileCopyrightText: The gearmesh authors */
+/* SPDX-License-Identifier: BSD-3-Clause */
+#include "sample.h"
+#include "exit_code.h"
+#include "gear_contact.h"
+
+#include <math.h>
+#include <stdio.h>
+
+double sample_time(const sampling *s, double row, double sample) {
+    return (row + sample / s->factor) / s->conf->output_rate;
+}
+
+int sample_points(sampling *s, int count, const double times[], integrator_point points[]) {
+    const int failed =
+        integrator_advance_through(s->solver, count, times, s->shows_overlap, points);
+    const double time = integrator_time(s->solver);
+
+    if (failed == EXIT_INTERRUPTED) {
+        snprintf(s->why, sizeof s->why, "interrupted at t = %.9g s", time);
+    } else if (failed) {
+        snprintf(s->why, sizeof s->why, "%s", integrator_failure(s->solver));
+    }
+    return failed;
+}
+
+int sample_motion(sampling *s, double time, gear_motion *motion) {
+    integrator_point point;
+    const int failed = sample_points(s, 1, &time, &point);
+
+    if (!failed) {
+        *motion = model_motion(s->model, time, point.state);
+    }
+    return failed;
+}
+
+int sample_mesh(sampling *s, enum column_need need) {
+    dynamic_sample *sample = &s->sample;
+
+    /* Pairs are counted anyway, but by a cache. */
+    const int pairs = s->model->cache != NULL ? GM_WANT_PAIRS : GM_WANT_FORCE;
+    const int wanted = need == NEEDS_WRENCH  ? pairs | GM_WANT_WRENCH
+                       : need == NEEDS_PAIRS ? pairs
+                                             : GM_WANT_FORCE;
+    const int status = model_evaluate(s->model, &sample->motion, wanted, &sample->mesh);
+    sample->apex = gear_contact_apex(s->model->gears);
+    if (status != GM_OK) {
+        snprintf(s->why, sizeof s->why, "no contact force at t = %.9g s; the gears: %s",
+                 sample->time, gm_status_text(status));
+        return EXIT_RUN_FAILED;
+    }
+    if (s->conf->law == LAW_ELASTIC && fabs(sample->mesh.force) > s->hardest_force) {
+        s->hardest = sample->motion;
+        s->hardest_force = fabs(sample->mesh.force);
+    }
+    return 0;
+}
