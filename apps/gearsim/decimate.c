@@ -26,7 +26,7 @@ struct decimator {
     double *weights;         /* [SAMPLE_KINDS - 1][length], from SAMPLE_VALUES on */
 
     /* [channels][4 length]: a ring written twice, so that the last `length` samples are always contiguous, from `next` on;
-     * and the same from the newest to the oldest, from 3 length - `next` on */
+     * and the same from the newest to the oldest, from 3 length - `next` on; of plain channels the first ring alone */
     double *samples;
     double *sums; /* [4]: in memory, so that compilers make vectors of what ends there */
 };
@@ -209,8 +209,14 @@ void decimator_push_all(decimator *filter, int count, const double values[], int
         const int some = count - done < rest ? count - done : rest;
 
         for (int channel = 0; channel < filter->channels; ++channel) {
-            put(filter->samples + (size_t)channel * 4 * (size_t)length, length, filter->next, some,
-                values + channel * stride + done);
+            double *ring = filter->samples + (size_t)channel * 4 * (size_t)length;
+            const double *value = values + channel * stride + done;
+
+            if (filter->kinds[channel] == SAMPLE_PLAIN) {
+                memcpy(ring + filter->next, value, (size_t)some * sizeof *value);
+            } else {
+                put(ring, length, filter->next, some, value);
+            }
         }
         filter->next = some < rest ? filter->next + some : 0;
         done += some;
@@ -252,7 +258,7 @@ void decimator_values(const decimator *filter, double values[]) {
         const enum sample_kind kind = filter->kinds[channel];
 
         if (kind == SAMPLE_PLAIN) {
-            values[channel] = samples[half];
+            values[channel] = samples[filter->next < filter->length - half ? half : -half - 1];
         } else {
             /* An even number has no middle, and leaves the newest sample out. */
             const int is_even = kind == SAMPLE_BEHIND;

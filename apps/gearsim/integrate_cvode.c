@@ -124,6 +124,27 @@ static int restart(integrator *solver) {
     return CVodeReInit(memory->cvode, solver->time, solver->state);
 }
 
+/* Order and length of the last step, and what has been counted so far. */
+typedef struct cvode_statistics {
+    int order;
+    sunrealtype length;
+    integrator_statistics counts;
+} cvode_statistics;
+
+/* By one function of CVODE, as each takes its time to be bound when gearsim starts. */
+static cvode_statistics statistics(const cvode_memory *memory) {
+    cvode_statistics all = {.order = 0};
+    long steps = 0, derivatives = 0, setups, rejected = 0;
+    int next_order;
+    sunrealtype first_length, next_length, time;
+
+    CVodeGetIntegratorStats(memory->cvode, &steps, &derivatives, &setups, &rejected, &all.order,
+                            &next_order, &first_length, &all.length, &next_length, &time);
+    all.counts =
+        (integrator_statistics){.steps = steps, .derivatives = derivatives, .rejected = rejected};
+    return all;
+}
+
 /*
  * The vector of order 0 is the state at the end of the step, but for a rounding where CVODE has stopped at a time that it
  * was given: if it were another one, the others would be too, and they are looked for again.
@@ -139,12 +160,9 @@ static int are_those_of_the_step(const integrator *solver, const cvode_memory *m
  * read without a call. By derivatives it would take a call for each of them.
  */
 static int read_polynomial(const integrator *solver, cvode_memory *memory) {
-    sunrealtype length;
-    int order;
-    if (CVodeGetLastStep(memory->cvode, &length) != CV_SUCCESS ||
-        CVodeGetLastOrder(memory->cvode, &order) != CV_SUCCESS) {
-        return -1;
-    }
+    const cvode_statistics all = statistics(memory);
+    const int order = all.order;
+
     if (!are_those_of_the_step(solver, memory, order)) {
         memory->known = -1;
         if (CVodeGetDky(memory->cvode, solver->time, 0, memory->reader) != CV_SUCCESS ||
@@ -158,7 +176,7 @@ static int read_polynomial(const integrator *solver, cvode_memory *memory) {
                (size_t)solver->model->states * sizeof memory->polynomial[0][0]);
     }
     memory->order = order;
-    memory->per_length = 1.0 / length;
+    memory->per_length = 1.0 / all.length;
     return 0;
 }
 
@@ -185,16 +203,7 @@ static int interpolate(integrator *solver, int count, const double times[],
 }
 
 static integrator_statistics counts(const integrator *solver) {
-    const cvode_memory *memory = solver->memory;
-    long int steps = 0, derivatives = 0, rejected = 0;
-
-    CVodeGetNumSteps(memory->cvode, &steps);
-    CVodeGetNumRhsEvals(memory->cvode, &derivatives);
-    CVodeGetNumErrTestFails(memory->cvode, &rejected);
-    const integrator_statistics result = {
-        .steps = steps, .derivatives = derivatives, .rejected = rejected};
-
-    return result;
+    return statistics(solver->memory).counts;
 }
 
 const solver_package cvode_package = {
