@@ -11,6 +11,7 @@
  * they are. Beyond its ends a flank has the deviation of the end. Nothing jumps where a corner begins, and no end of a line
  * counts but those of the faces; starts of profiles end no line either.
  */
+#include "corner_line.h"
 #include "corner.h"
 #include "internal.h"
 #include "penetration.h"
@@ -24,80 +25,7 @@ static const gmi_grid no_grid = {0};
 /* What lines are followed for: sums, or with all coordinates. */
 enum { FOLLOW_SUMS, FOLLOW_FORCES, FOLLOW_FRICTION };
 
-/* Of gmi_tilt_cuts_find(): nothing else ends a line. */
-enum { FACES_ALONE = 4 };
-
 #define JOINT_ROUNDING 1e-9 /* of the shortest parabola: a place this close to a joint is at it */
-
-/* What is known of the corner at a joint. */
-typedef struct joint {
-    double gap, slope;
-    double versine, across, along, gain;
-    double versine_by_roll, versine_by_length;
-    double gain_by_roll, gain_by_length;
-    double across_by_roll, along_by_roll; /* of spur gears */
-} joint;
-
-/* The gap around one roll: a parabola from `from` on, and where the corner is. */
-typedef struct parabola {
-    double from, gap, slope, curvature;
-    double pair_from, pair_to; /* between them are this one and its neighbour */
-    joint begins, ends;        /* there */
-} parabola;
-
-/* One side at one position. */
-typedef struct view {
-    const gm_mesh *mesh;
-    int side;
-    int wanted;
-    gmi_lines lines;
-    double stop[2]; /* [enum gm_role] roll beyond the tip at which nothing touches any more (m) */
-    const gmi_grid *running[2]; /* [enum gm_role] of flanks with tables or ramps */
-    gmi_grid held[2];
-    parabola last; /* what was found last, of the tip of this gear: */
-    int last_role;
-    gmi_line_tangent *tangent; /* of the part at hand, where derivatives are wanted */
-    const gmi_rates *rates; /* where lines are followed with all coordinates; NULL = sums alone */
-    gmi_corner_tangent *followed; /* the forces then, */
-    gmi_corner_rubbing *rubbing;  /* or the friction */
-    gmi_corner_sums *sums;        /* or NULL */
-    double approach_speed;        /* (m/s) */
-    double viscous;               /* damping times speed of approach (N) */
-    const gmi_sliding *sliding;   /* NULL = without friction */
-} view;
-
-/* What cuts a line: a face, a roll beyond the tip of a gear, an end of its table; where its corner ends; cuts of friction. */
-enum {
-    CUT_FACE,
-    CUT_ROLL,
-    CUT_TABLE = CUT_ROLL + 2,
-    CUT_STOP = CUT_TABLE + 2,
-    CUT_FRICTION = CUT_STOP + 2
-};
-
-/* A place at which a line is cut, and how that moves by origin and delta. */
-typedef struct cut {
-    double t1;
-    double by[2];
-    int what; /* of both gears: their first one and enum gm_role */
-} cut;
-
-static inline int is_stop(const cut *end) {
-    return end->what >= CUT_STOP && end->what < CUT_FRICTION;
-}
-
-/* One line of it. */
-typedef struct whole_line {
-    gmi_line line;
-    double gain, by_origin[2];   /* of tilted axes, see gmi_tilted_line */
-    double from_by[2], to_by[2]; /* how their faces' ends move by origin and delta */
-    double origin;               /* rho_p at t1 = 0 (m) */
-    gmi_beyond beyond[2];        /* [enum gm_role] the tip */
-} whole_line;
-
-static inline double roll_at(const gmi_beyond *beyond, double t1) {
-    return beyond->at_zero + beyond->per_t1 * t1;
-}
 
 /* ---------------------------------------------------------------------------------------------
  * The gap as parabolas
@@ -123,7 +51,7 @@ static double next_joint(const gmi_corner *corner, double roll, int climbs) {
     return (ceil(roll / width - JOINT_ROUNDING) - 1.0) * width;
 }
 
-static void find_joint(const gmi_corner *corner, double roll, joint *found) {
+static void find_joint(const gmi_corner *corner, double roll, gmi_corner_joint *found) {
     gmi_corner_place place;
     gmi_corner_at(corner, roll, &place);
     found->gap = place.gap;
@@ -141,13 +69,14 @@ static void find_joint(const gmi_corner *corner, double roll, joint *found) {
 }
 
 /* Both parabolas between two joints meet halfway with the same slope: gap and slope at both ends say which. */
-static OWN_STACK void find_parabola(const gmi_corner *corner, double roll, parabola *found) {
+static OWN_STACK void find_parabola(const gmi_corner *corner, double roll,
+                                    gmi_corner_parabola *found) {
     const double width = 2.0 * width_at(corner, roll);
     const double from = floor(roll / width) * width;
     if (from != found->pair_from) {
         /* Lines go from joint to joint: one of both is known from the last. */
         const double to = fmin(from + width, corner->reach);
-        const joint begins = found->begins, ends = found->ends;
+        const gmi_corner_joint begins = found->begins, ends = found->ends;
         const int is_known = found->pair_from >= 0.0;
         if (is_known && from == found->pair_to) {
             found->begins = ends;
@@ -162,7 +91,7 @@ static OWN_STACK void find_parabola(const gmi_corner *corner, double roll, parab
         found->pair_from = from;
         found->pair_to = to;
     }
-    const joint *begins = &found->begins, *ends = &found->ends;
+    const gmi_corner_joint *begins = &found->begins, *ends = &found->ends;
     const double half = 0.5 * (found->pair_to - from);
     const double middle_slope =
         (ends->gap - begins->gap) / half - 0.5 * (begins->slope + ends->slope);
@@ -180,7 +109,8 @@ static OWN_STACK void find_parabola(const gmi_corner *corner, double roll, parab
 }
 
 /* Of spur gears. */
-static OWN_STACK void find_point(const gmi_corner *corner, double roll, parabola *found) {
+static OWN_STACK void find_point(const gmi_corner *corner, double roll,
+                                 gmi_corner_parabola *found) {
     if (roll == found->pair_from) {
         return;
     }
@@ -194,34 +124,11 @@ static OWN_STACK void find_point(const gmi_corner *corner, double roll, parabola
     found->curvature = place.by_roll_twice;
 }
 
-/* How the parabola moves with T, as the same of what gap and slope at its joints move by; of spur gears at one place. */
-typedef struct moved_parabola {
-    double gap, slope, curvature; /* at its beginning */
-} moved_parabola;
-
-static moved_parabola by_length_of(const parabola *gap) {
-    const joint *begins = &gap->begins, *ends = &gap->ends;
-    const double half = 0.5 * (gap->pair_to - gap->pair_from);
-    moved_parabola by = {-begins->versine, -begins->versine_by_roll, 0.0};
-    if (!(half > 0.0)) {
-        return by;
-    }
-    const double middle_slope = (begins->versine - ends->versine) / half +
-                                0.5 * (begins->versine_by_roll + ends->versine_by_roll);
-    if (gap->from == gap->pair_from) {
-        by.curvature = (middle_slope - by.slope) / half;
-    } else {
-        by.gap += 0.5 * half * (by.slope + middle_slope);
-        by.slope = middle_slope;
-        by.curvature = (-ends->versine_by_roll - middle_slope) / half;
-    }
-    return by;
-}
-
 /* The gap of one tip around a place on a line. */
-static const parabola *gap_at(view *v, const gmi_beyond *beyond, int role, double t1) {
+static const gmi_corner_parabola *gap_at(gmi_corner_view *v, const gmi_beyond *beyond, int role,
+                                         double t1) {
     const gmi_corner *corner = &v->mesh->corners[role];
-    const double roll = roll_at(beyond, t1);
+    const double roll = gmi_corner_roll_at(beyond, t1);
     if (role != v->last_role) {
         v->last_role = role;
         v->last.pair_from = -1.0; /* nothing found yet */
@@ -263,7 +170,7 @@ static double profile_rate(const gmi_grid *grid) {
 }
 
 static void take_nearer(double t1, double from, double by_origin, double by_delta, int what,
-                        cut *next) {
+                        gmi_corner_cut *next) {
     if (t1 > from && t1 < next->t1) { /* not for spur gears: infinite, or no number */
         next->t1 = t1;
         next->by[GMI_BY_ORIGIN] = by_origin;
@@ -274,8 +181,9 @@ static void take_nearer(double t1, double from, double by_origin, double by_delt
 
 /* Where the next part begins: at an end of either flank's table, at a tip, at a joint of the gap, and on the path of contact
  * where sliding speeds differ enough. */
-static cut next_cut(const view *v, const whole_line *whole, double from, const cut *last) {
-    cut next = *last;
+static gmi_corner_cut next_cut(const gmi_corner_view *v, const gmi_corner_line *whole, double from,
+                               const gmi_corner_cut *last) {
+    gmi_corner_cut next = *last;
     const double per_advance = 1.0 / v->lines.advance;
     int is_on_path = 1;
     for (int role = GM_PINION; role <= GM_WHEEL; ++role) {
@@ -285,33 +193,33 @@ static cut next_cut(const view *v, const whole_line *whole, double from, const c
             const double profile = profile_of(&whole->line, role);
             const double by_delta = role == GM_PINION ? 0.0 : per_advance;
             take_nearer(-profile / profile_rate(grid), from, -per_advance, by_delta,
-                        CUT_TABLE + role, &next);
+                        GMI_CUT_TABLE + role, &next);
             take_nearer((grid->profile_cells - profile) / profile_rate(grid), from, -per_advance,
-                        by_delta, CUT_TABLE + role, &next);
+                        by_delta, GMI_CUT_TABLE + role, &next);
         }
 
         /* The tip, and beyond it the next joint. */
         const gmi_beyond *beyond = &whole->beyond[role];
         const gmi_corner *corner = &v->mesh->corners[role];
         const double rounding = JOINT_ROUNDING * corner->fine;
-        const double roll = roll_at(beyond, from);
+        const double roll = gmi_corner_roll_at(beyond, from);
         const int climbs = beyond->per_t1 > 0.0;
         const int is_before = climbs ? roll < -rounding : roll <= rounding;
         is_on_path = is_on_path && is_before;
         const double next_roll = is_before ? 0.0 : next_joint(corner, roll, climbs);
         take_nearer((next_roll - beyond->at_zero) / beyond->per_t1, from,
                     -beyond->by_origin / beyond->per_t1, -beyond->by_delta / beyond->per_t1,
-                    CUT_ROLL + role, &next);
+                    GMI_CUT_ROLL + role, &next);
     }
     for (int k = 0; k < GMI_FRICTION_CUTS && v->sliding != NULL && is_on_path; ++k) {
         take_nearer((v->sliding->friction->cuts[k] - whole->origin) * per_advance, from,
-                    -per_advance, 0.0, CUT_FRICTION + k, &next);
+                    -per_advance, 0.0, GMI_CUT_FRICTION + k, &next);
     }
     return next;
 }
 
 /* A flank that has ended before this part has the deviation of its end. */
-static void hold_flanks(const view *v, double middle, gmi_line *part, int held[2]) {
+static void hold_flanks(const gmi_corner_view *v, double middle, gmi_line *part, int held[2]) {
     double *profile[2] = {&part->pinion_profile, &part->wheel_profile};
     for (int role = GM_PINION; role <= GM_WHEEL; ++role) {
         const gmi_grid *grid = v->running[role];
@@ -324,7 +232,8 @@ static void hold_flanks(const view *v, double middle, gmi_line *part, int held[2
 }
 
 /* What is known of the tangent of a part before it is followed. */
-static OWN_STACK void begin_tangent(view *v, const whole_line *whole, const int held[2]) {
+static OWN_STACK void begin_tangent(gmi_corner_view *v, const gmi_corner_line *whole,
+                                    const int held[2]) {
     const gm_mesh *mesh = v->mesh;
     gmi_line_tangent *tangent = v->tangent;
     memset(tangent, 0, sizeof *tangent);
@@ -342,40 +251,17 @@ static OWN_STACK void begin_tangent(view *v, const whole_line *whole, const int 
     tangent->wheel_per_rho = held[GM_WHEEL] ? 0.0 : v->running[GM_WHEEL]->per_rho;
 }
 
-/* The gap moves the part with all coordinates: by the roll beyond the tip, which moves straight along t1, and by T. */
-static OWN_STACK void follow_gap(view *v, const whole_line *whole, int role, const parabola *gap) {
-    const gm_mesh *mesh = v->mesh;
-    const gmi_beyond *beyond = &whole->beyond[role];
-    double roll_by[GMI_COORDINATES][2];
-    gmi_tilt_beyond_by(mesh->pair, &mesh->engagement, v->side, whole->origin, role, roll_by);
-    const double gone = beyond->at_zero - gap->from, rate = beyond->per_t1;
-    const double slope_0 = gap->slope + gap->curvature * gone;
-    const double slope_1 = gap->curvature * rate;
-    for (int k = 0; k < GMI_COORDINATES; ++k) {
-        double *by = v->tangent->by[k];
-        by[0] -= roll_by[k][0] * slope_0;
-        by[1] -= roll_by[k][0] * slope_1 + roll_by[k][1] * slope_0;
-        by[2] -= roll_by[k][1] * slope_1;
-    }
-
-    const moved_parabola moved = by_length_of(gap);
-    double *by_length = v->tangent->by[GMI_BY_LENGTH];
-    by_length[0] -= moved.gap + gone * (moved.slope + 0.5 * gone * moved.curvature);
-    by_length[1] -= rate * (moved.slope + gone * moved.curvature);
-    by_length[2] -= 0.5 * rate * rate * moved.curvature;
-}
-
 /* A corner takes its gap off the part, and changes what the part moves by. */
-static void take_gap_off(view *v, const whole_line *whole, int role, const parabola *gap,
-                         gmi_line *part) {
+static void take_gap_off(gmi_corner_view *v, const gmi_corner_line *whole, int role,
+                         const gmi_corner_parabola *gap, gmi_line *part) {
     const gmi_beyond *beyond = &whole->beyond[role];
-    const double gone = roll_at(beyond, part->from) - gap->from;
+    const double gone = gmi_corner_roll_at(beyond, part->from) - gap->from;
     const double rate = beyond->per_t1;
     part->overlap -= gap->gap + gone * (gap->slope + 0.5 * gone * gap->curvature);
     part->half_slope -= 0.5 * rate * (gap->slope + gone * gap->curvature);
     part->curvature -= 0.5 * rate * rate * gap->curvature;
     if (v->rates != NULL) {
-        follow_gap(v, whole, role, gap);
+        gmi_corner_follow_gap(v, whole, role, gap);
     } else if (v->wanted & GMI_DERIVATIVES) {
         const double slope_0 = gap->slope + gap->curvature * (beyond->at_zero - gap->from);
         const double slope_1 = gap->curvature * rate;
@@ -393,7 +279,7 @@ typedef struct part_force {
 } part_force;
 
 /* Of stiffness and damping. */
-static part_force force_of(const view *v, const gmi_line_sum *sum) {
+static part_force force_of(const gmi_corner_view *v, const gmi_line_sum *sum) {
     const double stiffness = v->mesh->law.stiffness, viscous = v->viscous;
     part_force force = {stiffness * sum->sum + viscous * sum->contact,
                         stiffness * sum->sum_t1 + viscous * sum->contact_t1,
@@ -412,8 +298,9 @@ static part_force force_of(const view *v, const gmi_line_sum *sum) {
 }
 
 /* What acts at a corner: arms are exact, moments along the face those of the middle of the load. */
-static void add_tip_load(const view *v, const gmi_beyond *beyond, const parabola *gap,
-                         const gmi_line_sum *sum, gmi_tip_load *tip) {
+static void add_tip_load(const gmi_corner_view *v, const gmi_beyond *beyond,
+                         const gmi_corner_parabola *gap, const gmi_line_sum *sum,
+                         gmi_tip_load *tip) {
     const part_force load = force_of(v, sum);
     tip->contact += sum->contact;
     if (load.whole == 0.0) {
@@ -421,11 +308,11 @@ static void add_tip_load(const view *v, const gmi_beyond *beyond, const parabola
     }
 
     /* Where the middle of the load is: slope of the gap, and the share of the way between both joints of the parabola. */
-    const double roll = roll_at(beyond, load.by_t1 / load.whole);
+    const double roll = gmi_corner_roll_at(beyond, load.by_t1 / load.whole);
     const double slope = gap->slope + gap->curvature * (roll - gap->from);
     const double length = gap->pair_to - gap->pair_from;
     const double q = length > 0.0 ? (roll - gap->pair_from) / length : 0.0;
-    const joint *a = &gap->begins, *b = &gap->ends;
+    const gmi_corner_joint *a = &gap->begins, *b = &gap->ends;
     const double versine = a->versine + q * (b->versine - a->versine);
 
     /* How much shorter the arm is, and how the normal has turned, times the force. */
@@ -452,7 +339,7 @@ static void add_tip_load(const view *v, const gmi_beyond *beyond, const parabola
 }
 
 /* What a part has at a place and speed of the side's friction: the normal force with its moments. */
-static gmi_part_force force_with_moments(const view *v, const whole_line *whole,
+static gmi_part_force force_with_moments(const gmi_corner_view *v, const gmi_corner_line *whole,
                                          const part_force *load, const gmi_line_sum *sum) {
     const gm_pair *pair = v->mesh->pair;
     const int side = v->side;
@@ -490,8 +377,8 @@ static gmi_varying follow(double value, double by_roll, const gmi_varying *roll)
 }
 
 /* Where the middle of the load of a part is off the line of action: as in add_tip_load(), with derivatives. */
-static gmi_tip_place tip_place_of(const view *v, const gmi_beyond *beyond, int role,
-                                  const parabola *gap, const gmi_part_force *part) {
+static gmi_tip_place tip_place_of(const gmi_corner_view *v, const gmi_beyond *beyond, int role,
+                                  const gmi_corner_parabola *gap, const gmi_part_force *part) {
     const gmi_engagement *at = &v->mesh->engagement;
     const double base[2] = {v->mesh->pair->pinion.base_radius, at->wheel_base_radius};
     const double base_sum = base[GM_PINION] + base[GM_WHEEL];
@@ -499,7 +386,7 @@ static gmi_tip_place tip_place_of(const view *v, const gmi_beyond *beyond, int r
 
     /* The roll there. */
     const double t1 = part->force_t1.value / part->force.value;
-    gmi_varying roll = gmi_varying_of(v->mesh->pair, v->side, roll_at(beyond, t1),
+    gmi_varying roll = gmi_varying_of(v->mesh->pair, v->side, gmi_corner_roll_at(beyond, t1),
                                       beyond->by_origin, beyond->by_delta, 0.0);
     for (int k = 0; k < GMI_MOTIONS; ++k) {
         roll.by[k] +=
@@ -507,7 +394,7 @@ static gmi_tip_place tip_place_of(const view *v, const gmi_beyond *beyond, int r
     }
 
     /* Straight from joint to joint; of spur gears it is known there. */
-    const joint *a = &gap->begins, *b = &gap->ends;
+    const gmi_corner_joint *a = &gap->begins, *b = &gap->ends;
     const double pair_length = gap->pair_to - gap->pair_from;
     const int is_point = !(pair_length > 0.0);
     const double gone = roll.value - gap->pair_from;
@@ -532,8 +419,8 @@ static gmi_tip_place tip_place_of(const view *v, const gmi_beyond *beyond, int r
 }
 
 /* Friction of a part, on the line of action or at a tip. */
-static OWN_STACK void add_friction(view *v, const whole_line *whole, const gmi_line_sum *sum,
-                                   const int is_beyond[2], double middle) {
+static OWN_STACK void add_friction(gmi_corner_view *v, const gmi_corner_line *whole,
+                                   const gmi_line_sum *sum, const int is_beyond[2], double middle) {
     gmi_corner_sums *sums = v->sums;
     const part_force load = force_of(v, sum);
     const gmi_part_force part = force_with_moments(v, whole, &load, sum);
@@ -564,8 +451,8 @@ static void add_end(gmi_line_tangent *tangent, double sign, double t1, double f,
 }
 
 /* What a part adds to the side and to the tips that it is beyond of. */
-static OWN_STACK void add_sums(view *v, const whole_line *whole, const gmi_line_sum *sum,
-                               const int is_beyond[2], double middle) {
+static OWN_STACK void add_sums(gmi_corner_view *v, const gmi_corner_line *whole,
+                               const gmi_line_sum *sum, const int is_beyond[2], double middle) {
     gmi_side_sum *side = &v->sums->side;
     const double advance = v->lines.advance;
     side->sum += sum->sum;
@@ -595,516 +482,50 @@ static OWN_STACK void add_sums(view *v, const whole_line *whole, const gmi_line_
  * flank. Other cuts stay with the flank while the line moves:
  * what one part loses there the next one gains, so that only friction, another one on each part, is to know.
  */
-static void add_ends(view *v, const whole_line *whole, const cut *from, const cut *to,
-                     const gmi_line_sum *sum) {
+static void add_ends(gmi_corner_view *v, const gmi_corner_line *whole, const gmi_corner_cut *from,
+                     const gmi_corner_cut *to, const gmi_line_sum *sum) {
     const int is_tilted = v->mesh->engagement.is_tilted, slides = v->sliding != NULL;
-    const int begins = from->what == CUT_FACE, ends = to->what == CUT_FACE;
-    if (begins ? is_tilted : slides || is_stop(from)) {
+    const int begins = from->what == GMI_CUT_FACE, ends = to->what == GMI_CUT_FACE;
+    if (begins ? is_tilted : slides || gmi_corner_is_stop(from)) {
         add_end(v->tangent, -1.0, from->t1, sum->at_from, begins ? whole->from_by : from->by);
     }
-    if (ends ? is_tilted : slides || is_stop(to)) {
+    if (ends ? is_tilted : slides || gmi_corner_is_stop(to)) {
         add_end(v->tangent, 1.0, to->t1, sum->at_to, ends ? whole->to_by : to->by);
     }
 }
 
-/* ---------------------------------------------------------------------------------------------
- * How a side moves with all its coordinates
- * ------------------------------------------------------------------------------------------- */
-
-/* How the place of a line at a roll beyond a tip moves; by_length: of that roll. */
-static OWN_STACK void follow_place(const view *v, const whole_line *whole, int role, double t1,
-                                   double by_length, double by[GMI_COORDINATES]) {
-    const gm_mesh *mesh = v->mesh;
-    double roll_by[GMI_COORDINATES][2];
-    gmi_tilt_beyond_by(mesh->pair, &mesh->engagement, v->side, whole->origin, role, roll_by);
-    roll_by[GMI_BY_LENGTH][0] -= by_length;
-    for (int k = 0; k < GMI_COORDINATES; ++k) {
-        by[k] = -(roll_by[k][0] + roll_by[k][1] * t1) / whole->beyond[role].per_t1;
-    }
-}
-
-/* A face of the wheel moves; 0 for one of the pinion, which does not. */
-static OWN_STACK int follow_face(const view *v, const whole_line *whole, int is_beginning,
-                                 double by[GMI_COORDINATES]) {
-    const gm_mesh *mesh = v->mesh;
-    gmi_tilt_cuts cuts;
-    gmi_line_part part;
-    gmi_tilt_cuts_find(mesh->pair, &mesh->engagement, v->side, v->lines.delta, FACES_ALONE, &cuts);
-    (void)gmi_tilt_cut_line(&cuts, whole->origin, &part);
-    return gmi_tilt_move_end(mesh->pair, &mesh->engagement, v->side, whole->origin, v->lines.delta,
-                             &part, is_beginning, by);
-}
-
-/* An end of the line takes f there along: at a face, or where a corner presses as it goes off the mate's flank. */
-static OWN_STACK void follow_end(const view *v, const whole_line *whole, int is_beginning,
-                                 const cut *end, double f) {
-    double by[GMI_COORDINATES];
-    if (is_stop(end)) {
-        const int role = end->what - CUT_STOP;
-        follow_place(v, whole, role, end->t1, gmi_corner_reach_by_length(&v->mesh->corners[role]),
-                     by);
-    } else if (end->what != CUT_FACE || !follow_face(v, whole, is_beginning, by)) {
-        return;
-    }
-    for (int k = 0; k < GMI_COORDINATES; ++k) {
-        const double moved = is_beginning ? -by[k] : by[k];
-        double *sum = v->tangent->sum_by[k], *contact = v->tangent->contact_by[k];
-        sum[0] += f * moved;
-        sum[1] += f * moved * end->t1;
-        contact[0] += moved;
-        contact[1] += moved * end->t1;
-    }
-}
-
-/* Adds what has the integrals whole and by_t1, with the weights. */
-static inline void add_weighted(const view *v, const whole_line *whole, double all, double by_t1,
-                                double sums[GMI_WEIGHTS]) {
-    sums[GMI_WHOLE] += all;
-    sums[GMI_BY_T1] += by_t1;
-    sums[GMI_BY_RHO] += whole->origin * all + v->lines.advance * by_t1;
-}
-
-/* What of a corner goes with the middle of the load of a part, and how that moves. */
-typedef struct at_middle {
-    double value, by_roll, by_length;
-} at_middle;
-
-/* Linear between both joints of the parabola. */
-static at_middle between(const parabola *gap, double roll, double begins, double ends,
-                         double by_roll_there) {
-    const double length = gap->pair_to - gap->pair_from;
-    const double by_roll = length > 0.0 ? (ends - begins) / length : by_roll_there;
-    const at_middle result = {begins + (roll - gap->pair_from) * by_roll, by_roll, 0.0};
-    return result;
-}
-
-/* The normal force of a part and its moment over t1, and how both and what touches move; behind the coordinates by the speed. */
-typedef struct part_load {
-    double force, moment;
-    double force_by[GMI_TIP_OWN], moment_by[GMI_TIP_OWN];
-    double contact_by[GMI_COORDINATES];
-} part_load;
-
-/* How a cut within a line moves with it; 0 for an end of the line. */
-static OWN_STACK int follow_cut(const view *v, const whole_line *whole, const cut *end,
-                                double by[GMI_COORDINATES]) {
-    const gm_mesh *mesh = v->mesh;
-    if (end->what == CUT_FACE || is_stop(end)) {
-        return 0;
-    }
-    memset(by, 0, GMI_COORDINATES * sizeof *by);
-    by[GMI_BY_ORIGIN] = end->by[GMI_BY_ORIGIN];
-    by[GMI_BY_DELTA] = end->by[GMI_BY_DELTA];
-    if (end->what >= CUT_FRICTION) {
-        by[GMI_BY_LENGTH] = gmi_friction_cut_by_length(mesh->pair, &mesh->engagement,
-                                                       &mesh->friction, end->what - CUT_FRICTION) /
-                            v->lines.advance;
-    } else if (end->what >= CUT_TABLE) {
-        by[GMI_BY_LENGTH] = end->by[GMI_BY_DELTA]; /* of the wheel's table */
-    } else {
-        follow_place(v, whole, end->what - CUT_ROLL, end->t1, 0.0, by);
-    }
-    return 1;
-}
-
-/*
- * A cut moves with the line, and what one part loses there the next one gains: that is not the same to what goes with the
- * middle of each.
- */
-static void add_cut(const view *v, const whole_line *whole, const cut *end, double sign, double f,
-                    part_load *load) {
-    double by[GMI_COORDINATES];
-    if (!(f > 0.0 && follow_cut(v, whole, end, by))) {
-        return;
-    }
-    const double density = v->mesh->law.stiffness * f + v->viscous;
-    for (int k = 0; k < GMI_COORDINATES; ++k) {
-        const double moved = sign * by[k];
-        load->force_by[k] += density * moved;
-        load->moment_by[k] += density * moved * end->t1;
-        load->contact_by[k] += moved;
-    }
-}
-
-static OWN_STACK void find_part_load(const view *v, const whole_line *whole, const cut *from,
-                                     const cut *to, const gmi_line_sum *sum, part_load *load) {
-    const double stiffness = v->mesh->law.stiffness, damping = v->mesh->law.damping;
-    const double viscous = v->viscous;
-    const gmi_line_tangent *line = v->tangent;
-    load->force = stiffness * sum->sum + viscous * sum->contact;
-    load->moment = stiffness * sum->sum_t1 + viscous * sum->contact_t1;
-    for (int k = 0; k < GMI_COORDINATES; ++k) {
-        const double *contact_by = line->contact_by[k];
-        load->force_by[k] = stiffness * line->sum_by[k][0] + viscous * contact_by[0];
-        load->moment_by[k] = stiffness * line->sum_by[k][1] + viscous * contact_by[1];
-        load->contact_by[k] = contact_by[0];
-    }
-    load->force_by[GMI_BY_DELTA_RATE] = damping * sum->contact;
-    load->moment_by[GMI_BY_DELTA_RATE] = damping * sum->contact_t1;
-    add_cut(v, whole, from, -1.0, sum->at_from, load);
-    add_cut(v, whole, to, 1.0, sum->at_to, load);
-}
-
-/* The roll beyond a tip in the middle of the load, which moves with the line and along it. */
-static OWN_STACK double follow_roll(const view *v, const whole_line *whole, int role,
-                                    const part_load *load, double by[GMI_TIP_OWN]) {
-    const gm_mesh *mesh = v->mesh;
-    const gmi_beyond *beyond = &whole->beyond[role];
-    const double t1 = load->moment / load->force;
-    double line_by[GMI_COORDINATES][2];
-    gmi_tilt_beyond_by(mesh->pair, &mesh->engagement, v->side, whole->origin, role, line_by);
-    for (int k = 0; k < GMI_TIP_OWN; ++k) {
-        by[k] = beyond->per_t1 * (load->moment_by[k] - t1 * load->force_by[k]) / load->force;
-        by[k] += k < GMI_COORDINATES ? line_by[k][0] + line_by[k][1] * t1 : 0.0;
-    }
-    return roll_at(beyond, t1);
-}
-
-/* The gap's slope at a roll, and 1 - cos of the turn of the normal. */
-static void find_turn(const parabola *gap, double roll, at_middle *slope, at_middle *versine) {
-    const joint *a = &gap->begins, *b = &gap->ends;
-    const double gone = roll - gap->from;
-    const moved_parabola moved = by_length_of(gap);
-    slope->value = gap->slope + gone * gap->curvature;
-    slope->by_roll = gap->curvature;
-    slope->by_length = moved.slope + gone * moved.curvature;
-    *versine = between(gap, roll, a->versine, b->versine, a->versine_by_roll);
-    versine->by_length = between(gap, roll, a->versine_by_length, b->versine_by_length, 0.0).value;
-}
-
-/* How it moves by one variable, as the roll does. */
-static inline double moved_by(const at_middle *what, const double roll_by[GMI_TIP_OWN], int k) {
-    return what->by_roll * roll_by[k] + (k == GMI_BY_LENGTH ? what->by_length : 0.0);
-}
-
-/* Adds its product with the force, or with the force's moment, and how that moves. */
-static void add_product(const at_middle *what, const double roll_by[GMI_TIP_OWN], double load,
-                        const double load_by[GMI_TIP_OWN], int weight, double sum[GMI_WEIGHTS],
-                        double by[][GMI_WEIGHTS]) {
-    sum[weight] += what->value * load;
-    for (int k = 0; k < GMI_TIP_OWN; ++k) {
-        by[k][weight] += what->value * load_by[k] + moved_by(what, roll_by, k) * load;
-    }
-}
-
-/* What acts at a corner, as add_tip_load() has it. */
-static OWN_STACK void follow_tip(const view *v, const whole_line *whole, int role,
-                                 const parabola *gap, const part_load *load) {
-    if (load->force == 0.0) {
-        return;
-    }
-    at_middle slope, versine;
-    double roll_by[GMI_TIP_OWN];
-    const double roll = follow_roll(v, whole, role, load, roll_by);
-    find_turn(gap, roll, &slope, &versine);
-
-    /* And where the corner is. */
-    const joint *a = &gap->begins, *b = &gap->ends;
-    const at_middle across = between(gap, roll, a->across, b->across, a->across_by_roll);
-    const at_middle along = between(gap, roll, a->along, b->along, a->along_by_roll);
-    gmi_tip_tangent *tip = &v->followed->tips[role];
-    const at_middle *const turned[2] = {&slope, &versine}, *const place[2] = {&across, &along};
-    for (int part = 0; part < GMI_TIP_PARTS; ++part) {
-        double *sum = tip->sum[part];
-        double(*by)[GMI_WEIGHTS] = tip->by[part];
-        add_product(turned[part], roll_by, load->force, load->force_by, GMI_WHOLE, sum, by);
-        add_product(turned[part], roll_by, load->moment, load->moment_by, GMI_BY_T1, sum, by);
-        add_product(place[part], roll_by, load->force, load->force_by, GMI_BY_RHO, sum, by);
-    }
-}
-
-/* ---------------------------------------------------------------------------------------------
- * How its friction moves
- * ------------------------------------------------------------------------------------------- */
-
-/* A number and its derivatives by all that friction depends on. */
-typedef struct moving {
-    double value, by[GMI_TIP_VARIABLES];
-} moving;
-
-static void set_moving(const at_middle *what, const double roll_by[GMI_TIP_OWN], moving *result) {
-    memset(result, 0, sizeof *result);
-    result->value = what->value;
-    for (int k = 0; k < GMI_TIP_OWN; ++k) {
-        result->by[k] = moved_by(what, roll_by, k);
-    }
-}
-
-/* What a tip makes of the place on the line of action: gmi_tip_place with all derivatives. */
-typedef struct moving_tip {
-    moving lead, longer, versine, sine;
-} moving_tip;
-
-/* As tip_place_of() has it. */
-static OWN_STACK void follow_tip_place(const view *v, const whole_line *whole, int role,
-                                       const parabola *gap, const part_load *load,
-                                       moving_tip *tip) {
-    const gmi_engagement *at = &v->mesh->engagement;
-    const double base[2] = {v->mesh->pair->pinion.base_radius, at->wheel_base_radius};
-    const double base_sum = base[GM_PINION] + base[GM_WHEEL];
-    const double length = at->line_of_action;
-    at_middle slope, versine;
-    double roll_by[GMI_TIP_OWN];
-    const double roll = follow_roll(v, whole, role, load, roll_by);
-    find_turn(gap, roll, &slope, &versine);
-
-    /* The turn by the slope of the gap, and the arms by both. */
-    const joint *a = &gap->begins, *b = &gap->ends;
-    at_middle gain = between(gap, roll, a->gain, b->gain, a->gain_by_roll);
-    gain.by_length = between(gap, roll, a->gain_by_length, b->gain_by_length, 0.0).value;
-    const double sine_value = (base[role] * slope.value - base_sum * versine.value) / length;
-    const at_middle sine = {
-        sine_value, (base[role] * slope.by_roll - base_sum * versine.by_roll) / length,
-        (base[role] * slope.by_length - base_sum * versine.by_length - sine_value) / length};
-    const at_middle longer = {base_sum * sine.value - length * versine.value,
-                              base_sum * sine.by_roll - length * versine.by_roll,
-                              base_sum * sine.by_length - length * versine.by_length -
-                                  versine.value};
-    const at_middle other = {longer.value - gain.value, longer.by_roll - gain.by_roll,
-                             longer.by_length - gain.by_length};
-    set_moving(role == GM_PINION ? &other : &gain, roll_by, &tip->lead);
-    set_moving(&longer, roll_by, &tip->longer);
-    set_moving(&versine, roll_by, &tip->versine);
-    set_moving(&sine, roll_by, &tip->sine);
-}
-
-/* Sliding speed in the middle of the load; tip: NULL = on the line of action. */
-static OWN_STACK void follow_sliding(const view *v, const whole_line *whole, const part_load *load,
-                                     const moving_tip *tip, moving *speed) {
-    const gmi_sliding *s = v->sliding;
-    const double t1 = load->moment / load->force;
-    const double rho_p = whole->origin + v->lines.advance * t1;
-    const double both = s->pinion_speed + s->wheel_speed;
-    memset(speed, 0, sizeof *speed);
-    speed->value = s->pinion_speed * rho_p - s->wheel_speed * (s->line_of_action - rho_p) -
-                   s->sideways[0] - s->sideways[1] * t1;
-
-    /* The middle moves along the line, and the line with its origin. */
-    const double per_t1 = both * v->lines.advance - s->sideways[1];
-    double t1_by[GMI_TIP_OWN];
-    for (int k = 0; k < GMI_TIP_OWN; ++k) {
-        t1_by[k] = (load->moment_by[k] - t1 * load->force_by[k]) / load->force;
-        speed->by[k] = per_t1 * t1_by[k];
-    }
-    speed->by[GMI_BY_ORIGIN] += both;
-    speed->by[GMI_BY_LENGTH] -= s->wheel_speed;
-    speed->by[GMI_BY_PINION_SPEED] = rho_p;
-    speed->by[GMI_BY_WHEEL_SPEED] = -(s->line_of_action - rho_p);
-    speed->by[GMI_BY_SIDEWAYS] = -1.0;
-    speed->by[GMI_BY_SIDEWAYS_T1] = -t1;
-    if (tip == NULL) {
-        return;
-    }
-
-    /* At a tip both arms are longer, and the wheel's axis moves across the turned tangent. */
-    const double sideways = s->sideways[0] + s->sideways[1] * t1;
-    const double forward = s->forward[0] + s->forward[1] * t1;
-    const double versine = tip->versine.value, sine = tip->sine.value;
-    const double lead = tip->lead.value, longer = tip->longer.value;
-    speed->value += both * lead - s->wheel_speed * longer + sideways * versine - forward * sine;
-    const double tip_per_t1 = s->sideways[1] * versine - s->forward[1] * sine;
-    for (int k = 0; k < GMI_TIP_OWN; ++k) {
-        speed->by[k] += both * tip->lead.by[k] - s->wheel_speed * tip->longer.by[k] +
-                        sideways * tip->versine.by[k] - forward * tip->sine.by[k] +
-                        tip_per_t1 * t1_by[k];
-    }
-    speed->by[GMI_BY_PINION_SPEED] += lead;
-    speed->by[GMI_BY_WHEEL_SPEED] += lead - longer;
-    speed->by[GMI_BY_SIDEWAYS] += versine;
-    speed->by[GMI_BY_SIDEWAYS_T1] += versine * t1;
-    speed->by[GMI_BY_FORWARD] = -sine;
-    speed->by[GMI_BY_FORWARD_T1] = -sine * t1;
-}
-
-/* The share of the load that rubs, by its size over what touches and by the speeds. */
-static OWN_STACK void follow_share(const view *v, const part_load *load, double contact,
-                                   const moving *speed, moving *share) {
-    const gmi_point_friction at =
-        gmi_friction_of_speed(v->sliding, load->force / contact, speed->value);
-    const gmi_rolling_by rolling = gmi_rolling_differentiate(v->sliding);
-    share->value = at.share;
-    for (int k = 0; k < GMI_TIP_VARIABLES; ++k) {
-        share->by[k] = at.by_speed * speed->by[k];
-    }
-    for (int k = 0; k < GMI_TIP_OWN; ++k) {
-        share->by[k] += at.by_load * load->force_by[k] / load->force;
-    }
-    for (int k = 0; k < GMI_COORDINATES; ++k) {
-        share->by[k] -= at.by_load * load->contact_by[k] / contact;
-    }
-    share->by[GMI_BY_LENGTH] += at.by_rolling * rolling.length;
-    share->by[GMI_BY_PINION_SPEED] += at.by_rolling * rolling.pinion_speed;
-    share->by[GMI_BY_WHEEL_SPEED] += at.by_rolling * rolling.wheel_speed;
-}
-
-/* Adds what has the value a b. */
-static void add_moving(const moving *a, const moving *b, int weight, double sum[GMI_WEIGHTS],
-                       double by[][GMI_WEIGHTS]) {
-    sum[weight] += a->value * b->value;
-    for (int k = 0; k < GMI_TIP_VARIABLES; ++k) {
-        by[k][weight] += a->value * b->by[k] + a->by[k] * b->value;
-    }
-}
-
-/* The force of friction of a part with its moments: times 1, t1 and rho_p. */
-static void weigh_share(const view *v, const whole_line *whole, const part_load *load,
-                        const moving *share, moving weighted[GMI_WEIGHTS]) {
-    const double advance = v->lines.advance, origin = whole->origin;
-    const double loads[GMI_WEIGHTS] = {load->force, load->moment,
-                                       origin * load->force + advance * load->moment};
-    for (int weight = 0; weight < GMI_WEIGHTS; ++weight) {
-        moving *result = &weighted[weight];
-        result->value = share->value * loads[weight];
-        for (int k = 0; k < GMI_TIP_VARIABLES; ++k) {
-            result->by[k] = share->by[k] * loads[weight];
-        }
-    }
-    for (int k = 0; k < GMI_TIP_OWN; ++k) {
-        const double force_by = load->force_by[k], moment_by = load->moment_by[k];
-        weighted[GMI_WHOLE].by[k] += share->value * force_by;
-        weighted[GMI_BY_T1].by[k] += share->value * moment_by;
-        weighted[GMI_BY_RHO].by[k] += share->value * (origin * force_by + advance * moment_by);
-    }
-    weighted[GMI_BY_RHO].by[GMI_BY_ORIGIN] += share->value * load->force;
-}
-
-static OWN_STACK void find_share(const view *v, const whole_line *whole, const part_load *load,
-                                 double contact, const moving_tip *tip, moving *share) {
-    moving speed;
-    follow_sliding(v, whole, load, tip, &speed);
-    follow_share(v, load, contact, &speed, share);
-}
-
-/* tip: NULL = on the line of action. */
-static OWN_STACK void add_share(const view *v, const whole_line *whole, const part_load *load,
-                                const moving *share, const moving_tip *tip) {
-    static const moving one = {1.0, {0.0}};
-    gmi_corner_rubbing *side = v->rubbing;
-    double *flanks = side->sum[GMI_RUBBING_FLANKS];
-    double(*flanks_by)[GMI_WEIGHTS] = side->by[GMI_RUBBING_FLANKS];
-    moving weighted[GMI_WEIGHTS];
-    weigh_share(v, whole, load, share, weighted);
-    for (int weight = 0; weight < GMI_WEIGHTS; ++weight) {
-        add_moving(&one, &weighted[weight], weight, flanks, flanks_by);
-    }
-    if (tip == NULL) {
-        return;
-    }
-
-    /* From the line of action to the corner. */
-    add_moving(&tip->lead, &weighted[GMI_WHOLE], GMI_BY_RHO, flanks, flanks_by);
-    for (int weight = GMI_WHOLE; weight <= GMI_BY_T1; ++weight) {
-        add_moving(&tip->sine, &weighted[weight], weight, side->sum[GMI_RUBBING_SINE],
-                   side->by[GMI_RUBBING_SINE]);
-        add_moving(&tip->versine, &weighted[weight], weight, side->sum[GMI_RUBBING_VERSINE],
-                   side->by[GMI_RUBBING_VERSINE]);
-    }
-}
-
-/* Friction of a part; gap: of the tip that it is beyond, or NULL. */
-static OWN_STACK void follow_friction(const view *v, const whole_line *whole, int role,
-                                      const parabola *gap, const part_load *load, double contact) {
-    gmi_corner_rubbing *side = v->rubbing;
-    side->force += load->force;
-    for (int k = 0; k < GMI_TIP_OWN; ++k) {
-        side->force_by[k] += load->force_by[k];
-    }
-    if (!(load->force > 0.0)) {
-        return;
-    }
-
-    moving share;
-    moving_tip tip;
-    if (gap != NULL) {
-        follow_tip_place(v, whole, role, gap, load, &tip);
-    }
-    find_share(v, whole, load, contact, gap != NULL ? &tip : NULL, &share);
-    add_share(v, whole, load, &share, gap != NULL ? &tip : NULL);
-}
-
-/* What of the coefficient is the same all over the side. */
-static OWN_STACK void finish_rubbing(const view *v) {
-    gmi_corner_rubbing *side = v->rubbing;
-    gmi_common_friction mu = {0.0, 0.0};
-    if (side->force > 0.0) { /* else damping has taken the force of the side away */
-        mu = gmi_friction_common(v->sliding, side->force);
-    }
-
-    /* By the logarithm of its power of the force over the rolling speed. */
-    const gmi_rolling_by rolling = gmi_rolling_differentiate(v->sliding);
-    double power_by[GMI_TIP_VARIABLES] = {0.0};
-    for (int k = 0; k < GMI_TIP_OWN && mu.power != 0.0; ++k) {
-        power_by[k] = mu.power * side->force_by[k] / side->force;
-    }
-    power_by[GMI_BY_LENGTH] -= mu.power * rolling.length;
-    power_by[GMI_BY_PINION_SPEED] = -mu.power * rolling.pinion_speed;
-    power_by[GMI_BY_WHEEL_SPEED] = -mu.power * rolling.wheel_speed;
-    for (int part = 0; part < GMI_RUBBING_PARTS; ++part) {
-        for (int weight = 0; weight < GMI_WEIGHTS; ++weight) {
-            double *sum = &side->sum[part][weight];
-            for (int k = 0; k < GMI_TIP_VARIABLES; ++k) {
-                double *by = &side->by[part][k][weight];
-                *by = mu.value * (*by + power_by[k] * *sum);
-            }
-            *sum *= mu.value;
-        }
-    }
-}
-
-/* Adds what a part has to the forces of the side. */
-static OWN_STACK void add_to_forces(const view *v, const whole_line *whole,
-                                    const gmi_line_sum *sum) {
-    gmi_corner_tangent *side = v->followed;
-    const gmi_line_tangent *line = v->tangent;
-    const double *c = line->contact, *arm = line->arm, *speed = line->speed;
-    add_weighted(v, whole, sum->sum, sum->sum_t1, side->sum);
-    add_weighted(v, whole, sum->contact, sum->contact_t1, side->contact);
-    add_weighted(v, whole, arm[0] * c[0] + arm[1] * c[1], arm[0] * c[1] + arm[1] * c[2], side->arm);
-    for (int k = 0; k < GMI_COORDINATES; ++k) {
-        const double *contact_by = line->contact_by[k];
-        add_weighted(v, whole, line->sum_by[k][0], line->sum_by[k][1], side->sum_by[k]);
-        add_weighted(v, whole, contact_by[0], contact_by[1], side->contact_by[k]);
-        side->flow_by[k] += speed[0] * contact_by[0] + speed[1] * contact_by[1];
-    }
-
-    /* The moment over rho_p moves with the origin. */
-    side->sum_by[GMI_BY_ORIGIN][GMI_BY_RHO] += sum->sum;
-    side->contact_by[GMI_BY_ORIGIN][GMI_BY_RHO] += sum->contact;
-}
-
 /* What a part adds to the tangent of the side. */
-static OWN_STACK void add_followed(view *v, const whole_line *whole, const cut *from, const cut *to,
+static OWN_STACK void add_followed(gmi_corner_view *v, const gmi_corner_line *whole,
+                                   const gmi_corner_cut *from, const gmi_corner_cut *to,
                                    const gmi_line_sum *sum, const int is_beyond[2], double middle,
                                    int follows) {
     if (sum->at_from > 0.0) {
-        follow_end(v, whole, 1, from, sum->at_from);
+        gmi_corner_follow_end(v, whole, 1, from, sum->at_from);
     }
     if (sum->at_to > 0.0) {
-        follow_end(v, whole, 0, to, sum->at_to);
+        gmi_corner_follow_end(v, whole, 0, to, sum->at_to);
     }
 
-    part_load load;
     if (follows == FOLLOW_FRICTION) {
         const int is_tip = is_beyond[GM_PINION] || is_beyond[GM_WHEEL];
         const int role = is_beyond[GM_PINION] ? GM_PINION : GM_WHEEL;
-        find_part_load(v, whole, from, to, sum, &load);
-        follow_friction(v, whole, role,
-                        is_tip ? gap_at(v, &whole->beyond[role], role, middle) : NULL, &load,
-                        sum->contact);
+        const gmi_corner_parabola *gap =
+            is_tip ? gap_at(v, &whole->beyond[role], role, middle) : NULL;
+        gmi_corner_follow_friction(v, whole, role, gap, from, to, sum);
         return;
     }
-    add_to_forces(v, whole, sum);
+    gmi_corner_follow_forces(v, whole, sum);
     for (int role = GM_PINION; role <= GM_WHEEL; ++role) {
         if (is_beyond[role]) {
-            find_part_load(v, whole, from, to, sum, &load);
-            follow_tip(v, whole, role, gap_at(v, &whole->beyond[role], role, middle), &load);
+            const gmi_corner_parabola *gap = gap_at(v, &whole->beyond[role], role, middle);
+            gmi_corner_follow_tip(v, whole, role, gap, from, to, sum);
         }
     }
 }
 
 /* One part between two cuts; whether it touches. follows: a constant at each call. */
-SPECIALIZED int add_part(view *v, const whole_line *whole, const cut *from, const cut *to,
-                         int follows) {
+SPECIALIZED int add_part(gmi_corner_view *v, const gmi_corner_line *whole,
+                         const gmi_corner_cut *from, const gmi_corner_cut *to, int follows) {
     const gm_mesh *mesh = v->mesh;
     const double middle = 0.5 * (from->t1 + to->t1);
     gmi_line part = gmi_line_between(&whole->line, from->t1, to->t1);
@@ -1120,7 +541,7 @@ SPECIALIZED int add_part(view *v, const whole_line *whole, const cut *from, cons
     /* The gap of each tip that the part is beyond of. */
     for (int role = GM_PINION; role <= GM_WHEEL; ++role) {
         const gmi_beyond *beyond = &whole->beyond[role];
-        const double roll = roll_at(beyond, middle);
+        const double roll = gmi_corner_roll_at(beyond, middle);
         is_beyond[role] = roll > 0.0;
         if (is_beyond[role]) {
             mask |= GMI_MOMENTS;
@@ -1151,14 +572,16 @@ SPECIALIZED int add_part(view *v, const whole_line *whole, const cut *from, cons
  * ------------------------------------------------------------------------------------------- */
 
 /* A line ends where the corner of a gear no longer touches. */
-static void end_at_stop(const gmi_beyond *beyond, double stop, int role, cut *from, cut *to) {
+static void end_at_stop(const gmi_beyond *beyond, double stop, int role, gmi_corner_cut *from,
+                        gmi_corner_cut *to) {
     if (beyond->per_t1 == 0.0) {
         to->t1 = beyond->at_zero <= stop ? to->t1 : from->t1;
         return;
     }
-    const cut end = {(stop - beyond->at_zero) / beyond->per_t1,
-                     {-beyond->by_origin / beyond->per_t1, -beyond->by_delta / beyond->per_t1},
-                     CUT_STOP + role};
+    const gmi_corner_cut end = {
+        (stop - beyond->at_zero) / beyond->per_t1,
+        {-beyond->by_origin / beyond->per_t1, -beyond->by_delta / beyond->per_t1},
+        GMI_CUT_STOP + role};
     if (beyond->per_t1 > 0.0) {
         *to = end.t1 < to->t1 ? end : *to;
     } else {
@@ -1167,13 +590,13 @@ static void end_at_stop(const gmi_beyond *beyond, double stop, int role, cut *fr
 }
 
 /* Between tilted axes the overlap is a parabola along the line, and faces end elsewhere. */
-static OWN_STACK void tilt_line(const view *v, whole_line *whole) {
+static OWN_STACK void tilt_line(const gmi_corner_view *v, gmi_corner_line *whole) {
     const gm_pair *pair = v->mesh->pair;
     const gmi_engagement *at = &v->mesh->engagement;
     gmi_tilt_cuts cuts;
     gmi_line_part part;
     gmi_tilted_line tilted;
-    gmi_tilt_cuts_find(pair, at, v->side, v->lines.delta, FACES_ALONE, &cuts);
+    gmi_tilt_cuts_find(pair, at, v->side, v->lines.delta, GMI_FACES_ALONE, &cuts);
     (void)gmi_tilt_cut_line(&cuts, whole->origin, &part);
     gmi_tilt_move_ends(pair, at, v->side, whole->origin, v->lines.delta, &part);
     gmi_tilt_line(pair, at, v->side, whole->origin, &tilted);
@@ -1198,14 +621,14 @@ static OWN_STACK void tilt_line(const view *v, whole_line *whole) {
 }
 
 /* Adds what line k has of flanks and of edges, between the cuts at which one takes over from the other. */
-SPECIALIZED void add_line(view *v, const gmi_flank *pinion, const gmi_flank *wheel, int k,
-                          int follows) {
+SPECIALIZED void add_line(gmi_corner_view *v, const gmi_flank *pinion, const gmi_flank *wheel,
+                          int k, int follows) {
     const gm_mesh *mesh = v->mesh;
     const gm_pair *pair = mesh->pair;
     const gmi_engagement *at = &mesh->engagement;
 
     /* The line as if both flanks went on beyond their tips. */
-    whole_line whole;
+    gmi_corner_line whole;
     whole.origin = v->lines.origin + (double)k * pair->transverse_base_pitch;
     const double delta = v->lines.delta;
     whole.line = (gmi_line){
@@ -1226,8 +649,8 @@ SPECIALIZED void add_line(view *v, const gmi_flank *pinion, const gmi_flank *whe
     if (at->is_tilted) {
         tilt_line(v, &whole);
     }
-    cut from = {whole.line.from, {0.0, 0.0}, CUT_FACE},
-        last = {whole.line.to, {0.0, 0.0}, CUT_FACE};
+    gmi_corner_cut from = {whole.line.from, {0.0, 0.0}, GMI_CUT_FACE},
+                   last = {whole.line.to, {0.0, 0.0}, GMI_CUT_FACE};
     for (int role = GM_PINION; role <= GM_WHEEL; ++role) {
         gmi_tilt_beyond(pair, at, v->side, whole.origin, delta, role, &whole.beyond[role]);
         end_at_stop(&whole.beyond[role], v->stop[role], role, &from, &last);
@@ -1235,7 +658,7 @@ SPECIALIZED void add_line(view *v, const gmi_flank *pinion, const gmi_flank *whe
 
     /* From cut to cut. */
     int touches = 0;
-    cut to;
+    gmi_corner_cut to;
     for (; from.t1 < last.t1; from = to) {
         to = next_cut(v, &whole, from.t1, &last);
         touches |= add_part(v, &whole, &from, &to, follows);
@@ -1246,7 +669,7 @@ SPECIALIZED void add_line(view *v, const gmi_flank *pinion, const gmi_flank *whe
 }
 
 /* What of the coefficient is the same all over the side. */
-static OWN_STACK void finish_friction(const view *v) {
+static OWN_STACK void finish_friction(const gmi_corner_view *v) {
     enum { MASK = GMI_DERIVATIVES | GMI_CONTACT_DERIVATIVES };
     gmi_side_force force;
     gmi_law_force(&v->mesh->law, &v->sums->side, v->approach_speed,
@@ -1258,7 +681,7 @@ static OWN_STACK void finish_friction(const view *v) {
 
 /* All lines of a side that is not clear; v: with what is wanted of them. follows: a constant, v has what they are followed for. */
 SPECIALIZED void follow_lines(const gm_mesh *mesh, int side, const gm_position *position,
-                              double approach_speed, int follows, view *v) {
+                              double approach_speed, int follows, gmi_corner_view *v) {
     const gm_pair *pair = mesh->pair;
     const gmi_engagement *at = &mesh->engagement;
     const gmi_side *prepared = &mesh->side[side];
@@ -1308,7 +731,7 @@ void gmi_side_sum_corners(const gm_mesh *mesh, int side, const gm_position *posi
     if (gmi_side_is_clear(&mesh->engagement, &mesh->side[side], side, position->offset)) {
         return;
     }
-    view v;
+    gmi_corner_view v;
     gmi_line_tangent tangent;
     v.wanted = wanted;
     v.sums = sums;
@@ -1323,7 +746,7 @@ void gmi_side_sum_corners(const gm_mesh *mesh, int side, const gm_position *posi
 
 void gmi_side_sum_corner_tangent(const gm_mesh *mesh, int side, const gm_position *position,
                                  gmi_corner_tangent *tangent) {
-    view v;
+    gmi_corner_view v;
     v.wanted = GMI_DERIVATIVES | GMI_MOMENTS;
     v.sums = NULL;
     v.rates = &tangent->rates;
@@ -1335,7 +758,7 @@ void gmi_side_sum_corner_tangent(const gm_mesh *mesh, int side, const gm_positio
 
 void gmi_side_sum_corner_rubbing(const gm_mesh *mesh, int side, const gm_position *position,
                                  const gmi_sliding *sliding, gmi_corner_rubbing *rubbing) {
-    view v;
+    gmi_corner_view v;
     v.wanted = GMI_DERIVATIVES | GMI_MOMENTS;
     v.sums = NULL;
     v.rates = &rubbing->rates;
@@ -1343,5 +766,5 @@ void gmi_side_sum_corner_rubbing(const gm_mesh *mesh, int side, const gm_positio
     v.tangent = &rubbing->line;
     v.sliding = sliding;
     follow_lines(mesh, side, position, rubbing->rates.delta, FOLLOW_FRICTION, &v);
-    finish_rubbing(&v);
+    gmi_corner_finish_friction(&v);
 }

@@ -3,8 +3,8 @@
 
 /*
  * What the sources of the core share and users never see. Dependencies run one way:
- * gear -> meshing -> pair -> iso6336, position -> contact -> corner -> flank -> line -> ramp, tilt -> penetration, corner_line
- * -> law -> wrench -> mesh -> equilibrium, cache, body, events, tangent.
+ * gear -> meshing -> pair -> iso6336, position -> contact -> corner -> flank -> line -> ramp, tilt -> penetration, corner_tangent
+ * -> corner_line -> law -> wrench -> mesh -> equilibrium, cache, body, events, tangent.
  */
 #ifndef GEARMESH_INTERNAL_H
 #define GEARMESH_INTERNAL_H

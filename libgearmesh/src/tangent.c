@@ -80,6 +80,37 @@ typedef struct side_gradient {
 /* What depends on a side: on its coordinates and its speeds of approach, on those of sliding too, or at tips on all. */
 enum { PRESSING, RUBBING, RUBBING_TIPS };
 
+/* What slides: f, derivatives by the variables; weight: of the force at hand. */
+SPECIALIZED void add_sliding(const side_motion *motion, const double f[GMI_TIP_VARIABLES],
+                             int weight, int what, side_gradient *gradient) {
+    const double *e = motion->plane.e, *t = motion->plane.t;
+    const double sign = motion->sign;
+    double(*to)[GMI_WEIGHTS] = gradient->by, (*to_rate)[GMI_WEIGHTS] = gradient->by_rate;
+    to[GM_AXIAL_SHIFT][weight] += motion->sideways_by_axial * f[GMI_BY_SIDEWAYS];
+    to_rate[GM_PINION_ANGLE][weight] += f[GMI_BY_PINION_SPEED];
+    to_rate[GM_WHEEL_ANGLE][weight] += motion->wheel_sign * f[GMI_BY_WHEEL_SPEED];
+    const double tilting =
+        motion->sideways[0] * f[GMI_BY_SIDEWAYS] + motion->sideways[1] * f[GMI_BY_SIDEWAYS_T1];
+    for (int k = 0; k < 2; ++k) {
+        to_rate[GM_CENTER_DISTANCE_CHANGE + k][weight] -= sign * t[k] * f[GMI_BY_SIDEWAYS];
+        to_rate[GM_SKEW + k][weight] += motion->turning[k] * tilting;
+    }
+    if (what == RUBBING) {
+        return;
+    }
+
+    /* At tips along the line of action as well. */
+    to[GM_AXIAL_SHIFT][weight] += motion->forward_by_axial * f[GMI_BY_FORWARD];
+    const double swinging =
+        motion->sideways[0] * f[GMI_BY_FORWARD] + motion->sideways[1] * f[GMI_BY_FORWARD_T1];
+    const double turned[2] = {-sign * e[1], sign * e[0]};
+    for (int k = 0; k < 2; ++k) {
+        to_rate[GM_CENTER_DISTANCE_CHANGE + k][weight] += sign * e[k] * f[GMI_BY_FORWARD];
+        to_rate[GM_SKEW + k][weight] += turned[k] * swinging;
+    }
+}
+
+/* by: derivatives of a force by the variables; what: a constant at each call. */
 SPECIALIZED void find_gradient(const side_motion *motion, const double by[][GMI_WEIGHTS], int what,
                                side_gradient *gradient) {
     const int count = what == PRESSING  ? GMI_LOAD_VARIABLES
@@ -113,32 +144,8 @@ SPECIALIZED void find_gradient(const side_motion *motion, const double by[][GMI_
             to_rate[tilted][weight] =
                 -sign * (e[k] * f[GMI_BY_ALONG_RATE] + t[k] * f[GMI_BY_ACROSS_RATE]);
         }
-        if (what == PRESSING) {
-            continue;
-        }
-
-        /* And what slides. */
-        to[GM_AXIAL_SHIFT][weight] += motion->sideways_by_axial * f[GMI_BY_SIDEWAYS];
-        to_rate[GM_PINION_ANGLE][weight] += f[GMI_BY_PINION_SPEED];
-        to_rate[GM_WHEEL_ANGLE][weight] += motion->wheel_sign * f[GMI_BY_WHEEL_SPEED];
-        const double tilting =
-            motion->sideways[0] * f[GMI_BY_SIDEWAYS] + motion->sideways[1] * f[GMI_BY_SIDEWAYS_T1];
-        for (int k = 0; k < 2; ++k) {
-            to_rate[GM_CENTER_DISTANCE_CHANGE + k][weight] -= sign * t[k] * f[GMI_BY_SIDEWAYS];
-            to_rate[GM_SKEW + k][weight] += motion->turning[k] * tilting;
-        }
-        if (what == RUBBING) {
-            continue;
-        }
-
-        /* Along the line of action as well. */
-        to[GM_AXIAL_SHIFT][weight] += motion->forward_by_axial * f[GMI_BY_FORWARD];
-        const double swinging =
-            motion->sideways[0] * f[GMI_BY_FORWARD] + motion->sideways[1] * f[GMI_BY_FORWARD_T1];
-        const double turned[2] = {-sign * e[1], sign * e[0]};
-        for (int k = 0; k < 2; ++k) {
-            to_rate[GM_CENTER_DISTANCE_CHANGE + k][weight] += sign * e[k] * f[GMI_BY_FORWARD];
-            to_rate[GM_SKEW + k][weight] += turned[k] * swinging;
+        if (what != PRESSING) {
+            add_sliding(motion, f, weight, what, gradient);
         }
     }
 }

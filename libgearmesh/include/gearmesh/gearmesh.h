@@ -1112,8 +1112,8 @@ typedef struct gm_tangent {
  *         gm_mesh_evaluate(), and differences for the pose
  *
  * The wrench contains friction; the rates of both angles change how fast the flanks approach and how fast they slide.
- * Accuracy: roundings. Cost: some four evaluations with tables, and more with friction, as lines are cut into parts;
- * docs/performance.md. Source: docs/equations.md.
+ * Accuracy: roundings. Cost: two to three evaluations with tables, and more with friction and corners, as lines are cut
+ * into parts; docs/performance.md. Source: docs/equations.md.
  */
 GM_API int gm_mesh_tangent(const gm_mesh *mesh, const gm_motion *motion, gm_tangent *tangent);
 
