@@ -7,10 +7,6 @@
 #include <math.h>
 #include <stdio.h>
 
-double sample_time(const sampling *s, double row, double sample) {
-    return (row + sample / s->factor) / s->conf->output_rate;
-}
-
 int sample_points(sampling *s, int count, const double times[], integrator_point points[]) {
     const int failed =
         integrator_advance_through(s->solver, count, times, s->shows_overlap, points);

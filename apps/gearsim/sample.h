@@ -59,6 +59,7 @@ typedef struct sampling {
     int follows;                  /* means of drive or load depend on the motion */
     int edge_wanted;              /* of the motion at the edges of boxes */
     int takes_blocks;             /* between rows nothing is needed but edges, see sampling.c, */
+    int is_plain_box;             /* where nothing but noise changes what acts; */
     int is_force_alone;           /* and of them nothing but the means of the force */
 
     /* What is known now. */
@@ -73,7 +74,9 @@ typedef struct sampling {
 } sampling;
 
 /* Time of a sample: divided once, so that k / rate is the time of row k to the last bit. */
-double sample_time(const sampling *s, double row, double sample);
+static inline double sample_time(const sampling *s, double row, double sample) {
+    return (row + sample / s->factor) / s->conf->output_rate;
+}
 
 /*
  * States of the solver at some times, or the motion at one; the solver only goes forward. Returns 0, or EXIT_RUN_FAILED or

@@ -192,9 +192,21 @@ static model_torques mean_following(const sampling *s, double begin, double end,
     return mean;
 }
 
-/* Over the sample's period: from the middle between two samples to the next, x'' from the change of x'. */
-int sample_means_set_box(sampling *s, enum column_need seen, double end, const model_edge *edge,
-                         const integrator_point *last) {
+/* Means of force and load over a box in which nothing but the noise changes what acts. */
+static void set_plain_means(sampling *s, double end, double momentum) {
+    const double begin = s->means.edge_time, weight = 1.0 / (end - begin);
+    const double change = momentum - s->means.edge_momentum;
+
+    s->sample.mean_force = model_mean_force(s->model, &s->means.steady, change * weight);
+    if (s->shows_load) {
+        s->sample.mean_load =
+            s->means.steady.load +
+            load_noise_integral(&s->model->load, begin, end, weight, weight, &s->means.noise);
+    }
+}
+
+/* Force and load over any box from the changes of both speeds; what follows the motion comes from its angles. */
+static void set_box(sampling *s, double end, const model_edge *edge) {
     const gear_motion *motion = &edge->motion;
 
     /* Before t = 0 the gears rest against each other, at the speeds of the start: half of the first box. */
@@ -213,18 +225,28 @@ int sample_means_set_box(sampling *s, enum column_need seen, double end, const m
         forget_gathered(s);
     }
 
-    /* Force and load from the changes of both speeds, then the overlap from the force. */
-    if (s->shows_means) {
-        const mean_weight box = {{begin, end, end}, {{weight, weight}, {0.0, 0.0}}};
-        const double speed = motion->pinion_speed - s->means.edge.pinion_speed;
-        const double rest =
-            s->means.is_started ? 0.0 : 0.5 * drive_acceleration(&s->model->drive, 0.0);
-        set_means(s, &box, rest + speed * weight, &following, (edge->momentum - before) * weight,
-                  s->model->noise != NULL);
+    const mean_weight box = {{begin, end, end}, {{weight, weight}, {0.0, 0.0}}};
+    const double speed = motion->pinion_speed - s->means.edge.pinion_speed;
+    const double rest = s->means.is_started ? 0.0 : 0.5 * drive_acceleration(&s->model->drive, 0.0);
+    set_means(s, &box, rest + speed * weight, &following, (edge->momentum - before) * weight,
+              s->model->noise != NULL);
+}
+
+/* Over the sample's period: from the middle between two samples to the next, x'' from the change of x'. */
+int sample_means_set_box(sampling *s, enum column_need seen, double end, const model_edge *edge,
+                         const integrator_point *last) {
+    const gear_motion *motion = &edge->motion;
+    const double begin = s->means.is_started ? s->means.edge_time : -end;
+
+    /* Force and load, then the overlap from the force. */
+    if (s->is_plain_box && s->means.is_started) {
+        set_plain_means(s, end, edge->momentum);
+    } else if (s->shows_means) {
+        set_box(s, end, edge);
     }
     const double rolled = motion->offset - s->means.edge.offset;
     const int failed =
-        s->shows_overlap ? set_overlap(s, seen, begin, end, rolled * weight, last) : 0;
+        s->shows_overlap ? set_overlap(s, seen, begin, end, rolled / (end - begin), last) : 0;
 
     /* The next box begins here. */
     s->means.edge_time = end;

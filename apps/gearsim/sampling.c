@@ -118,9 +118,10 @@ static void choose_blocks(sampling *s) {
         s->row_need = larger(s->row_need, NEEDS_MOTION);
     }
     s->takes_blocks = s->mean_kind == SAMPLE_BOX && s->sample_need == NEEDS_TIME && !s->follows;
-    s->is_force_alone = s->takes_blocks && s->filtered_count == 1 && s->shows_means &&
-                        !s->shows_load && !s->shows_overlap && s->means.is_steady &&
-                        (model->noise != NULL || model->load.amplitude == 0.0);
+    s->is_plain_box = s->takes_blocks && s->means.is_steady &&
+                      (model->noise != NULL || model->load.amplitude == 0.0);
+    s->is_force_alone = s->is_plain_box && s->filtered_count == 1 && s->shows_means &&
+                        !s->shows_load && !s->shows_overlap;
 }
 
 int sampling_start(sampling *s, const config *conf, const gear_model *model, integrator *solver,
