@@ -139,7 +139,7 @@ GM_TEST_UNUSED static void elastic_fill(const elastic_gear *g, const elastic_dev
     for (int k = 0; k < work->count; ++k) {
         const gmi_elastic_line *line = &work->line[k];
         for (int half = 0; half < 2; ++half) {
-            for (int s = line->slot; s < line->slot + line->elements; ++s) {
+            for (int s = line->slot; s < line->slot + line->slots; ++s) {
                 const int p = s + half * work->slots;
                 work->deviation[p] =
                     deviation_at(g, d, line->index, work->roll[p], work->z[p],

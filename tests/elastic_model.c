@@ -206,7 +206,18 @@ typedef struct model_lines {
     const elastic_deviation *deviation;
     const double (*softness)[3];
     long double rounding, x; /* (m); 0: no edges */
+    const double *cut;       /* beyond the path (m) */
 } model_lines;
+
+static void sort(int count, long double *values) {
+    for (int k = 1; k < count; ++k) {
+        for (int i = k; i > 0 && values[i] < values[i - 1]; --i) {
+            const long double swap = values[i];
+            values[i] = values[i - 1];
+            values[i - 1] = swap;
+        }
+    }
+}
 
 static void add_line(model *m, const elastic_gear *g, const model_lines *lines,
                      const model_teeth *teeth, int k, long double rho_0) {
@@ -229,15 +240,29 @@ static void add_line(model *m, const elastic_gear *g, const model_lines *lines,
     const long double soft[2] = {softness != NULL ? softness[0][((k % 3) + 3) % 3] : 1.0L,
                                  softness != NULL ? softness[1][((k % 3) + 3) % 3] : 1.0L};
     for (int e = 0; e < g->stations - 1; ++e) {
-        /* Lines with edges go over whole elements. */
-        long double low = fmaxl(from, e * h), high = fminl(to, (e + 1) * h);
-        if (further > 0.0L && high > low) {
-            low = e * h;
-            high = (e + 1) * h;
+        /* Lines with edges go over whole elements, in parts between the cuts within. */
+        long double bound[6] = {fmaxl(from, e * h), fminl(to, (e + 1) * h)};
+        int bounds = 2;
+        if (!(bound[1] > bound[0])) {
+            continue;
         }
-        for (int half = 0; half < 2 && high > low; ++half) {
+        for (int c = 0; c < 4 && further > 0.0L; ++c) {
+            const long double rho = c < 2 ? g->path_start - (c == 0 ? lines->cut[0] : 0.0)
+                                          : g->path_end + (c == 2 ? lines->cut[1] : 0.0);
+            const long double z = climb == 0.0L ? -1.0L : (rho - rho_0) / climb;
+            if (z > e * h && z < (e + 1) * h) {
+                bound[bounds++] = z;
+            }
+        }
+        if (further > 0.0L) {
+            bound[0] = e * h;
+            bound[1] = (e + 1) * h;
+        }
+        sort(bounds, bound);
+        for (int part = 0; part < 2 * (bounds - 1); ++part) {
+            const long double low = bound[part / 2], high = bound[part / 2 + 1];
             model_point *p = &m->point[m->points++];
-            const long double xi = 0.5L + (half == 0 ? -0.5L : 0.5L) / sqrtl(3.0L);
+            const long double xi = 0.5L + (part % 2 == 0 ? -0.5L : 0.5L) / sqrtl(3.0L);
             const long double z = low + xi * (high - low), rho = rho_0 + climb * z;
             double ignored[2];
             p->line = m->lines;
@@ -362,8 +387,8 @@ static int solve(model *m, long double x) {
 }
 
 int elastic_model_solve(const elastic_gear *g, const elastic_deviation *d,
-                        const double softness[2][3], double tip_rounding, double o, double x,
-                        elastic_answer *answer) {
+                        const double softness[2][3], double tip_rounding, const double cut[2],
+                        double o, double x, elastic_answer *answer) {
     static model m;
     model_teeth teeth;
     make_teeth(g, &teeth);
@@ -371,7 +396,7 @@ int elastic_model_solve(const elastic_gear *g, const elastic_deviation *d,
     m.r2 = 0.37L * (1.0L / g->youngs_modulus[0] + 1.0L / g->youngs_modulus[1]) / teeth.cosine;
     make_layer(g, 1.45L, 0.7L, m.tooth);
     make_layer(g, 2.9L, 0.0L, m.rim);
-    const model_lines lines = {d, softness, tip_rounding * g->normal_module * teeth.cosine, x};
+    const model_lines lines = {d, softness, tip_rounding * g->normal_module * teeth.cosine, x, cut};
     for (int k = -40; k <= 40; ++k) {
         add_line(&m, g, &lines, &teeth, k, o + k * (long double)g->pitch);
     }

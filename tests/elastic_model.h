@@ -23,10 +23,11 @@ typedef struct elastic_answer {
 
 /**
  * softness: of the teeth of line k, [2][3], by k mod 3; NULL = whole. tip_rounding: of edges that touch beyond the path, in
- * modules; 0 = lines end with the path. Returns 0 if it does not converge.
+ * modules; 0 = lines end with the path, else they are cut where it ends and by `cut` beyond (at the wheel's tip, the
+ * pinion's; m). Returns 0 if it does not converge.
  */
 int elastic_model_solve(const elastic_gear *g, const elastic_deviation *d,
-                        const double softness[2][3], double tip_rounding, double o, double x,
-                        elastic_answer *answer);
+                        const double softness[2][3], double tip_rounding, const double cut[2],
+                        double o, double x, elastic_answer *answer);
 
 #endif /* ELASTIC_MODEL_H */

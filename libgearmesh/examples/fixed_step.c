@@ -49,7 +49,7 @@ static int step(const gm_mesh *mesh, gm_workspace *workspace, motion *now, doubl
  * the mean torque of the contact comes back: it is the load. */
 static int run(const gm_pair *pair, const gm_mesh_params *law, double *torque) {
     /* Prepared before the loop, in memory of our own: enough for elastic teeth with 5 stations. Ideal flanks. */
-    static double mesh_memory[6000], workspace_memory[8000];
+    static double mesh_memory[8500], workspace_memory[12000];
     gm_mesh *mesh;
     gm_workspace *workspace = NULL;
     int status = gm_mesh_init(&mesh, law, pair, NULL, NULL, mesh_memory, sizeof mesh_memory);

@@ -13,13 +13,13 @@
  *
  * and then, if wanted, gmi_elastic_adjoint() for derivatives by anything that moves or changes the flanks.
  *
- * Points: a line of contact is cut at the stations; each part of it is a slot and has two points. Point 0 of slot s has the
- * number s, point 1 the number s + work->slots. All arrays over points have both halves one after the other:
+ * Points: a line of contact is cut at the stations, and at the ends of the path; each part of it is a slot and has two
+ * points. Point 0 of slot s has the number s, point 1 the number s + work->slots. All arrays over points have both halves one after the other:
  *
  *     for (int k = 0; k < work->count; ++k) {          // lines
  *         const gmi_elastic_line *line = &work->line[k];
  *         for (int half = 0; half < 2; ++half) {
- *             for (int s = line->slot; s < line->slot + line->elements; ++s) {
+ *             for (int s = line->slot; s < line->slot + line->slots; ++s) {
  *                 const int p = s + half * work->slots;
  *                 work->deviation[p] = f(line->index, work->z[p], work->roll[p]);
  *             }
@@ -120,7 +120,7 @@ typedef struct gmi_elastic_layer {
     double right[GMI_ELASTIC_STATIONS_MAX];
 } gmi_elastic_layer;
 
-/* Plain data, 16 kB; read-only after gmi_elastic_init(). */
+/* Plain data, 19 kB; read-only after gmi_elastic_init(). */
 typedef struct gmi_elastic {
     int stations;
     int lines_max;
@@ -173,6 +173,9 @@ typedef struct gmi_elastic_lines_at {
     double below, above;
     double fading[2];
 
+    /* Such lines are cut where the path ends, and once more so far below and above it, where edges leave the flank. */
+    double cut[2];
+
     int first, last; /* lines that can touch; others in between are left out by themselves */
     int slopes;      /* derivatives wanted: 0 none, 1 all but by the line of action, 2 all */
 
@@ -215,12 +218,34 @@ enum {
     GMI_ELASTIC_MATRICES
 };
 
+/* A cut within an element, between two slots that share its stations. */
+typedef struct gmi_elastic_cut {
+    double z;    /* moves with the line (m) */
+    int row;     /* of the line */
+    int element; /* that is cut */
+    int before;  /* slot up to the cut ... */
+    int after;   /* ... and from there on */
+    int is_last; /* of its element: none follows in it */
+    int limit;   /* end of the path it belongs to: -1 lower, +1 upper */
+} gmi_elastic_cut;
+
+/*
+ * Cuts of all lines: each end of the path, and each place beyond, is passed on the face by no more lines than the face is
+ * pitches long, and one. Lines at once are more by the path, which is longer than a pitch; where not, some cuts are left out.
+ */
+enum { GMI_ELASTIC_CUTS_MAX = 4 * (GMI_ELASTIC_LINES_MAX - 2) };
+
+static inline int gmi_elastic_cuts_of(int lines) {
+    return lines > 3 ? 4 * (lines - 2) : 4;
+}
+
 /* One line of contact as placed. */
 typedef struct gmi_elastic_line {
     int index;    /* k of gmi_elastic_lines_at */
     int slot;     /* its first slot */
     int element;  /* element of the face that slot lies in: from station `element` on */
-    int elements; /* how many */
+    int elements; /* how many, each with a slot */
+    int slots;    /* those, and behind them one for each cut: what follows it */
 
     /* whether its begin and end along z are those of the path: -1 lower, +1 upper, 0: of the face */
     int limited[2];
@@ -241,6 +266,8 @@ typedef struct gmi_elastic_work {
     int slots;
     gmi_elastic_lines_at at;
     gmi_elastic_line line[GMI_ELASTIC_LINES_MAX];
+    int cuts; /* line by line, in the order of z */
+    gmi_elastic_cut cut[GMI_ELASTIC_CUTS_MAX];
 
     /* Of the last gmi_elastic_solve(). */
     int touching;      /* whether anything does: else loads and derivatives are 0 */
@@ -389,7 +416,7 @@ typedef struct gmi_elastic_gradient {
 } gmi_elastic_gradient;
 
 /*
- * Derivatives of the force and of the energy at the last solution. Needs slopes of gmi_elastic_lines_at, deviation_by_roll,
+ * Derivatives of the force (NULL: not wanted) and of the energy at the last solution. Needs slopes of gmi_elastic_lines_at, deviation_by_roll,
  * and deviation_by_z where lines are cut. Those of the energy leave the balance out, which is its minimum. The torques that
  * keep the energy balance exactly are r_bp (F + energy.by_roll) on the pinion and r_bw F on the wheel.
  */

@@ -59,6 +59,7 @@ int gmi_elastic_tips_init(const gm_pair *pair, const gmi_engagement *at, double 
         tip->fading = rounding * base[role] / tip_roll;
         tip->logarithm =
             log((1.0 / mate_roll + 1.0 / rounding) / (1.0 / mate_roll + 1.0 / tip_roll));
+        tip->blunt = fall_of(tip->logarithm);
 
         /* The gap is more than its curvature there says. */
         gmi_corner_place place;
@@ -114,11 +115,13 @@ gmi_elastic_edge gmi_elastic_edge_at(const gmi_elastic_tips *tips, double approa
     /* The edge in place of its flank. */
     if (beyond != 0.0) {
         const gmi_elastic_tip *tip = &tips->tip[beyond < 0.0 ? GM_WHEEL : GM_PINION];
-        const double part = fabs(beyond) / tip->fading;
-        const double t = part < 1.0 ? part : 1.0;
-        const double direction = beyond < 0.0 ? 1.0 : -1.0;
-        edge.rate_factor = fall_of(tip->logarithm * t * t * (3.0 - 2.0 * t));
-        edge.rate_by_roll = direction * tip->logarithm * 6.0 * t * (1.0 - t) / tip->fading;
+        const double t = fabs(beyond) / tip->fading;
+        edge.rate_factor = tip->blunt;
+        if (t < 1.0) {
+            const double direction = beyond < 0.0 ? 1.0 : -1.0;
+            edge.rate_factor = fall_of(tip->logarithm * t * t * (3.0 - 2.0 * t));
+            edge.rate_by_roll = direction * tip->logarithm * 6.0 * t * (1.0 - t) / tip->fading;
+        }
     }
     return edge;
 }

@@ -87,10 +87,6 @@ static double straight_energy_by(const gmi_elastic *law, const gmi_elastic_work 
  * Ends of lines
  * ------------------------------------------------------------------------------------------- */
 
-typedef struct end_effect {
-    double functional, energy;
-} end_effect;
-
 static double slope_of(const double *row, double per_spacing) {
     return (row[1] - row[0]) * per_spacing;
 }
@@ -105,44 +101,95 @@ static double optional(const double *values, int p, double otherwise) {
     return values != NULL ? values[p] : otherwise;
 }
 
-/* What moving one end of a line along z does. rows: the adjoint. */
-static end_effect move_end(const gmi_elastic *law, const gmi_elastic_work *work,
-                           const gmi_elastic_functional *functional, const double *rows, int row,
-                           int end) {
-    const gmi_elastic_line *line = &work->line[row];
-    const int last = end == 0 ? 0 : line->elements - 1;
-    const int node = line->element + last;
-    const int at = row * work->stations + node, at_rim = work->lines_max * work->stations + node;
-    const double climb = work->at.climb, sign = end == 0 ? -0.5 : 0.5;
-    const double tooth_slope = slope_of(work->state + at, law->per_spacing);
-    const double rim_slope = slope_of(work->state + at_rim, law->per_spacing);
-    const double adjoint_slope = slope_of(rows + at, law->per_spacing);
-    const double rim_adjoint_slope = slope_of(rows + at_rim, law->per_spacing);
-    end_effect effect = {0.0, 0.0};
-    for (int half = 0; half < 2; ++half) {
-        const int p = line->slot + last + half * work->slots;
-        const double tooth = work->tooth[p], force = work->force[p], pull = work->pull[p];
-        const double tooth_by_z = climb * work->tooth_by_roll[p];
-        const double rate_by_z = climb * work->rate_by_roll[p];
+/* What moves with the path and the lines: a part of a line, and which ends of it: 1 its begin, 2 its end, 3 both. */
+typedef struct moving_part {
+    int row, node, slot, ends, limited;
+} moving_part;
 
-        /* The point goes along z, and with the line along rho_p. */
-        const double opened = work->deviation_by_z[p] + climb * work->deviation_by_roll[p] -
-                              tooth_by_z * work->deflection[p] - tooth * tooth_slope - rim_slope;
-        gmi_hertz_state contact;
-        gmi_hertz_evaluate(law->hertz_compliance, work->rate[p], work->approach_at[p], &contact);
-        const double weight = work->weight[p];
-        const double pushed = work->stiffness[p] * opened - weight * contact.load_by_L * rate_by_z;
+/* Of the ends of a part that move: the share of it that a point makes, and how much of it both weights grow by. */
+static double share_of(int ends, int half) {
+    return (ends & 1 ? share_of_end(0, half) : 0.0) + (ends & 2 ? share_of_end(1, half) : 0.0);
+}
+
+static double growth_of(int ends) {
+    return (ends & 2 ? 0.5 : 0.0) - (ends & 1 ? 0.5 : 0.0);
+}
+
+/* Slopes of both layers along z in the element of a part, of an array over stations. */
+typedef struct layer_slopes {
+    double tooth, rim;
+} layer_slopes;
+
+static layer_slopes slopes_of(const gmi_elastic *law, const gmi_elastic_work *work,
+                              const double *rows, const moving_part *part) {
+    const double *tooth = rows + part->row * work->stations + part->node;
+    const double *rim = rows + work->lines_max * work->stations + part->node;
+    const layer_slopes slopes = {slope_of(tooth, law->per_spacing),
+                                 slope_of(rim, law->per_spacing)};
+    return slopes;
+}
+
+/* By how much the approach of a point grows that goes along z, and with the line along rho_p. */
+static double opened_at(const gmi_elastic_work *work, const layer_slopes *state, int p) {
+    const double by_roll =
+        work->deviation_by_roll[p] - work->tooth_by_roll[p] * work->deflection[p];
+    return work->deviation_by_z[p] + work->at.climb * by_roll - work->tooth[p] * state->tooth -
+           state->rim;
+}
+
+/*
+ * What moving ends along z do to a functional; rows: its adjoint. From q (L - ln q) = gamma / B: dq/d ln(rate) =
+ * q B dq/d gamma.
+ */
+static double move_functional(const gmi_elastic *law, const gmi_elastic_work *work,
+                              const gmi_elastic_functional *functional, const double *rows,
+                              const moving_part *part) {
+    const double climb = work->at.climb, grown = growth_of(part->ends);
+    const layer_slopes state = slopes_of(law, work, work->state, part);
+    const layer_slopes adjoint = slopes_of(law, work, rows, part);
+    double effect = 0.0;
+    for (int half = 0; half < 2; ++half) {
+        const int p = part->slot + half * work->slots;
+        const double force = work->force[p], load = work->load[p], pull = work->pull[p];
+        const double rate_by_z = climb * work->rate_by_roll[p];
+        double pushed =
+            work->stiffness[p] * opened_at(work, &state, p) + force * work->slope[p] * rate_by_z;
+        if (work->slope[p] >= 1.0) {
+            pushed -= work->weight[p] * (load - last_load(law, work, p)) * rate_by_z;
+        }
         const double factor_by_z = optional(functional->factor_by_z, p, 0.0) +
                                    climb * optional(functional->factor_by_roll, p, 0.0);
-        const double along = factor_by_z * force + pushed * pull -
-                             force * (tooth_by_z * work->tooth_adjoint[p] + tooth * adjoint_slope +
-                                      rim_adjoint_slope);
-        const double share = share_of_end(end, half);
-        const double by_load =
-            optional(functional->by_load, p, 0.0); /* a weight leaves q as it is */
-        effect.functional += sign * work->load[p] * (pull - by_load) + share * along;
-        effect.energy += sign * contact.energy +
-                         share * (force * opened - weight * contact.energy_by_L * rate_by_z);
+        const double bent = climb * work->tooth_by_roll[p] * work->tooth_adjoint[p] +
+                            work->tooth[p] * adjoint.tooth + adjoint.rim;
+        const double along = force * (factor_by_z - bent) + pushed * pull;
+
+        /* A weight leaves q as it is. */
+        const double by_load = optional(functional->by_load, p, 0.0);
+        effect += grown * load * (pull - by_load) + share_of(part->ends, half) * along;
+    }
+    return effect;
+}
+
+/* To the energy, which is q (gamma - B q / 2) / 2 at a point, and by ln(rate) B q^2 / 2. */
+static double move_energy(const gmi_elastic *law, const gmi_elastic_work *work,
+                          const moving_part *part) {
+    const double half_compliance = 0.5 * law->hertz_compliance;
+    const double climb = work->at.climb, grown = growth_of(part->ends);
+    const layer_slopes state = slopes_of(law, work, work->state, part);
+    double effect = 0.0;
+    for (int half = 0; half < 2; ++half) {
+        const int p = part->slot + half * work->slots;
+        const double load = work->load[p], rate_by_z = climb * work->rate_by_roll[p];
+        const double own = half_compliance * load;
+        double energy = 0.5 * load * (work->approach_at[p] - own);
+        double along = work->force[p] * (opened_at(work, &state, p) + own * rate_by_z);
+        if (work->slope[p] >= 1.0) {
+            const double excess = load - last_load(law, work, p);
+            const double lacking = half_compliance * excess * excess;
+            energy += 0.5 * lacking;
+            along -= work->weight[p] * lacking * rate_by_z;
+        }
+        effect += grown * energy + share_of(part->ends, half) * along;
     }
     return effect;
 }
@@ -159,20 +206,47 @@ static void add_end(const gmi_elastic_work *work, int limited, double effect,
     }
 }
 
-/* energy: may be NULL. */
+/* functional and gradient of it, energy: may be NULL. */
+static void add_part(const gmi_elastic *law, const gmi_elastic_work *work, const moving_part *part,
+                     const gmi_elastic_functional *functional, const double *rows,
+                     gmi_elastic_gradient *gradient, gmi_elastic_gradient *energy) {
+    if (work->force[part->slot] == 0.0 && work->force[part->slot + work->slots] == 0.0) {
+        return;
+    }
+    if (gradient != NULL) {
+        add_end(work, part->limited, move_functional(law, work, functional, rows, part), gradient);
+    }
+    if (energy != NULL) {
+        add_end(work, part->limited, move_energy(law, work, part), energy);
+    }
+}
+
 static void add_ends(const gmi_elastic *law, const gmi_elastic_work *work,
                      const gmi_elastic_functional *functional, const double *rows,
                      gmi_elastic_gradient *gradient, gmi_elastic_gradient *energy) {
     for (int row = 0; row < work->count; ++row) {
+        const gmi_elastic_line *line = &work->line[row];
         for (int end = 0; end < 2; ++end) {
-            const int limited = work->line[row].limited[end];
-            if (limited != 0) {
-                const end_effect effect = move_end(law, work, functional, rows, row, end);
-                add_end(work, limited, effect.functional, gradient);
-                if (energy != NULL) {
-                    add_end(work, limited, effect.energy, energy);
-                }
+            const int last = end == 0 ? 0 : line->elements - 1;
+            if (line->limited[end] != 0) {
+                const moving_part part = {row, line->element + last, line->slot + last, 1 << end,
+                                          line->limited[end]};
+                add_part(law, work, &part, functional, rows, gradient, energy);
             }
+        }
+    }
+
+    /* A cut is the end of one part and the begin of the next; what lies between two of the same end moves as a whole. */
+    int is_joined = 0;
+    for (int k = 0; k < work->cuts; ++k) {
+        const gmi_elastic_cut *cut = &work->cut[k];
+        const moving_part before = {cut->row, cut->element, cut->before, is_joined ? 3 : 2,
+                                    cut->limit};
+        add_part(law, work, &before, functional, rows, gradient, energy);
+        is_joined = !cut->is_last && cut[1].limit == cut->limit;
+        if (!is_joined) {
+            const moving_part after = {cut->row, cut->element, cut->after, 1, cut->limit};
+            add_part(law, work, &after, functional, rows, gradient, energy);
         }
     }
 }
@@ -241,18 +315,23 @@ void gmi_elastic_differentiate(const gmi_elastic *law, gmi_elastic_work *work,
                                gmi_elastic_gradient *force, gmi_elastic_gradient *energy) {
     GMI_CALL_WIDE(law, gmi_wide_differentiate(law, work, force, energy))
     static const gmi_elastic_functional unit = {NULL, NULL, NULL, NULL};
-    memset(force, 0, sizeof *force);
     memset(energy, 0, sizeof *energy);
+    if (force != NULL) {
+        memset(force, 0, sizeof *force);
+    }
     if (!work->touching) {
         return;
     }
     const int count = 2 * work->slots;
-    force->value = energy->by_approach = gmi_elastic_sum(count, work->force);
-    force->by_approach = gmi_elastic_sum(count, work->by_deviation);
     energy->value = work->energy;
-    move_points(law, work, force);
+    energy->by_approach = gmi_elastic_sum(count, work->force);
     differentiate_energy(law, work, energy);
-    move_action(law, work, force);
+    if (force != NULL) {
+        force->value = energy->by_approach;
+        force->by_approach = gmi_elastic_sum(count, work->by_deviation);
+        move_points(law, work, force);
+        move_action(law, work, force);
+    }
     add_ends(law, work, &unit, work->adjoint, force, energy);
 }
 

@@ -32,10 +32,17 @@ static gmi_surface_cells cells_in(const gmi_elastic_work *work, int role) {
 }
 
 /* Beyond the path the flanks end: on from there as the slope says, for a while. */
-static void hold_flanks(gmi_elastic_work *work) {
+static void hold_flanks(const gmi_surface_points *points, const gmi_surface_gear gear[2],
+                        const gmi_surface_cells cells[2], gmi_elastic_work *work) {
     for (int p = 0; p < 2 * work->slots; ++p) {
         if (work->beyond[p] != 0.0) {
             const gmi_elastic_hold hold = gmi_elastic_hold_at(&work->at, work->beyond[p]);
+            for (int role = GM_PINION; role <= GM_WHEEL; ++role) {
+                if (gear[role].tables != NULL) {
+                    work->deviation_by_z[p] +=
+                        hold.moved * gmi_surface_twist_at(points, &gear[role], &cells[role], p);
+                }
+            }
             work->deviation[p] += hold.moved * work->deviation_by_roll[p];
             work->deviation_by_roll[p] *= hold.by_roll;
         }
@@ -80,7 +87,7 @@ void gmi_elastic_set_material(const gm_mesh *mesh, int side, const gmi_lines *li
         const gmi_line_flanks flanks = gmi_line_flanks_of(mesh, side, lines, teeth, line->index);
         const double pitch = flanks.pinion.pitch + flanks.wheel.pitch;
         for (int half = 0; half < 2; ++half) {
-            const int from = line->slot + half * work->slots, to = from + line->elements;
+            const int from = line->slot + half * work->slots, to = from + line->slots;
             for (int p = from; p < to && pitch != 0.0; ++p) {
                 work->deviation[p] = pitch;
             }
@@ -103,7 +110,7 @@ void gmi_elastic_set_material(const gm_mesh *mesh, int side, const gmi_lines *li
         }
     }
     if (work->at.goes_on) {
-        hold_flanks(work);
+        hold_flanks(&points, gear, cells, work);
     }
 
     /* And what the tilt of the axes makes of it, which goes on with the lines. */
@@ -112,7 +119,7 @@ void gmi_elastic_set_material(const gm_mesh *mesh, int side, const gmi_lines *li
         const gmi_line_flanks flanks = gmi_line_flanks_of(mesh, side, lines, teeth, line->index);
         for (int half = 0; half < 2; ++half) {
             const int from = line->slot + half * work->slots;
-            gmi_surface_add_tilt(&points, &flanks, from, from + line->elements);
+            gmi_surface_add_tilt(&points, &flanks, from, from + line->slots);
         }
     }
 }

@@ -206,6 +206,21 @@ static int is_given_well(const gm_mesh_params *params, const gm_pair *pair, cons
     return 1;
 }
 
+/* Whatever the gears, a mesh is about as stiff per face width as a tenth of their modulus. */
+static double usual_approach(const gm_mesh_params *params, double force_per_width) {
+    return 5.0 * force_per_width *
+           (1.0 / params->pinion_youngs_modulus + 1.0 / params->wheel_youngs_modulus);
+}
+
+/*
+ * Where lines are cut beyond the path: where the edge would leave the flank at that x if the teeth gave way by nothing more
+ * than x. Fixed, so that the cuts move with the lines alone; under other loads they lie elsewhere on what the edge bears.
+ */
+static void set_cuts(const gmi_elastic_tips *tips, double approach, double cut[2]) {
+    cut[0] = 0.85 * sqrt(2.0 * approach / tips->tip[GM_WHEEL].curvature);
+    cut[1] = 0.85 * sqrt(2.0 * approach / tips->tip[GM_PINION].curvature);
+}
+
 static void find_stiffness(gmi_elastic_mesh *made, const gm_pair *pair, const gmi_engagement *at,
                            double force, gmi_elastic_work *work);
 
@@ -253,6 +268,7 @@ int gmi_elastic_mesh_init(gmi_elastic_mesh *made, const gm_mesh_params *params, 
     const double force = isnan(params->reference_torque)
                              ? 1e5 * pair->face_width
                              : params->reference_torque / pair->wheel.base_radius;
+    made->usual_approach = usual_approach(params, force / face);
     gmi_elastic_work *work = (gmi_elastic_work *)(made + 1);
     gmi_elastic_work_init(work, params->stations, law.lines, work + 1);
     find_stiffness(made, pair, at, force, work);
@@ -342,7 +358,7 @@ static int place(side_view *view, const gm_position *position, int wanted, gmi_e
     if (!is_even) {
         set_softness(view, count);
     }
-    const gmi_elastic_lines_at lines = {
+    gmi_elastic_lines_at lines = {
         .origin = view->lines.origin + view->lines.advance * at->face_from,
         .pitch = pair->transverse_base_pitch,
         .climb = view->lines.advance * (at->face_to - at->face_from) / law->face_width,
@@ -362,6 +378,9 @@ static int place(side_view *view, const gm_position *position, int wanted, gmi_e
         .pinion_softness = is_even ? NULL : view->softness[GM_PINION],
         .wheel_softness = is_even ? NULL : view->softness[GM_WHEEL],
     };
+    if (view->has_tips) {
+        set_cuts(&view->tips, view->elastic->usual_approach, lines.cut);
+    }
     return gmi_elastic_place(law, &lines, work);
 }
 
@@ -394,7 +413,9 @@ static int solve(const gmi_elastic_mesh *elastic, gmi_elastic_work *work, double
 
 /*
  * d2F/dx2. The balance is a minimum of the energy, and only the contact law is not quadratic in it: so the third derivative
- * of the energy is the sum of W q'' (d gamma / dx)^3, with q'' = q'^3 B / q of the law q (L - ln q) = delta / B.
+ * of the energy is the sum of W q'' (d gamma / dx)^3, with q'' = q'^3 B / q of the law q (L - ln q) = delta / B. Where a
+ * wheel's edge bears load, its gap bends the approach as well: - 3 W q' (d gamma / dx) gap''. d gamma / dx is then what
+ * enter() leaves in the derivatives by the deviations.
  */
 static double stiffness_by_approach(const gmi_elastic *law, const gmi_elastic_work *work) {
     double sum = 0.0;
@@ -402,9 +423,12 @@ static double stiffness_by_approach(const gmi_elastic *law, const gmi_elastic_wo
         const int is_curved = work->load[p] > 0.0 && work->slope[p] < 1.0 && work->weight[p] > 0.0;
         if (is_curved) {
             const double slope = work->stiffness[p] / work->weight[p];
-            const double moved = work->pull[p];
+            const double moved =
+                work->is_entering ? work->table[2][p] / work->stiffness[p] : work->pull[p];
             sum += work->stiffness[p] * slope * slope * law->hertz_compliance / work->load[p] *
                    moved * moved * moved;
+            sum -= work->is_entering ? 3.0 * work->stiffness[p] * moved * work->entry_curvature[p]
+                                     : 0.0;
         }
     }
     return sum;
@@ -509,7 +533,9 @@ static int elastic_sum(const gm_mesh *mesh, int side, const gm_position *positio
     work->is_entering = work->is_entering && is_entry_loaded(work);
     gmi_elastic_gradient rolled = {.by_roll = 0.0}, energy = {.by_roll = 0.0};
     if (wanted & (GMI_DERIVATIVES | GMI_ROLL)) {
-        gmi_elastic_differentiate(&view.elastic->law, work, &rolled, &energy);
+        /* The sum of the loads is not the force where an edge enters, and bodies alone want to know of it then. */
+        const int is_else = work->is_entering && view.elastic->body_compliance == 0.0;
+        gmi_elastic_differentiate(&view.elastic->law, work, is_else ? NULL : &rolled, &energy);
         force.by_origin = share * rolled.by_roll;
     }
     if (work->is_entering) {
@@ -554,8 +580,9 @@ int gmi_side_sum_by_law(const gm_mesh *mesh, int side, const gm_position *positi
  * ------------------------------------------------------------------------------------------- */
 
 /* Lines between ideal flanks at the approach x, with the edges that touch then where tips is not NULL. */
-static int place_ideal(const gmi_elastic *law, const gmi_elastic_lines_at *within,
+static int place_ideal(const gmi_elastic_mesh *made, const gmi_elastic_lines_at *within,
                        const gmi_elastic_tips *tips, double x, gmi_elastic_work *work) {
+    const gmi_elastic *law = &made->law;
     gmi_elastic_lines_at lines = *within;
     const double rise = lines.climb * law->face_width;
 
@@ -566,6 +593,7 @@ static int place_ideal(const gmi_elastic *law, const gmi_elastic_lines_at *withi
         lines.above = gmi_elastic_tips_above(tips, x, 0.0);
         lines.fading[0] = tips->tip[GM_WHEEL].fading;
         lines.fading[1] = tips->tip[GM_PINION].fading;
+        set_cuts(tips, made->usual_approach, lines.cut);
     }
 
     /* All lines that are there. */
@@ -593,7 +621,7 @@ static double stiffness_at(const gmi_elastic_mesh *made, const gmi_elastic_lines
     double x = *approach;
     for (int step = 0; step < LOAD_STEPS_MAX; ++step) {
         gmi_elastic_result result;
-        int status = place_ideal(&made->law, lines, tips, x, work);
+        int status = place_ideal(made, lines, tips, x, work);
         if (status != GM_OK || work->count == 0) {
             break;
         }

@@ -23,6 +23,7 @@ typedef struct gmi_elastic_tip {
     double farthest;  /* roll up to which it is followed (m) */
     double fading;    /* roll on which the flank goes over into the edge (m) */
     double logarithm; /* of the curvature of edge and flank over that of both flanks */
+    double blunt;     /* its inverse: the factor of the contact law's rate under the edge */
 } gmi_elastic_tip;
 
 /* Those of both gears at one engagement, [enum gm_role]. */
@@ -72,6 +73,7 @@ typedef struct gmi_elastic_mesh {
     double body_compliance;      /* wind-up of both bodies between bore and root, in series (m/N) */
     int has_corners;             /* whether lines go on beyond the path */
     double tip_rounding;         /* in modules */
+    double usual_approach;       /* x at the reference torque, roughly (m) */
     gmi_elastic_tips tips;       /* as prepared */
     gm_mesh_stiffness stiffness; /* at the reference torque, between ideal flanks */
 } gmi_elastic_mesh;

@@ -70,17 +70,39 @@ static int first_element(double z, const gmi_elastic *law) {
     return element < law->stations - 2 ? element : law->stations - 2;
 }
 
-/* Weight and places of one part that the ends of a line shorten. */
+/* Weight and places of one part that is shorter than its element, which begins at `begin`. */
+static inline void shorten_slot(const gmi_elastic *law, gmi_elastic_work *work, int slot,
+                                double begin, double from, double length) {
+    for (int half = 0; half < 2; ++half) {
+        const int p = slot + half * work->slots;
+        work->weight[p] = 0.5 * length;
+        work->place[p] = (from - begin + gauss[half] * length) * law->per_spacing;
+    }
+}
+
+/* That which the ends of a line shorten. */
 static void cut_slot(const gmi_elastic *law, gmi_elastic_work *work, int slot, int element,
                      const span *part) {
     const double begin = (double)element * law->spacing;
     const double from = fmax(part->from, begin);
     const double to = fmin(part->to, begin + law->spacing);
-    const double length = fmax(to - from, 0.0);
-    for (int half = 0; half < 2; ++half) {
-        const int p = slot + half * work->slots;
-        work->weight[p] = 0.5 * length;
-        work->place[p] = (from - begin + gauss[half] * length) * law->per_spacing;
+    shorten_slot(law, work, slot, begin, from, fmax(to - from, 0.0));
+}
+
+/* Those on both sides of the cuts, each up to the next cut or station. */
+static void part_slots(const gmi_elastic *law, gmi_elastic_work *work) {
+    double from = 0.0;
+    int is_first = 1;
+    for (int k = 0; k < work->cuts; ++k) {
+        const gmi_elastic_cut *cut = &work->cut[k];
+        const double begin = (double)cut->element * law->spacing;
+        from = is_first ? begin : from;
+        shorten_slot(law, work, cut->before, begin, from, cut->z - from);
+        if (cut->is_last) {
+            shorten_slot(law, work, cut->after, begin, cut->z, begin + law->spacing - cut->z);
+        }
+        is_first = cut->is_last;
+        from = cut->z;
     }
 }
 
@@ -99,6 +121,7 @@ static void place_slots(const gmi_elastic *law, gmi_elastic_work *work, const sp
         cut_slot(law, work, line->slot, line->element, &parts[row]);
         cut_slot(law, work, line->slot + last, line->element + last, &parts[row]);
     }
+    part_slots(law, work);
 }
 
 /* Which rows each element has, and what they do there: those of an element follow one another. */
@@ -283,6 +306,17 @@ static int place_teeth(const gmi_elastic *law, gmi_elastic_work *work) {
                          wheel_roll + p);
         }
     }
+    for (int k = 0; k < work->cuts; ++k) {
+        const gmi_elastic_cut *cut = &work->cut[k];
+        const double origin = at->origin + (double)work->line[cut->row].index * at->pitch;
+        for (int half = 0; half < 2; ++half) {
+            const int p = cut->after + half * slots;
+            const double z = ((double)cut->element + work->place[p]) * law->spacing;
+            work->z[p] = z;
+            work->roll[p] = origin + at->climb * z;
+            wheel_roll[p] = at->line_of_action - work->roll[p];
+        }
+    }
     if (at->goes_on) {
         const double inside = JUST_WITHIN * (at->upper - at->lower);
         keep_within(count, at->lower + inside, at->upper - inside, at->line_of_action, work->roll,
@@ -309,7 +343,7 @@ static int place_teeth(const gmi_elastic *law, gmi_elastic_work *work) {
     for (int g = 0; g < groups; ++g) {
         const gmi_elastic_line *line = &work->line[g / 2];
         const int p = (whole ? 0 : line->slot) + g % 2 * slots;
-        const int n = whole ? slots : line->elements;
+        const int n = whole ? slots : line->slots;
         if (!whole) {
             const int number = line->index - at->first;
             teeth.softness[0] = at->pinion_softness != NULL ? at->pinion_softness[number] : 1.0;
@@ -381,6 +415,49 @@ static void follow_teeth(gmi_elastic_work *work) {
     shift_rows(work, shift, work->by_place);
 }
 
+/* A cut of a line at z, behind those before, if that is within one of its elements and not at a station. */
+static void add_cut(const gmi_elastic *law, double z, int limit, int row, gmi_elastic_work *work) {
+    gmi_elastic_line *line = &work->line[row];
+    const double place = z * law->per_spacing - (double)line->element;
+    if (!(place > 0.0 && place < (double)line->elements)) {
+        return;
+    }
+    const int number = (int)place;
+    const int element = line->element + number;
+    const double begin = (double)element * law->spacing;
+    if (!(z > begin && z < begin + law->spacing) ||
+        work->cuts == gmi_elastic_cuts_of(work->lines_max)) {
+        return;
+    }
+
+    /* The part that it divides: what follows the last cut, or the whole element. */
+    gmi_elastic_cut *cut = &work->cut[work->cuts++];
+    const int shares = line->slots > line->elements && cut[-1].element == element;
+    cut->z = z;
+    cut->row = row;
+    cut->element = element;
+    cut->before = shares ? cut[-1].after : line->slot + number;
+    cut->after = line->slot + line->slots++;
+    cut->is_last = 1;
+    cut->limit = limit;
+    if (shares) {
+        cut[-1].is_last = 0;
+    }
+}
+
+/* Those of a line that goes on, in the order of z. */
+static void cut_line(const gmi_elastic *law, int row, gmi_elastic_work *work) {
+    const gmi_elastic_lines_at *at = &work->at;
+    const double rolls[4] = {at->lower - at->cut[0], at->lower, at->upper, at->upper + at->cut[1]};
+    const double origin = at->origin + (double)work->line[row].index * at->pitch;
+    const double per_climb = 1.0 / at->climb;
+    const int step = at->climb > 0.0 ? 1 : -1;
+    for (int k = 0; k < 4; ++k) {
+        const int which = step > 0 ? k : 3 - k;
+        add_cut(law, (rolls[which] - origin) * per_climb, which < 2 ? -1 : 1, row, work);
+    }
+}
+
 /* Line k and its part of the face, if there is any. */
 static void add_line(const gmi_elastic *law, gmi_elastic_work *work, int k, const span *part) {
     if (!(part->from < part->to)) {
@@ -395,7 +472,11 @@ static void add_line(const gmi_elastic *law, gmi_elastic_work *work, int k, cons
     line->elements = last >= element ? last - element + 1 : 1;
     line->limited[0] = part->limited[0];
     line->limited[1] = part->limited[1];
-    work->slots += line->elements;
+    line->slots = line->elements;
+    if (work->at.goes_on && work->at.climb != 0.0) {
+        cut_line(law, work->count - 1, work);
+    }
+    work->slots += line->slots;
 }
 
 int gmi_elastic_place(const gmi_elastic *law, const gmi_elastic_lines_at *at,
@@ -405,6 +486,7 @@ int gmi_elastic_place(const gmi_elastic *law, const gmi_elastic_lines_at *at,
     work->at = *at;
     work->count = 0;
     work->slots = 0;
+    work->cuts = 0;
     const int lines = at->last - at->first + 1;
     for (int i = 0; i < lines; ++i) {
         const int k = row_step(at) > 0 ? at->first + i : at->last - i;

@@ -13,6 +13,11 @@
 
 #include <string.h>
 
+/* Between the two stations of the element of a cut. */
+static inline double between(const double *row, double place) {
+    return row[0] + place * (row[1] - row[0]);
+}
+
 /* Both points of each slot of one line, the second one `other` places behind the first. */
 APART void approach_line(int count, int other, double x, const double *restrict place,
                          const double *restrict tooth, const double *restrict deviation,
@@ -43,6 +48,17 @@ void gmi_elastic_approach(gmi_elastic_work *work, double x) {
         approach_line(line->elements, work->slots, x, work->place + s, work->tooth + s,
                       work->deviation + s, work->state + k * work->stations + line->element,
                       rim + line->element, work->deflection + s, work->approach_at + s);
+    }
+
+    /* What follows the cuts. */
+    for (int k = 0; k < 2 * work->cuts; ++k) {
+        const gmi_elastic_cut *cut = &work->cut[k / 2];
+        const int p = cut->after + k % 2 * work->slots;
+        const double *row = work->state + cut->row * work->stations + cut->element;
+        const double phi = between(row, work->place[p]);
+        const double psi = between(rim + cut->element, work->place[p]);
+        work->deflection[p] = phi;
+        work->approach_at[p] = (x + work->deviation[p]) - work->tooth[p] * phi - psi;
     }
 }
 
@@ -118,6 +134,19 @@ void gmi_elastic_follow(gmi_elastic_work *work) {
                     rim + line->element, work->deflection + s, work->approach_at + s,
                     work->change_at + s, work->expected + s);
     }
+
+    /* What follows the cuts. */
+    for (int k = 0; k < 2 * work->cuts; ++k) {
+        const gmi_elastic_cut *cut = &work->cut[k / 2];
+        const int p = cut->after + k % 2 * work->slots;
+        const double *row = work->change + cut->row * work->stations + cut->element;
+        const double phi = between(row, work->place[p]);
+        const double moved = work->tooth[p] * phi + between(rim + cut->element, work->place[p]);
+        work->deflection[p] += phi;
+        work->approach_at[p] -= moved;
+        work->change_at[p] = -moved;
+        work->expected[p] = work->force[p] - work->stiffness[p] * moved;
+    }
 }
 
 APART void pull_line(int count, int other, const double *restrict place,
@@ -154,6 +183,16 @@ void gmi_elastic_pull(gmi_elastic_work *work, const double *factor, const double
         pull_line(line->elements, work->slots, work->place + s, work->tooth + s,
                   rows + k * work->stations + line->element, rim + line->element, work->pull + s,
                   work->tooth_adjoint + s);
+    }
+
+    /* What follows the cuts. */
+    for (int k = 0; k < 2 * work->cuts; ++k) {
+        const gmi_elastic_cut *cut = &work->cut[k / 2];
+        const int p = cut->after + k % 2 * work->slots;
+        const double *row = rows + cut->row * work->stations + cut->element;
+        const double phi = between(row, work->place[p]);
+        work->tooth_adjoint[p] = phi;
+        work->pull[p] -= work->tooth[p] * phi + between(rim + cut->element, work->place[p]);
     }
 }
 
@@ -202,6 +241,16 @@ void gmi_elastic_gather(gmi_elastic_work *work, const double *force, double *row
         add_rows(line->elements, work->parts[0] + s, work->parts[1] + s, work->parts[2] + s,
                  work->parts[3] + s, rows + k * work->stations + line->element,
                  rim + line->element);
+    }
+
+    /* What follows the cuts. */
+    for (int k = 0; k < work->cuts; ++k) {
+        const gmi_elastic_cut *cut = &work->cut[k];
+        double *row = rows + cut->row * work->stations + cut->element;
+        row[0] += work->parts[0][cut->after];
+        row[1] += work->parts[1][cut->after];
+        rim[cut->element] += work->parts[2][cut->after];
+        rim[cut->element + 1] += work->parts[3][cut->after];
     }
 }
 
@@ -270,4 +319,15 @@ void gmi_elastic_stiffen(gmi_elastic_work *work) {
     stiffen(slots, work->stiffness, work->stiffness + slots, work->place, work->place + slots,
             work->tooth, work->tooth + slots, work->matrix + GMI_TOOTH_LEFT * slots,
             work->matrix + GMI_MIXED_LEFT * slots, work->matrix + GMI_RIM_LEFT * slots);
+
+    /* What follows a cut is stiffness of the same element. */
+    for (int k = 0; k < work->cuts; ++k) {
+        const gmi_elastic_cut *cut = &work->cut[k];
+        const gmi_elastic_line *line = &work->line[cut->row];
+        double *whole = work->matrix + line->slot + cut->element - line->element;
+        const double *behind = work->matrix + cut->after;
+        for (int m = 0; m < GMI_ELASTIC_MATRICES * slots; m += slots) {
+            whole[m] += behind[m];
+        }
+    }
 }

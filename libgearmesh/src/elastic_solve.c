@@ -296,8 +296,8 @@ static void finish(const gmi_elastic *law, gmi_elastic_work *work, double x,
     result->force = 0.0;
     for (int k = 0; k < work->count; ++k) {
         const gmi_elastic_line *line = &work->line[k];
-        result->line_force[k] = gmi_elastic_sum(line->elements, work->force + line->slot) +
-                                gmi_elastic_sum(line->elements, work->force + slots + line->slot);
+        result->line_force[k] = gmi_elastic_sum(line->slots, work->force + line->slot) +
+                                gmi_elastic_sum(line->slots, work->force + slots + line->slot);
         result->force += result->line_force[k];
     }
     result->energy = gmi_elastic_sum(2 * slots, work->scratch) + straight_energy(law, work);

@@ -17,8 +17,9 @@ typedef struct work_sizes {
 
 static work_sizes find_sizes(int stations, int lines) {
     const size_t n = (size_t)stations, rows = (size_t)lines + 1;
-    const work_sizes sizes = {2 * (size_t)lines * (n - 1),
-                              (size_t)lines * (n - 1),
+    const size_t slots = (size_t)lines * (n - 1) + (size_t)gmi_elastic_cuts_of(lines);
+    const work_sizes sizes = {2 * slots,
+                              slots,
                               rows * n,
                               2 * rows * (2 * rows + 2),
                               2 * n * rows * rows,

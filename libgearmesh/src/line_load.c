@@ -252,11 +252,33 @@ static double bearing_length(const gm_mesh *mesh, const side_lines *found, int i
     const gmi_elastic_line *line = &work->line[row];
     for (int half = 0; half < 2; ++half) {
         const int from = line->slot + half * work->slots;
-        for (int p = from; p < from + line->elements; ++p) {
+        for (int p = from; p < from + line->slots; ++p) {
             length += work->beyond[p] != 0.0 && work->load[p] > 0.0 ? work->weight[p] : 0.0;
         }
     }
     return length;
+}
+
+/*
+ * An edge presses hardest where its rounding has just taken the place of the flank, mostly between stations. Whether it
+ * bears load there.
+ */
+static int count_edges(walk *w, const side_lines *found, const gmi_line_flanks *flanks, int index,
+                       int row, gmi_interval part) {
+    const gmi_elastic_lines_at *lines = &found->work->at;
+    const double origin =
+        found->lines.origin + (double)index * w->mesh->pair->transverse_base_pitch;
+    const double rolls[2] = {lines->lower - lines->fading[0], lines->upper + lines->fading[1]};
+    int touches = 0;
+    for (int end = 0; end < 2; ++end) {
+        const double t1 = (rolls[end] - origin) / found->lines.advance;
+        if (t1 > part.from && t1 < part.to) {
+            const gm_line_load_point point = point_at(w->mesh, found, flanks, index, row, t1);
+            count_point(w, &point);
+            touches = touches || point.line_load > 0.0;
+        }
+    }
+    return touches;
 }
 
 /* Stations of one line within its ends, and the ends themselves. Returns GM_OK or GM_ERR_MEMORY. */
@@ -297,6 +319,10 @@ static int walk_line(walk *w, const side_lines *found, int index, int row, gmi_i
             point_at(mesh, found, &flanks, index, row, end == 0 ? part.from : part.to);
         count_point(w, &point);
         touches = touches || point.line_load > 0.0;
+    }
+
+    if (found->has_tips && found->lines.advance != 0.0) {
+        touches = count_edges(w, found, &flanks, index, row, part) || touches;
     }
 
     /* All of a line that touches anywhere bears the mean line load. */

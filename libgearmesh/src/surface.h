@@ -95,6 +95,15 @@ void gmi_surface_gather(const gmi_surface_cells *cells, const gmi_surface_gear *
 void gmi_surface_add_cells(const gmi_surface_points *at, const gmi_surface_gear *gear,
                            const gmi_surface_cells *cells);
 
+/* How the slope along rho_p of a table changes along the place, in the cell of point p (1 per place). */
+static inline double gmi_surface_twist_at(const gmi_surface_points *at,
+                                          const gmi_surface_gear *gear,
+                                          const gmi_surface_cells *cells, int p) {
+    const double mixed =
+        (cells->far_next[p] - cells->far[p]) - (cells->near_next[p] - cells->near[p]);
+    return mixed * (gear->grid->face_rate * at->per_place) * (gear->per_roll * gear->grid->per_rho);
+}
+
 /* Takes off the ramps of a gear. */
 void gmi_surface_add_ramps(const gmi_surface_points *at, const gmi_surface_gear *gear);
 
