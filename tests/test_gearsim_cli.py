@@ -22,6 +22,7 @@ import unittest
 
 GEARSIM = os.environ.get("GEARSIM", "gearsim")
 EXAMPLE = os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "data", "example", "params.ini")
+SOURCES = os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "apps", "gearsim")
 OLD_RESULT = "an older result\n"
 
 # A run of a few milliseconds: the gears of data/paper/.
@@ -1242,6 +1243,27 @@ class Output(Case):
         self.refused(f"run.ini:{line_of(params, 'columns')}: output.columns: ", "'te_um'", "dte_um", params=params)
         self.refused("--set output.columns: ", "'time_s'", "mesh_stiffness_N_per_um",
                      arguments=["--set", "analysis.type=static", "--set", "output.columns=time_s"])
+
+    def test_each_row_of_the_tables_is_a_column(self):
+        """A column that is added shows itself; what only some runs have is named here."""
+        some = {"dynamic": {"apex_shift_um"},
+                "static": {"load_torque_Nm", "face_load_factor", "largest_line_load_N_per_mm", "largest_pressure_N_per_mm2",
+                           "apex_shift_um", "loss_W"}}
+        everything = ["gears.double_helical_gap_mm=1", "mesh.law=elastic", "mesh.friction_coefficient=0.05", "mesh.stiffness_N_per_m=",
+                      "mesh.damping_Ns_per_m=", "mesh.stations=9"]
+        self.write("run.ini", PARAMS)
+        for kind, settings in (("dynamic", ["analysis.duration_s=0.001"]),
+                               ("static", ["analysis.positions=4", "analysis.loads=2", "load.end_Nm=30"])):
+            with open(os.path.join(SOURCES, f"{kind}_columns.c"), encoding="utf-8") as file:
+                rows = re.findall(r'(?m)^ *\{"(\w+)", ', file.read())
+            self.assertGreater(len(rows), 10)
+            plain = self.columns_of([f"analysis.type={kind}", settings[0]])
+            self.assertEqual(plain, [name for name in rows if name not in some[kind]])
+            self.assertEqual(self.columns_of([f"analysis.type={kind}", *settings, *everything]), rows)
+
+    def columns_of(self, settings):
+        text = self.accepted("run.ini", "--quiet", "--output", "-", *(f"--set={setting}" for setting in settings)).stdout
+        return next(line for line in text.splitlines() if not line.startswith("#")).split(",")
 
     def test_all_columns_may_be_asked_for_by_name(self):
         self.write("run.ini", with_key(PARAMS, "output", "columns", "all"))
