@@ -335,11 +335,14 @@ typedef struct gmi_elastic_work {
     double *last_step;
     double *other; /* adjoint of another functional */
 
+    /* 0, which compilers must not know: gcc clears half a vector by an instruction that valgrind does not know. */
+    double none;
+
     double *carry;        /* scratch of the elimination, ... */
     double *front;        /* ... and for unusual numbers of lines */
     double *factor;       /* its records */
     double *end_record;   /* those of the ends of each line, [lines_max][2][4] */
-    int *factor_at;       /* [stations] where the records of each begin */
+    int *factor_at;       /* [stations] where the records of each run begin */
     int *low, *high;      /* [stations] rows of the lines in each element; none if low > high */
     int *traffic;         /* [stations] what they do there, see elastic_front.c */
     int begin, end;       /* elements in which any line touches: begin .. end - 1 */

@@ -36,6 +36,7 @@ enum { UNKNOWNS_MAX = GMI_ELASTIC_LINES_MAX + 1 };
  */
 typedef struct traffic {
     int ending, through, beginning;
+    int alone; /* that both begin and end in it */
 } traffic;
 
 /* The equations of one line in one element: its left and right station, and what they have with the rim's. */
@@ -159,10 +160,48 @@ SPECIALIZED int right_lines(traffic t) {
 
 /* Whether the row of an unknown on the left has nothing in a column: a line meets those on the right that go on before it. */
 SPECIALIZED int is_empty(traffic t, int row, int column) {
-    const int first = left_lines(t) + 1;
-    const int is_line = row < left_lines(t) && column >= first && column < first + right_lines(t);
-    return is_line && column - first > row - t.ending;
+    return row < left_lines(t) && column < right_lines(t) && column > row - t.ending;
 }
+
+/*
+ * Parts of a row: to = from, to = factor * from, to -= factor * from. With vectors of four they have four numbers: those
+ * behind a row's end, below the diagonal and in empty columns are of no use, but vectors have them for nothing.
+ */
+#if defined(__GNUC__) && (defined(GMI_IN_WIDE) || defined(__AVX__))
+enum { LANES = 4 };
+typedef double row_part __attribute__((vector_size(32), aligned(8), may_alias));
+
+static inline void pack(double *to, const double *from) {
+    const row_part packed = {from[0], from[1], from[2], from[3]};
+    *(row_part *)to = packed;
+}
+#else
+enum { LANES = 1 };
+typedef double row_part;
+
+static inline void pack(double *to, const double *from) {
+    *to = *from;
+}
+#endif
+
+static inline void copy_part(double *to, const double *from) {
+    *(row_part *)to = *(const row_part *)from;
+}
+
+static inline void scale_part(double *to, double factor, const double *from) {
+    *(row_part *)to = *(const row_part *)from * factor;
+}
+
+static inline void take_part(double *to, double factor, const double *from) {
+    *(row_part *)to -= *(const row_part *)from * factor;
+}
+
+/* Size of a row over the unknowns of a station, with the right-hand side behind. */
+SPECIALIZED int row_size(int unknowns) {
+    return (unknowns + LANES) & -LANES;
+}
+
+enum { ROW_MAX = (UNKNOWNS_MAX + 4) & -4 };
 
 /* What goes from element to element. */
 typedef struct front_state {
@@ -182,7 +221,7 @@ typedef struct front_state {
  * ------------------------------------------------------------------------------------------- */
 
 /*
- * Ending, through, beginning. The copies for them are large and take clang, and sanitizers, minutes to compile: those, and
+ * Ending, through, beginning, alone. The copies for them are large and take clang, and sanitizers, minutes to compile: those, and
  * builds for size, go without, to the same bits.
  */
 #if defined(__GNUC__) && !defined(__clang__) && !defined(__SANITIZE_ADDRESS__) &&                  \
@@ -190,89 +229,90 @@ typedef struct front_state {
 #define ELASTIC_NAME(name) usual_##name
 #define UNROLLED           _Pragma("GCC unroll 16")
 #include "elastic_step.h"
+/* clang-format off */
 #define USUAL_TRAFFIC(X)                                                                           \
-    X(0, 0, 0)                                                                                     \
-    X(0, 0, 1)                                                                                     \
-    X(0, 0, 2)                                                                                     \
-    X(0, 0, 3)                                                                                     \
-    X(1, 0, 0)                                                                                     \
-    X(2, 0, 0)                                                                                     \
-    X(3, 0, 0)                                                                                     \
-    X(1, 0, 1)                                                                                     \
-    X(0, 1, 0)                                                                                     \
-    X(0, 1, 1) X(1, 1, 0) X(1, 1, 1) X(0, 2, 0) X(0, 2, 1) X(1, 2, 0) X(1, 2, 1) X(0, 3, 0)
+    X(0, 0, 0, 0) X(0, 0, 1, 0) X(0, 0, 2, 0) X(0, 0, 3, 0) X(0, 0, 1, 1) X(0, 0, 2, 1)            \
+    X(0, 0, 3, 1) X(1, 0, 0, 0) X(2, 0, 0, 0) X(3, 0, 0, 0) X(1, 0, 0, 1) X(2, 0, 0, 1)            \
+    X(3, 0, 0, 1) X(1, 0, 1, 0) X(0, 1, 0, 0) X(0, 1, 1, 0) X(1, 1, 0, 0) X(1, 1, 1, 0)            \
+    X(0, 2, 0, 0) X(0, 2, 1, 0) X(1, 2, 0, 0) X(1, 2, 1, 0) X(0, 3, 0, 0)
+/* clang-format on */
 #else
 #define USUAL_TRAFFIC(X)
 #endif
 
 /* From element to element of a run. Fronts of usual size are on the stack. */
-#define SPECIAL_FUNCTIONS(e, g, b)                                                                 \
-    SPECIAL void step_##e##g##b(front_state *f, int first, int last) {                             \
-        const traffic t = {e, g, b};                                                               \
-        double front[((e) + 2 * (g) + (b) + 2) * ((e) + 2 * (g) + (b) + 3)];                       \
+#define SPECIAL_FUNCTIONS(e, g, b, a)                                                              \
+    SPECIAL void step_##e##g##b##a(front_state *f, int first, int last) {                          \
+        const traffic t = {e, g, b, a};                                                            \
+        double front[((e) + (g) + 1) * ((e) + (g) + 1) +                                           \
+                     ((e) + 2 * (g) + (b) + 2) * (((g) + (b) + 1 + LANES) & -LANES)];              \
         usual_step(t, f, first, last, front);                                                      \
     }                                                                                              \
-    SPECIAL void forward_##e##g##b(const gmi_elastic_work *work, int first, int last,              \
-                                   double *rows) {                                                 \
-        const traffic t = {e, g, b};                                                               \
+    SPECIAL void forward_##e##g##b##a(const gmi_elastic_work *work, int first, int last,           \
+                                      double *rows) {                                              \
+        const traffic t = {e, g, b, a};                                                            \
         usual_forward(t, work, first, last, rows);                                                 \
     }                                                                                              \
-    SPECIAL void back_##e##g##b(const gmi_elastic_work *work, int first, int last, double *rows) { \
-        const traffic t = {e, g, b};                                                               \
+    SPECIAL void back_##e##g##b##a(const gmi_elastic_work *work, int first, int last,              \
+                                   double *rows) {                                                 \
+        const traffic t = {e, g, b, a};                                                            \
         usual_back(t, work, first, last, rows);                                                    \
     }
 USUAL_TRAFFIC(SPECIAL_FUNCTIONS)
 
 /* work->traffic: 256, 16, 1 for each line that ends, goes through, begins. */
-static traffic traffic_of(int code) {
-    const traffic t = {code >> 8, (code >> 4) & 15, code & 15};
+static traffic traffic_of(const gmi_elastic_work *work, int element) {
+    const int code = work->traffic[element];
+    traffic t = {code >> 8, (code >> 4) & 15, code & 15, 0};
+    t.alone = work->high[element] + 1 - work->low[element] - t.ending - t.through - t.beginning;
     return t;
 }
 
 /* The same as a small number for what may be usual. */
-#define KIND(e, g, b) (16 * (e) + 4 * (g) + (b))
+#define KIND(e, g, b, a) (64 * (a) + 16 * (e) + 4 * (g) + (b))
 
-static int kind_of(int code) {
-    return (code & ~0x333) != 0 ? 64 : ((code >> 4) & 0x30) + ((code >> 2) & 0xC) + (code & 3);
+static int kind_of(const gmi_elastic_work *work, int element) {
+    const traffic t = traffic_of(work, element);
+    const int is_small = t.ending < 4 && t.through < 4 && t.beginning < 4 && t.alone < 2;
+    return is_small ? KIND(t.ending, t.through, t.beginning, t.alone) : -1;
 }
 
 static void step_run(front_state *f, const gmi_elastic_run *run) {
     switch (run->kind) {
-#define CASE(e, g, b)                                                                              \
-    case KIND(e, g, b):                                                                            \
-        step_##e##g##b(f, run->first, run->last);                                                  \
+#define CASE(e, g, b, a)                                                                           \
+    case KIND(e, g, b, a):                                                                         \
+        step_##e##g##b##a(f, run->first, run->last);                                               \
         return;
         USUAL_TRAFFIC(CASE)
 #undef CASE
     default:
-        any_step(traffic_of(f->work->traffic[run->first]), f, run->first, run->last,
-                 f->work->front);
+        any_step(traffic_of(f->work, run->first), f, run->first, run->last, f->work->front);
     }
 }
 
 static void forward_run(const gmi_elastic_work *work, const gmi_elastic_run *run, double *rows) {
     switch (run->kind) {
-#define CASE(e, g, b)                                                                              \
-    case KIND(e, g, b):                                                                            \
-        forward_##e##g##b(work, run->first, run->last, rows);                                      \
+#define CASE(e, g, b, a)                                                                           \
+    case KIND(e, g, b, a):                                                                         \
+        forward_##e##g##b##a(work, run->first, run->last, rows);                                   \
         return;
         USUAL_TRAFFIC(CASE)
 #undef CASE
     default:
-        any_forward(traffic_of(work->traffic[run->first]), work, run->first, run->last, rows);
+        any_forward(traffic_of(work, run->first), work, run->first, run->last, rows);
     }
 }
 
 static void back_run(const gmi_elastic_work *work, const gmi_elastic_run *run, double *rows) {
     switch (run->kind) {
-#define CASE(e, g, b)                                                                              \
-    case KIND(e, g, b):                                                                            \
-        back_##e##g##b(work, run->first, run->last, rows);                                         \
+#define CASE(e, g, b, a)                                                                           \
+    case KIND(e, g, b, a):                                                                         \
+        back_##e##g##b##a(work, run->first, run->last, rows);                                      \
         return;
         USUAL_TRAFFIC(CASE)
 #undef CASE
     default:
-        any_back(traffic_of(work->traffic[run->first]), work, run->first, run->last, rows);
+        any_back(traffic_of(work, run->first), work, run->first, run->last, rows);
     }
 }
 
@@ -294,7 +334,7 @@ void gmi_elastic_find_runs(gmi_elastic_work *work) {
         while (last + 1 < work->end && are_alike(work, last, last + 1)) {
             ++last;
         }
-        const gmi_elastic_run run = {first, last, kind_of(work->traffic[first])};
+        const gmi_elastic_run run = {first, last, kind_of(work, first)};
         work->run[work->runs++] = run;
         first = last + 1;
     }

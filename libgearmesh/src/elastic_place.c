@@ -173,7 +173,7 @@ APART void read_cells(const gmi_elastic_cell *restrict cells, int count,
                       double *restrict values, double *restrict slopes) {
     for (int p = 0; p < count; ++p) {
         const double t = place[p];
-        const double *restrict c = &cells[(ptrdiff_t)cell[p]].value[0][0];
+        const double *restrict c = &cells[(int)cell[p]].value[0][0];
         for (int k = 0; k < 2; ++k) {
             const double third = c[6 + k];
             const double second = c[4 + k] + t * third;
@@ -191,17 +191,93 @@ static void read_table(const gmi_elastic_gear *gear, int count, const double *ro
     read_cells(gear->cell, count, cell, place, values, slopes);
 }
 
+/* Where a point is in a table, and what is found there. */
+typedef struct pair_table {
+    double first, per_cell, last;
+    const gmi_elastic_cell *cells;
+} pair_table;
+
+typedef struct pair_columns {
+    double *tooth, *rate, *tooth_by_roll, *rate_by_roll;
+} pair_columns;
+
 /* Of both whole teeth: s, 1 / (B e^L) and their slopes, that of the rate logarithmic. */
-APART void part_columns(int count, double per_cell, const double *restrict values,
-                        const double *restrict slopes, double *restrict tooth,
-                        double *restrict rate, double *restrict tooth_by_roll,
-                        double *restrict rate_by_roll) {
-    for (int p = 0; p < count; ++p) {
-        const double factor = values[2 * p + 1];
-        tooth[p] = values[2 * p];
-        rate[p] = factor;
-        tooth_by_roll[p] = slopes[2 * p] * per_cell;
-        rate_by_roll[p] = slopes[2 * p + 1] * per_cell / (factor + LEAST_FACTOR); /* at rho = 0 */
+static void read_point(const pair_table *table, const double *roll, int p, const pair_columns *to) {
+    const double u = table->first + roll[p] * table->per_cell;
+    const double number = gmi_cell_of(u, table->last), t = u - number;
+    const double(*c)[2] = table->cells[(int)number].value;
+
+    /* s ... */
+    const double second = c[2][0] + t * c[3][0], slope = c[1][0] + t * second;
+    to->tooth[p] = c[0][0] + t * slope;
+    to->tooth_by_roll[p] = (slope + t * (second + t * c[3][0])) * table->per_cell;
+
+    /* ... and the rate; at rho = 0 it is 0. */
+    const double rate_second = c[2][1] + t * c[3][1], rate_slope = c[1][1] + t * rate_second;
+    const double rate = c[0][1] + t * rate_slope;
+    const double rise = (rate_slope + t * (rate_second + t * c[3][1])) * table->per_cell;
+    to->rate[p] = rate;
+    to->rate_by_roll[p] = rise / (rate + LEAST_FACTOR);
+}
+
+#ifdef GMI_IN_WIDE
+/* value + t slope, slope = first + t second, second = square + t cube; the slope along the table. */
+static inline __m256d cubic(__m256d t, __m256d value, __m256d first, __m256d square, __m256d cube,
+                            __m256d per_cell, __m256d *rise) {
+    const __m256d second = _mm256_add_pd(square, _mm256_mul_pd(t, cube));
+    const __m256d slope = _mm256_add_pd(first, _mm256_mul_pd(t, second));
+    const __m256d twice = _mm256_add_pd(second, _mm256_mul_pd(t, cube));
+    *rise = _mm256_mul_pd(_mm256_add_pd(slope, _mm256_mul_pd(t, twice)), per_cell);
+    return _mm256_add_pd(value, _mm256_mul_pd(t, slope));
+}
+
+/* Four points from p on: the same operations. */
+static inline void read_four(const pair_table *table, const double *roll, int p,
+                             const pair_columns *to) {
+    const __m256d per_cell = _mm256_set1_pd(table->per_cell);
+    const __m256d u = _mm256_add_pd(_mm256_set1_pd(table->first),
+                                    _mm256_mul_pd(_mm256_loadu_pd(roll + p), per_cell));
+
+    /* gmi_cell_of() */
+    const __m256d middle = _mm256_sub_pd(u, _mm256_set1_pd(0.5)), rounding = _mm256_set1_pd(0x1p52);
+    const __m256d within =
+        _mm256_min_pd(_mm256_max_pd(middle, _mm256_setzero_pd()), _mm256_set1_pd(table->last));
+    const __m256d number = _mm256_sub_pd(_mm256_add_pd(within, rounding), rounding);
+    const __m256d t = _mm256_sub_pd(u, number);
+    int cell[4];
+    _mm_storeu_si128((__m128i *)(void *)cell, _mm256_cvttpd_epi32(number));
+    const double *row[4];
+    for (int k = 0; k < 4; ++k) {
+        row[k] = &table->cells[cell[k]].value[0][0];
+    }
+    GMI_TWO_OF_FOUR(row, 0, tooth, rate);
+    GMI_TWO_OF_FOUR(row, 2, tooth_first, rate_first);
+    GMI_TWO_OF_FOUR(row, 4, tooth_square, rate_square);
+    GMI_TWO_OF_FOUR(row, 6, tooth_cube, rate_cube);
+    __m256d rise;
+    _mm256_storeu_pd(to->tooth + p,
+                     cubic(t, tooth, tooth_first, tooth_square, tooth_cube, per_cell, &rise));
+    _mm256_storeu_pd(to->tooth_by_roll + p, rise);
+    const __m256d found = cubic(t, rate, rate_first, rate_square, rate_cube, per_cell, &rise);
+    _mm256_storeu_pd(to->rate + p, found);
+    _mm256_storeu_pd(to->rate_by_roll + p,
+                     _mm256_div_pd(rise, _mm256_add_pd(found, _mm256_set1_pd(LEAST_FACTOR))));
+}
+#endif
+
+static void read_pair(const gmi_elastic_gear *pair, const gmi_elastic_work *work) {
+    const pair_table table = {1.0 - pair->start * pair->per_cell, pair->per_cell, pair->last,
+                              pair->cell};
+    const pair_columns to = {work->tooth, work->rate, work->tooth_by_roll, work->rate_by_roll};
+    const int count = 2 * work->slots;
+    int p = 0;
+#ifdef GMI_IN_WIDE
+    for (; p + 4 <= count; p += 4) {
+        read_four(&table, work->roll, p, &to);
+    }
+#endif
+    for (; p < count; ++p) {
+        read_point(&table, work->roll, p, &to);
     }
 }
 
@@ -324,9 +400,7 @@ static int place_teeth(const gmi_elastic *law, gmi_elastic_work *work) {
     }
     if (at->pinion_softness == NULL && at->wheel_softness == NULL && at->slopes < 2 &&
         at->line_of_action == law->line_of_action) {
-        read_table(&law->pair, count, work->roll, cell, place, work->table[0], work->table[2]);
-        part_columns(count, law->pair.per_cell, work->table[0], work->table[2], work->tooth,
-                     work->rate, work->tooth_by_roll, work->rate_by_roll);
+        read_pair(&law->pair, work);
         return 1;
     }
     read_table(&law->gear[0], count, work->roll, cell, place, work->table[0], work->table[2]);

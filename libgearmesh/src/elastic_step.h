@@ -9,23 +9,46 @@
  *     UNROLLED             in front of a loop that is to be unrolled, or nothing
  */
 
+/* One row over the unknowns of the right station: line `line` has `own`; rim and right-hand side behind all lines. */
+SPECIALIZED void ELASTIC_NAME(set_row)(double *row, int unknowns, double none, int line, double own,
+                                       double rim, double side) {
+    double values[ROW_MAX];
+    UNROLLED for (int k = 0; k < row_size(unknowns); ++k) {
+        values[k] = k == line ? own : k == unknowns - 1 ? rim : k == unknowns ? side : none;
+    }
+    UNROLLED for (int k = 0; k < row_size(unknowns); k += LANES) {
+        pack(row + k, values + k);
+    }
+}
+
+/* row -= factor * other, from column `from` on */
+SPECIALIZED void ELASTIC_NAME(take_row)(double *row, double factor, const double *other, int from,
+                                        int size) {
+    UNROLLED for (int k = from & -LANES; k < size; k += LANES) {
+        take_part(row + k, factor, other + k);
+    }
+}
+
 /*
  * From the station at the begin of an element to that at its end, from element to element as long as they are alike. carry
- * [left + 1][left + 2], its upper half with the right-hand side behind: what the stations before leave; afterwards the
- * same one station further. front: [unknowns][unknowns + 1].
+ * [left + 1][row size]: the upper half of what the stations before leave, with the right-hand side behind; afterwards the
+ * same one station further. front: work->front, or as large as these elements need.
  */
 SPECIALIZED void ELASTIC_NAME(step)(traffic t, front_state *f, int from, int to, double *front) {
     const gmi_elastic_work *work = f->work;
     const gmi_elastic_layer *tooth = &f->law->tooth, *rim_layer = &f->law->rim;
     double *record = f->record, *carry = work->carry;
     double fall = f->fall;
-    const int left = left_lines(t), right = right_lines(t);
-    const int first = left + 1, all = left + right + 2, width = all + 1;
-    const int rim_left = left, rim_right = all - 1;
+
+    /* Unknowns of both stations, the rim's behind those of the lines; what they have with those of the right one. */
+    const int left = left_lines(t), first = left + 1, next = right_lines(t) + 1;
+    const int carried = row_size(first), size = row_size(next), side_at = next;
+    double *own = front, *cross = own + first * first, *ahead = cross + first * size;
 
     /* Where the numbers of each line are, by element or station: lines that end, go through, begin. */
-    const ptrdiff_t n = work->stations, size = work->slots;
-    const int low = work->low[from], begin = work->high[from] + 1 - t.beginning;
+    const ptrdiff_t n = work->stations, slots_size = work->slots;
+    const int low = work->low[from], begin = low + left + t.alone;
+    const double none = work->none;
     const double *slots[2 * UNKNOWNS_MAX] = {NULL};
     double *sides[2 * UNKNOWNS_MAX] = {NULL};
     UNROLLED for (int i = 0; i < left; ++i) {
@@ -37,25 +60,19 @@ SPECIALIZED void ELASTIC_NAME(step)(traffic t, front_state *f, int from, int to,
         sides[left + i] = f->rows + (begin + i) * n;
     }
     double *rim_side = f->rows + work->lines_max * n;
-    int *record_of = work->factor_at;
+    work->factor_at[from] = (int)(record - work->factor);
 
     for (ptrdiff_t e = from; e <= to; ++e) {
-        record_of[e] = (int)(record - work->factor);
-
-        /* What is left of the stations before, and nothing yet of the right one. */
+        /* What is left of the stations before. */
+        double held[UNKNOWNS_MAX], of_rim[ROW_MAX];
+        UNROLLED for (int k = 0; k < size; ++k) {
+            of_rim[k] = none;
+        }
         UNROLLED for (int i = 0; i < first; ++i) {
             UNROLLED for (int k = i; k < first; ++k) {
-                front[i * width + k] = carry[i * (first + 1) + k];
+                own[i * first + k] = carry[i * carried + k];
             }
-            UNROLLED for (int k = first; k < all; ++k) {
-                front[i * width + k] = 0.0;
-            }
-            front[i * width + all] = carry[i * (first + 1) + first];
-        }
-        UNROLLED for (int i = first; i < all; ++i) {
-            UNROLLED for (int k = i; k < all; ++k) {
-                front[i * width + k] = 0.0;
-            }
+            held[i] = carry[i * carried + first];
         }
         const double beside = tooth->beside[e], diagonal = tooth->diagonal[e + 1];
         const double *rim_diagonal = e + 1 == work->end ? rim_layer->right : rim_layer->diagonal;
@@ -63,87 +80,92 @@ SPECIALIZED void ELASTIC_NAME(step)(traffic t, front_state *f, int from, int to,
 
         /* Lines that end: their right station goes here. */
         UNROLLED for (int i = 0; i < t.ending; ++i) {
-            part p = part_of(slots[i] + e, size, beside, &rim);
+            part p = part_of(slots[i] + e, slots_size, beside, &rim);
             double *side = sides[i] + e;
             end_row *r = end_row_of(work, low + i);
             p.right += tooth->right[e + 1];
             take_end(&p, &rim, r);
             fall += side[1] * side[1] * r->inverse;
-            front[i * width + i] += p.left;
-            front[i * width + rim_left] += p.left_left;
-            front[i * width + rim_right] = p.left_right;
-            forward_end(r, &side[1], &front[i * width + all], rim_side + e,
-                        &front[rim_left * width + all]);
+            own[i * first + i] += p.left;
+            own[i * first + left] += p.left_left;
+            forward_end(r, &side[1], &held[i], rim_side + e, &held[left]);
+            ELASTIC_NAME(set_row)(cross + i * size, next, none, -1, none, p.left_right, held[i]);
         }
 
         /* Lines that go through. */
         UNROLLED for (int j = 0; j < t.through; ++j) {
-            const int i = t.ending + j, k = first + j;
-            const part p = part_of(slots[i] + e, size, beside, &rim);
-            front[i * width + i] += p.left;
-            front[i * width + rim_left] += p.left_left;
-            front[i * width + k] = p.cross;
-            front[i * width + rim_right] = p.left_right;
-            front[rim_left * width + k] = p.right_left;
-            front[k * width + k] = p.right + diagonal;
-            front[k * width + rim_right] = p.right_right;
-            front[k * width + all] = sides[i][e + 1];
+            const int i = t.ending + j;
+            const part p = part_of(slots[i] + e, slots_size, beside, &rim);
+            own[i * first + i] += p.left;
+            own[i * first + left] += p.left_left;
+            of_rim[j] = p.right_left;
+            ELASTIC_NAME(set_row)(cross + i * size, next, none, j, p.cross, p.left_right, held[i]);
+            ELASTIC_NAME(set_row)
+            (ahead + j * size, next, none, j, p.right + diagonal, p.right_right, sides[i][e + 1]);
         }
 
         /* Lines of this element alone. */
         for (int row = low + left; row < begin; ++row) {
             double *side = f->rows + row * n + e;
-            double *rim_before = &front[rim_left * width + all];
             take_both(f->law, work, (int)e, row, &rim, side, &fall);
-            forward_end(begin_row(work, row), &side[0], &side[1], rim_side + e, rim_before);
-            forward_end(end_row_of(work, row), &side[1], &side[0], rim_side + e, rim_before);
+            forward_end(begin_row(work, row), &side[0], &side[1], rim_side + e, &held[left]);
+            forward_end(end_row_of(work, row), &side[1], &side[0], rim_side + e, &held[left]);
         }
 
         /* Lines that begin: their left station goes here. */
         UNROLLED for (int j = 0; j < t.beginning; ++j) {
-            const int k = first + t.through + j;
-            part p = part_of(slots[left + j] + e, size, beside, &rim);
+            const int k = t.through + j;
+            part p = part_of(slots[left + j] + e, slots_size, beside, &rim);
             double *side = sides[left + j] + e;
+            double onward = side[1];
             end_row *r = begin_row(work, begin + j);
             p.left += tooth->left[e];
             take_begin(&p, &rim, r);
             fall += side[0] * side[0] * r->inverse;
-            front[rim_left * width + k] = p.right_left;
-            front[k * width + k] = p.right + diagonal;
-            front[k * width + rim_right] = p.right_right;
-            front[k * width + all] = side[1];
-            forward_end(r, &side[0], &front[k * width + all], rim_side + e,
-                        &front[rim_left * width + all]);
+            of_rim[k] = p.right_left;
+            forward_end(r, &side[0], &onward, rim_side + e, &held[left]);
+            ELASTIC_NAME(set_row)
+            (ahead + k * size, next, none, k, p.right + diagonal, p.right_right, onward);
         }
-        front[rim_left * width + rim_left] += rim.left;
-        front[rim_left * width + rim_right] = rim.cross;
-        front[rim_right * width + rim_right] = rim.right;
-        front[rim_right * width + all] = rim_side[e + 1];
 
-        /* The left station goes. */
-        UNROLLED for (int j = 0; j < first; ++j) {
-            const double inverse = 1.0 / front[j * width + j];
-            const double value = front[j * width + all] * inverse;
-            *record++ = inverse;
-            UNROLLED for (int k = j + 1; k < all; ++k) {
-                if (is_empty(t, j, k)) {
-                    continue;
-                }
-                const double factor = front[j * width + k] * inverse;
-                *record++ = factor;
-                UNROLLED for (int c = k; c < width; ++c) {
-                    if (!is_empty(t, j, c)) {
-                        front[k * width + c] -= factor * front[j * width + c];
-                    }
-                }
-            }
-            fall += front[j * width + all] * value;
-            *(j < left ? sides[j] + e : rim_side + e) = value;
+        /* The rim. */
+        own[left * first + left] += rim.left;
+        of_rim[next - 1] = rim.cross;
+        of_rim[side_at] = held[left];
+        UNROLLED for (int k = 0; k < size; k += LANES) {
+            pack(cross + left * size + k, of_rim + k);
         }
-        UNROLLED for (int i = first; i < all; ++i) {
-            UNROLLED for (int k = i; k < width; ++k) {
-                carry[(i - first) * (right + 2) + k - first] = front[i * width + k];
+        ELASTIC_NAME(set_row)
+        (ahead + (next - 1) * size, next, none, -1, none, rim.right, rim_side[e + 1]);
+
+        /* The left station goes: rows over what is left of it, and over the right one. */
+        UNROLLED for (int j = 0; j < first; ++j) {
+            const double *row = cross + j * size;
+            const double inverse = 1.0 / own[j * first + j];
+            *record++ = inverse;
+            UNROLLED for (int k = j + 1; k < first; ++k) {
+                const double factor = own[j * first + k] * inverse;
+                *record++ = factor;
+                UNROLLED for (int c = k; c < first; ++c) {
+                    own[k * first + c] -= factor * own[j * first + c];
+                }
+                ELASTIC_NAME(take_row)(cross + k * size, factor, row, 0, size);
             }
+            UNROLLED for (int k = 0; k < size; k += LANES) {
+                scale_part(record + k, inverse, row + k);
+            }
+            UNROLLED for (int k = 0; k < next; ++k) {
+                if (!is_empty(t, j, k)) {
+                    ELASTIC_NAME(take_row)(ahead + k * size, record[k], row, k, size);
+                }
+            }
+            const double value = record[side_at];
+            fall += row[side_at] * value;
+            *(j < left ? sides[j] + e : rim_side + e) = value;
+            record += size;
+        }
+        UNROLLED for (int k = 0; k < next * size; k += LANES) {
+            copy_part(carry + k, ahead + k);
         }
     }
     f->record = record;
@@ -159,7 +181,7 @@ SPECIALIZED void ELASTIC_NAME(find_rows)(traffic t, const gmi_elastic_work *work
         row[i] = rows + (work->low[element] + i) * n;
     }
     UNROLLED for (int i = 0; i < t.beginning; ++i) {
-        row[left + i] = rows + (work->high[element] + 1 - t.beginning + i) * n;
+        row[left + i] = rows + (work->low[element] + left + t.alone + i) * n;
     }
 }
 
@@ -167,7 +189,8 @@ SPECIALIZED void ELASTIC_NAME(find_rows)(traffic t, const gmi_elastic_work *work
 SPECIALIZED void ELASTIC_NAME(forward)(traffic t, const gmi_elastic_work *work, int from, int to,
                                        double *rows) {
     const int left = left_lines(t), first = left + 1, all = left + right_lines(t) + 2;
-    const int low = work->low[from], begin = work->high[from] + 1 - t.beginning;
+    const int size = row_size(right_lines(t) + 1);
+    const int low = work->low[from], begin = low + left + t.alone;
     double *rim = rows + work->lines_max * work->stations;
     double *row[2 * UNKNOWNS_MAX] = {NULL}, values[2 * UNKNOWNS_MAX];
     ELASTIC_NAME(find_rows)(t, work, from, rows, row);
@@ -197,11 +220,15 @@ SPECIALIZED void ELASTIC_NAME(forward)(traffic t, const gmi_elastic_work *work, 
         UNROLLED for (int j = 0; j < first; ++j) {
             const double value = values[j];
             values[j] = value * *record++;
-            UNROLLED for (int k = j + 1; k < all; ++k) {
-                if (!is_empty(t, j, k)) {
-                    values[k] -= *record++ * value;
+            UNROLLED for (int k = j + 1; k < first; ++k) {
+                values[k] -= *record++ * value;
+            }
+            UNROLLED for (int k = first; k < all; ++k) {
+                if (!is_empty(t, j, k - first)) {
+                    values[k] -= record[k - first] * value;
                 }
             }
+            record += size;
         }
         UNROLLED for (int i = 0; i < left; ++i) {
             row[i][e] = values[i];
@@ -218,11 +245,13 @@ SPECIALIZED void ELASTIC_NAME(forward)(traffic t, const gmi_elastic_work *work, 
 SPECIALIZED void ELASTIC_NAME(back)(traffic t, const gmi_elastic_work *work, int from, int to,
                                     double *rows) {
     const int left = left_lines(t), first = left + 1, all = left + right_lines(t) + 2;
-    const int low = work->low[from], begin = work->high[from] + 1 - t.beginning;
+    const int size = row_size(right_lines(t) + 1);
+    const int low = work->low[from], begin = low + left + t.alone;
     double *rim = rows + work->lines_max * work->stations;
     double *row[2 * UNKNOWNS_MAX] = {NULL}, values[2 * UNKNOWNS_MAX];
     ELASTIC_NAME(find_rows)(t, work, from, rows, row);
-    const double *record = work->factor + work->factor_at[to + 1];
+    const int record_size = first * size + first * (first + 1) / 2;
+    const double *record = work->factor + work->factor_at[from] + (to - from + 1) * record_size;
     for (ptrdiff_t e = to; e >= from; --e) {
         UNROLLED for (int i = 0; i < left; ++i) {
             values[i] = row[i][e];
@@ -234,10 +263,14 @@ SPECIALIZED void ELASTIC_NAME(back)(traffic t, const gmi_elastic_work *work, int
         values[all - 1] = rim[e + 1];
         UNROLLED for (int j = first - 1; j >= 0; --j) {
             double value = values[j];
-            UNROLLED for (int k = all - 1; k > j; --k) {
-                if (!is_empty(t, j, k)) {
-                    value -= *--record * values[k];
+            record -= size;
+            UNROLLED for (int k = all - 1; k >= first; --k) {
+                if (!is_empty(t, j, k - first)) {
+                    value -= record[k - first] * values[k];
                 }
+            }
+            UNROLLED for (int k = left; k > j; --k) {
+                value -= *--record * values[k];
             }
             --record;
             values[j] = value;

@@ -7,8 +7,10 @@
 #define GMI_IN_WIDE
 #include "wide.h"
 
-#include "internal.h"
+#include "gearmesh/gearmesh.h"
 
+#include <float.h>
+#include <limits.h>
 #include <math.h>
 #include <stddef.h>
 #include <stdint.h>
@@ -48,6 +50,9 @@
 /* Packing scalars into vectors takes more instructions than it saves, and some that valgrind does not know. */
 #pragma GCC optimize("no-tree-slp-vectorize")
 #endif
+
+/* From here on all is for AVX2, what headers define as well: or it is not inlined. */
+#include "internal.h"
 
 #include "elastic_gradient.c"
 #include "elastic_material.c"

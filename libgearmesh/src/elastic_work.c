@@ -21,10 +21,10 @@ static work_sizes find_sizes(int stations, int lines) {
     const work_sizes sizes = {2 * slots,
                               slots,
                               rows * n,
-                              2 * rows * (2 * rows + 2),
-                              2 * n * rows * rows,
+                              rows * rows + 2 * rows * (rows + 4),
+                              n * (rows * (rows + 4) + rows * (rows + 1) / 2),
                               8 * (size_t)lines,
-                              rows * (rows + 2)};
+                              rows * (rows + 4)};
     return sizes;
 }
 

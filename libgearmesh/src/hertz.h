@@ -32,6 +32,10 @@ enum {
     GMI_HERTZ_HIGH_COEFFICIENTS = 16
 };
 
+/* Where the table begins and ends. */
+#define GMI_HERTZ_FROM 0x1p-56
+#define GMI_HERTZ_TO   0x1p-3
+
 /* hertz_table.c, made by hertz_table.py. */
 extern const double gmi_hertz_table[GMI_HERTZ_ROWS][GMI_HERTZ_COEFFICIENTS];
 extern const double gmi_hertz_high_table[2][2 + GMI_HERTZ_HIGH_COEFFICIENTS];

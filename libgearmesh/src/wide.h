@@ -37,6 +37,19 @@
 #define GMI_CALL_WIDE(law, call)
 #endif
 
+#if GMI_HAS_WIDE && defined(GMI_IN_WIDE)
+#include <immintrin.h>
+
+/* Two columns of four rows of a table, from column k on. Faster than a gather, which fetches number by number. */
+#define GMI_TWO_OF_FOUR(row, k, first, second)                                                     \
+    const __m256d first##_even = _mm256_insertf128_pd(                                             \
+        _mm256_castpd128_pd256(_mm_loadu_pd((row)[0] + (k))), _mm_loadu_pd((row)[2] + (k)), 1);    \
+    const __m256d first##_odd = _mm256_insertf128_pd(                                              \
+        _mm256_castpd128_pd256(_mm_loadu_pd((row)[1] + (k))), _mm_loadu_pd((row)[3] + (k)), 1);    \
+    const __m256d first = _mm256_unpacklo_pd(first##_even, first##_odd);                           \
+    const __m256d second = _mm256_unpackhi_pd(first##_even, first##_odd)
+#endif
+
 /* Whether processor and system have AVX2: bits of CPUID, and that the system keeps the registers of each process. */
 #if GMI_HAS_WIDE
 #include <cpuid.h>
