@@ -11,10 +11,11 @@
  * force acts across the line of action, with mu_r = mu v / sqrt(v^2 + v0^2): it turns round in the pitch point without a
  * jump.
  *
- * Lines of contact are cut at fixed places, one of them the pitch point, and mu_r of a part is that at its mean sliding
- * speed, weighted with the normal force. So the force of a part and its first moment say all: exact where mu_r is the same all along
- * a part, that is for spur gears, and for v far above v0. The torques of a part act at its mean rho_p, and its loss is its
- * friction times its mean sliding speed: power in is power out and loss, to rounding.
+ * Lines of contact are cut at fixed places, one of them the pitch point. Along a part v is straight, and the integrals
+ * of mu_r have a closed form for a load that is even or straight there: exact between ideal flanks of parallel axes.
+ * They take the force of a part, its first moments and its touching length. Friction of a part acts a little farther
+ * from the pitch point than the middle of its load; torques and loss take it there, so that power in is power out and
+ * loss, to rounding. Of lines with corners mu_r of a part is that at its mean sliding speed.
  */
 #include "internal.h"
 
@@ -266,14 +267,142 @@ gmi_rolling_by gmi_rolling_differentiate(const gmi_sliding *sliding) {
 }
 
 /* ---------------------------------------------------------------------------------------------
+ * Along a part
+ * ------------------------------------------------------------------------------------------- */
+
+/* A part as friction sees it: sliding speeds in the middle of its load and of its touching length. */
+typedef struct sliding_part {
+    double load;    /* over the touching length (N) */
+    double contact; /* that length, C (1) */
+    double speed;   /* v, at the middle of the load (m/s) */
+    double slope;   /* w = dv / dt1 (m/s) */
+    double apart;   /* t1 of the middle of the touching length less that of the load (1) */
+} sliding_part;
+
+/* A number of a part, by the sliding speed, by ln C, by the slope, and by how far the two middles are apart. */
+typedef struct along_part {
+    double value, by_speed, by_contact, by_slope, by_apart;
+} along_part;
+
+/* (y - asinh(y)) / y^3, and the derivative of its logarithm over y. */
+static double arc_remainder(double y, double *growth) {
+    const double y2 = y * y;
+    if (y < 0.1) {
+        const double value =
+            1.0 / 6.0 -
+            y2 * (3.0 / 40.0 - y2 * (15.0 / 336.0 - y2 * (105.0 / 3456.0 - y2 * 945.0 / 42240.0)));
+        const double slope =
+            3.0 / 20.0 - y2 * (15.0 / 84.0 - y2 * (105.0 / 576.0 - y2 * 945.0 / 5280.0));
+        *growth = -slope / value;
+        return value;
+    }
+    const double remainder = y - asinh(y);
+    const double root = sqrt(1.0 + y2);
+    *growth = y / (root * (1.0 + root) * remainder) - 3.0 / y2;
+    return remainder / (y * y2);
+}
+
+/*
+ * Of r = v / sqrt(v^2 + v0^2) where flanks slide by u - h .. u + h, u = v + w apart and h = |w| C / 2: its mean, and its
+ * covariance with t1, by which it leans that way. With s the roots at both ends,
+ *
+ *     S = s_+ + s_-,     D = S^2 - 4 u^2,     y = h D / (S v0^2),     k = (v0^2 / 4) (y / h)^3 (y - asinh(y)) / y^3
+ *     mean = 2 u / S + 3 k (v - u),     lean = k w C^2 / 4
+ *
+ * An even load has 2 u / S, and k h^2 is its covariance of r and v; a load that is straight in v has the second term too.
+ */
+static void find_along_part(const sliding_part *part, double creep_squared, along_part *mean,
+                            along_part *lean) {
+    const double w = part->slope, half_contact = 0.5 * part->contact;
+    const double u = part->speed + w * part->apart;
+    const double half = fabs(w) * half_contact;
+    const double s_upper = sqrt((u + half) * (u + half) + creep_squared);
+    const double s_lower = sqrt((u - half) * (u - half) + creep_squared);
+    const double both = s_upper + s_lower, product = s_upper * s_lower;
+
+    /* D without the difference of large numbers: the roots exceed |u +- h|, which are twice the larger of |u| and h. */
+    const double half2 = half * half, along = fabs(u);
+    const double larger = fmax(along, half);
+    const double excess =
+        creep_squared / (s_upper + fabs(u + half)) + creep_squared / (s_lower + fabs(u - half));
+    const double d = 4.0 * (larger - along) * (larger + along) + excess * (4.0 * larger + excess);
+
+    /* k, by u and, over h, by h. */
+    const double both_by_speed = (u + half) / s_upper + (u - half) / s_lower;
+    const double both_by_half = d / (both * product);
+    const double ratio = d / (both * creep_squared); /* y / h */
+    double growth;
+    const double remainder = arc_remainder(half * ratio, &growth);
+    const double grown = 3.0 + growth * half2 * ratio * ratio;
+    const double k = 0.25 * creep_squared * ratio * ratio * ratio * remainder;
+    const double k_by_speed =
+        k * grown * ((2.0 * both * both_by_speed - 8.0 * u) / d - both_by_speed / both);
+    const double k_by_half =
+        k * (grown * (2.0 * both / d - 1.0 / both) * both_by_half + growth * ratio * ratio);
+
+    /* The mean, first by u and, over h, by h. */
+    const double behind = -w * part->apart; /* v - u */
+    const double even = 2.0 * u / both;
+    const double by_middle = 0.5 * d / (both * product) + 3.0 * k_by_speed * behind - 3.0 * k;
+    const double by_half = -even / both * both_by_half + 3.0 * k_by_half * behind;
+    const double half_by_slope = half_contact * half_contact * w; /* h dh / dw */
+    mean->value = even + 3.0 * k * behind;
+    mean->by_speed = by_middle + 3.0 * k;
+    mean->by_contact = by_half * half2;
+    mean->by_slope = by_half * half_by_slope + by_middle * part->apart;
+    mean->by_apart = by_middle * w;
+
+    const double square = half_contact * half_contact;
+    lean->value = k * w * square;
+    lean->by_speed = k_by_speed * w * square;
+    lean->by_contact = w * square * (2.0 * k + k_by_half * half2);
+    lean->by_slope = square * (k + w * (k_by_half * half_by_slope + k_by_speed * part->apart));
+    lean->by_apart = k_by_speed * w * w * square;
+}
+
+/* Friction of a part over its transverse force, less what is the same all over a side; with the logarithms of load,
+ * rolling speed and touching length. */
+typedef struct part_share {
+    double value, by_speed, by_load, by_rolling, by_contact, by_slope, by_apart;
+} part_share;
+
+typedef struct part_friction {
+    part_share share, lean;
+} part_friction;
+
+static part_share share_of_part(const coefficient *mu, double normal, const along_part *r) {
+    const double factor = normal * mu->value;
+    const part_share share = {
+        .value = factor * r->value,
+        .by_speed = factor * r->by_speed + normal * mu->by_speed * r->value,
+        .by_load = normal * mu->by_load * r->value,
+        .by_rolling = normal * mu->by_rolling * r->value,
+        .by_contact = factor * r->by_contact,
+        .by_slope = factor * r->by_slope,
+        .by_apart = factor * r->by_apart,
+    };
+    return share;
+}
+
+static void find_part_friction(const gmi_sliding *s, const sliding_part *part,
+                               part_friction *found) {
+    const coefficient mu = coefficient_of(s, part->load, part->speed);
+    along_part mean, lean;
+    find_along_part(part, s->friction->creep_squared, &mean, &lean);
+    found->share = share_of_part(&mu, s->friction->normal, &mean);
+    found->lean = share_of_part(&mu, s->friction->normal, &lean);
+}
+
+/* ---------------------------------------------------------------------------------------------
  * Of a part, and of a side
  * ------------------------------------------------------------------------------------------- */
 
-/* The share of a part: by its load, of which rho_p and t1 are the means, and by how the flanks slide there. */
-static void differentiate_share(const gmi_sliding *s, const gmi_point_friction *at,
+/* Share or lean of a part: by its load, of which rho_p and t1 are the means, and by how the flanks slide there. */
+static void differentiate_share(const gmi_sliding *s, double advance, const part_share *at,
                                 const gmi_load *load, const gmi_load_by *load_by, double rho_p,
                                 double t1, double by[GMI_VARIABLES]) {
     const double by_speed = at->by_speed;
+    const double touching_t1 = load->contact[1] / load->contact[0];
 
     /* By what the load changes with: its middle slides at another speed, and its size changes the coefficient. */
     for (int k = 0; k < GMI_LOAD_VARIABLES; ++k) {
@@ -281,52 +410,83 @@ static void differentiate_share(const gmi_sliding *s, const gmi_point_friction *
         const double rho_by = force_by[GMI_BY_RHO] - rho_p * force_by[GMI_WHOLE];
         const double t1_by = force_by[GMI_BY_T1] - t1 * force_by[GMI_WHOLE];
         by[k] = (by_speed * ((s->pinion_speed + s->wheel_speed) * rho_by - s->sideways[1] * t1_by) +
-                 at->by_load * force_by[GMI_WHOLE]) /
+                 at->by_load * force_by[GMI_WHOLE] - at->by_apart * t1_by) /
                 load->force[GMI_WHOLE];
     }
     for (int k = 0; k < GMI_COORDINATES; ++k) {
-        by[k] -= at->by_load * load_by->contact[k] / load->contact;
+        const double *contact_by = load_by->contact[k];
+        const double middle_by = contact_by[1] - touching_t1 * contact_by[0];
+        by[k] += ((at->by_contact - at->by_load) * contact_by[0] + at->by_apart * middle_by) /
+                 load->contact[0];
     }
 
     /* By the line of action and the speeds of both gears, which roll and slide. */
     const gmi_rolling_by rolling = gmi_rolling_differentiate(s);
+    const double by_both = at->by_slope * advance;
     by[GMI_BY_LENGTH] += at->by_rolling * rolling.length - by_speed * s->wheel_speed;
-    by[GMI_BY_PINION_SPEED] = at->by_rolling * rolling.pinion_speed + by_speed * rho_p;
+    by[GMI_BY_PINION_SPEED] = at->by_rolling * rolling.pinion_speed + by_speed * rho_p + by_both;
     by[GMI_BY_WHEEL_SPEED] =
-        at->by_rolling * rolling.wheel_speed - by_speed * (s->line_of_action - rho_p);
+        at->by_rolling * rolling.wheel_speed - by_speed * (s->line_of_action - rho_p) + by_both;
     by[GMI_BY_SIDEWAYS] = -by_speed;
-    by[GMI_BY_SIDEWAYS_T1] = -by_speed * t1;
+    by[GMI_BY_SIDEWAYS_T1] = -by_speed * t1 - at->by_slope;
 }
 
-void gmi_rubbing_add(const gmi_sliding *sliding, const gmi_load *load, const gmi_load_by *load_by,
-                     gmi_rubbing *total, gmi_rubbing_by *by) {
+/* Derivatives of the friction of a part: of its share with all weights, of its lean with the moments. */
+static OWN_STACK void add_part_derivatives(const gmi_sliding *sliding, double advance,
+                                           const part_friction *at, const gmi_load *load,
+                                           const gmi_load_by *load_by, double rho_p, double t1,
+                                           gmi_rubbing_by *by) {
+    double share_by[GMI_VARIABLES];
+    differentiate_share(sliding, advance, &at->share, load, load_by, rho_p, t1, share_by);
+    for (int weight = 0; weight < GMI_WEIGHTS; ++weight) {
+        for (int k = 0; k < GMI_VARIABLES; ++k) {
+            by->force[k][weight] += share_by[k] * load->force[weight];
+        }
+        for (int k = 0; k < GMI_LOAD_VARIABLES; ++k) {
+            by->force[k][weight] += at->share.value * load_by->force[k][weight];
+        }
+    }
+
+    /* rho_p advances with t1. */
+    differentiate_share(sliding, advance, &at->lean, load, load_by, rho_p, t1, share_by);
+    for (int k = 0; k < GMI_VARIABLES; ++k) {
+        double lean_by = share_by[k] * load->force[GMI_WHOLE];
+        if (k < GMI_LOAD_VARIABLES) {
+            lean_by += at->lean.value * load_by->force[k][GMI_WHOLE];
+        }
+        by->force[k][GMI_BY_T1] += lean_by;
+        by->force[k][GMI_BY_RHO] += advance * lean_by;
+    }
+}
+
+void gmi_rubbing_add(const gmi_sliding *sliding, double advance, const gmi_load *load,
+                     const gmi_load_by *load_by, gmi_rubbing *total, gmi_rubbing_by *by) {
     const double *force = load->force;
     if (!(force[GMI_WHOLE] > 0.0)) {
         return;
     }
 
-    /* At its mean rho_p and t1, with its load over its touching length. */
+    /* About its mean rho_p and t1, with its load over its touching length. */
     const double rho_p = force[GMI_BY_RHO] / force[GMI_WHOLE];
     const double t1 = force[GMI_BY_T1] / force[GMI_WHOLE];
-    const gmi_point_friction at =
-        gmi_friction_at(sliding, rho_p, t1, force[GMI_WHOLE] / load->contact);
+    const sliding_part part = {
+        .load = force[GMI_WHOLE] / load->contact[0],
+        .contact = load->contact[0],
+        .speed = sliding_at(sliding, rho_p, t1),
+        .slope = (sliding->pinion_speed + sliding->wheel_speed) * advance - sliding->sideways[1],
+        .apart = load->contact[1] / load->contact[0] - t1,
+    };
+    part_friction at;
+    find_part_friction(sliding, &part, &at);
     for (int weight = 0; weight < GMI_WEIGHTS; ++weight) {
-        total->force[weight] += at.share * force[weight];
+        total->force[weight] += at.share.value * force[weight];
     }
-    total->loss += at.share * force[GMI_WHOLE] * at.speed;
-    if (by == NULL) {
-        return;
-    }
-
-    double share_by[GMI_VARIABLES];
-    differentiate_share(sliding, &at, load, load_by, rho_p, t1, share_by);
-    for (int weight = 0; weight < GMI_WEIGHTS; ++weight) {
-        for (int k = 0; k < GMI_VARIABLES; ++k) {
-            by->force[k][weight] += share_by[k] * force[weight];
-        }
-        for (int k = 0; k < GMI_LOAD_VARIABLES; ++k) {
-            by->force[k][weight] += at.share * load_by->force[k][weight];
-        }
+    const double lean = at.lean.value * force[GMI_WHOLE];
+    total->force[GMI_BY_T1] += lean;
+    total->force[GMI_BY_RHO] += advance * lean;
+    total->loss += at.share.value * part.speed * force[GMI_WHOLE] + part.slope * lean;
+    if (by != NULL) {
+        add_part_derivatives(sliding, advance, &at, load, load_by, rho_p, t1, by);
     }
 }
 

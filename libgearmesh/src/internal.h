@@ -752,12 +752,12 @@ enum gmi_variable {
 /* The normal force of a part of a line or of a side, in the transverse section; and how it moves. */
 typedef struct gmi_load {
     double force[GMI_WEIGHTS]; /* times 1, t1, rho_p (N, N, N m) */
-    double contact;            /* touching part (1) */
+    double contact[2];         /* touching part, times 1 and t1 (1) */
 } gmi_load;
 
 typedef struct gmi_load_by {
     double force[GMI_LOAD_VARIABLES][GMI_WEIGHTS];
-    double contact[GMI_COORDINATES];
+    const double (*contact)[3]; /* gmi_line_tangent.contact_by of a part; NULL of a side */
 } gmi_load_by;
 
 /* The force of a side with all that moves it; below 0 where damping takes it away. */
@@ -1027,9 +1027,9 @@ typedef struct gmi_rolling_by {
 
 gmi_rolling_by gmi_rolling_differentiate(const gmi_sliding *sliding);
 
-/* Adds the friction of one part, with derivatives where load_by and by are not NULL. */
-void gmi_rubbing_add(const gmi_sliding *sliding, const gmi_load *load, const gmi_load_by *load_by,
-                     gmi_rubbing *total, gmi_rubbing_by *by);
+/* Adds the friction of one part, with derivatives where load_by and by are not NULL. advance: of rho_p over t1 (m). */
+void gmi_rubbing_add(const gmi_sliding *sliding, double advance, const gmi_load *load,
+                     const gmi_load_by *load_by, gmi_rubbing *total, gmi_rubbing_by *by);
 
 /* What of the law is the same all over a side, by all of its load. */
 void gmi_rubbing_finish(const gmi_sliding *sliding, const gmi_load *load,

@@ -373,10 +373,9 @@ static OWN_STACK void add_sliding_tangent(const side_view *view, double rho_orig
     memset(&by, 0, sizeof by);
     add_rows(view, rho_origin, by.force, arm);
     side->flow += finish_load(view, sums, contact, arm, load.force, by.force);
-    load.contact = contact[GMI_WHOLE];
-    for (int of = 0; of < GMI_COORDINATES; ++of) {
-        by.contact[of] = line->contact_by[of][0];
-    }
+    load.contact[0] = line->contact[0];
+    load.contact[1] = line->contact[1];
+    by.contact = line->contact_by;
 
     for (int weight = 0; weight < GMI_WEIGHTS; ++weight) {
         side->load.force[weight] += load.force[weight];
@@ -385,7 +384,8 @@ static OWN_STACK void add_sliding_tangent(const side_view *view, double rho_orig
         }
     }
     add_sum_derivatives(line, total);
-    gmi_rubbing_add(view->sliding, &load, &by, view->rubbing, view->rubbing_by);
+    gmi_rubbing_add(view->sliding, view->lines.advance, &load, &by, view->rubbing,
+                    view->rubbing_by);
 }
 
 /* The simple model's pair touches in the pitch point, which follows the line of action, at mid-face. */
@@ -416,9 +416,9 @@ static OWN_STACK void add_friction(const side_view *view, double rho_origin,
     const double k = view->law->stiffness, viscous = view->law->damping * view->approach_speed;
     gmi_load load = {
         {k * sum->sum + viscous * sum->contact, k * sum->sum_t1 + viscous * sum->contact_t1, 0.0},
-        sum->contact};
+        {sum->contact, sum->contact_t1}};
     weigh(load.force, rho_origin, view->lines.advance);
-    gmi_rubbing_add(view->sliding, &load, NULL, view->rubbing, NULL);
+    gmi_rubbing_add(view->sliding, view->lines.advance, &load, NULL, view->rubbing, NULL);
 }
 
 /* Where a line is cut for friction next, and which place that is; -1: the end of the line. */
@@ -782,7 +782,7 @@ void gmi_side_sum_sliding(const gm_mesh *mesh, int side, const gm_position *posi
     gmi_load load = {
         {mesh->law.stiffness * total->sum + mesh->law.damping * approach_speed * total->contact,
          0.0, 0.0},
-        total->contact};
+        {total->contact, 0.0}};
     gmi_rubbing_finish(sliding, &load, NULL, rubbing, NULL);
 }
 
