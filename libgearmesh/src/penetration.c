@@ -644,85 +644,92 @@ static double add_end_depth(const gmi_depth_end *end, double f, double shift, do
     return gmi_larger(f + moved * (slope + moved * end->curvature), 0.0);
 }
 
-/* The lines of a side at many depths. */
-typedef struct depths_view {
-    const gm_pair *pair;
-    const gmi_engagement *at;
-    gmi_lines lines; /* at the depth of the walk */
-} depths_view;
+/*
+ * Where a line ends at a shift, seen outwards: at the face, where the pinion's flank ends, or where the wheel's does, which
+ * moves with the shift; whichever comes first. Of all lines but for the number of the line.
+ */
+typedef struct depth_limit {
+    double outwards; /* -1 where a line begins, +1 where it ends: places along t1 times this */
+    double face;
+    double pinion, wheel; /* of line 0, without shift */
+    double per_shift;     /* of the wheel's (1/m) */
+} depth_limit;
 
-/* The ends of lines at a shift, and of one of them. */
-static gmi_interval line_at_depth(const depths_view *view, int k, double shift,
-                                  gmi_line_ends *ends) {
-    gmi_lines lines = view->lines;
-    gmi_lines_limit(view->at, view->lines.delta + shift, &lines);
-    *ends = gmi_line_ends_find(view->pair, view->at, &lines);
-    return gmi_line_clip(ends, k);
+static depth_limit limit_of(const gmi_engagement *at, const gmi_lines *lines,
+                            const gmi_line_ends *ends, int is_end) {
+    const double outwards = is_end ? 1.0 : -1.0;
+    const double reach = at->line_of_action + lines->delta;
+
+    /* A line that climbs begins at the lower limit, one that falls at the upper one. */
+    const int is_lower = (lines->advance > 0.0) != is_end;
+    const double pinion =
+        is_lower ? at->start_roll_length[GM_PINION] : at->tip_roll_length[GM_PINION];
+    const double wheel =
+        reach - (is_lower ? at->tip_roll_length[GM_WHEEL] : at->start_roll_length[GM_WHEEL]);
+    const double per = outwards * ends->per_advance;
+    const depth_limit limit = {outwards, outwards * (is_end ? ends->face_to : ends->face_from),
+                               per * (pinion - lines->origin), per * (wheel - lines->origin), per};
+    return limit;
 }
 
 /*
- * Ends that the wheel sets move with the shift and take f there along. Which gear sets an end may change with delta: at
- * delta = 0 limits often coincide.
+ * What an end of line k adds at all depths. The wheel takes it along and f there, and which gear sets it may change: at
+ * delta = 0 limits often coincide. place: where it is at the depth of the walk.
  */
-static void add_end_depths(const depths_view *view, int k, gmi_interval part,
-                           const gmi_line_sum *line, gmi_depths *depths) {
-    if (depths->count == 0) {
-        return;
-    }
+static void add_end_depths(const depth_limit *limit, double along, double place, double f,
+                           const gmi_depth_end *end, gmi_depths *depths) {
+    const double held = gmi_smaller(limit->face, limit->pinion - along);
+    const double wheel = limit->wheel - along;
+    const double nearest = wheel + gmi_smaller(depths->shift[0] * limit->per_shift,
+                                               depths->largest * limit->per_shift);
+    place *= limit->outwards;
 
-    /* Most lines end in the same places at all depths, some of them at both faces. */
-    gmi_line_ends ends;
-    const gmi_interval least = line_at_depth(view, k, depths->shift[0], &ends);
-    gmi_interval moved = line_at_depth(view, k, depths->largest, &ends);
-    const int moves = least.from != part.from || least.to != part.to || moved.from != part.from ||
-                      moved.to != part.to;
-    if (!moves && part.from == ends.face_from && part.to == ends.face_to) {
+    /* Most lines end at the face at all depths. */
+    if (place == limit->face && held == limit->face && !(nearest < held)) {
         return;
     }
 
     for (int n = 0; n < depths->count; ++n) {
         const double shift = depths->shift[n];
-        if (moves) {
-            moved = line_at_depth(view, k, shift, &ends);
-        }
+        const double reached = wheel + shift * limit->per_shift;
+        const int moves = reached < held;
+        const double moved = limit->outwards * ((moves ? reached : held) - place);
         gmi_depth_sum *at = &depths->part[n];
-        const double f_from =
-            add_end_depth(&depths->from, line->at_from, shift, moved.from - part.from, -1.0, at);
-        const double f_to =
-            add_end_depth(&depths->to, line->at_to, shift, moved.to - part.to, 1.0, at);
-        if (moved.from > ends.face_from) {
-            at->by_origin += f_from * ends.per_advance;
-            at->by_delta -= f_from * ends.per_advance * ends.enter_by_delta;
-        }
-        if (moved.to < ends.face_to) {
-            at->by_origin -= f_to * ends.per_advance;
-            at->by_delta += f_to * ends.per_advance * ends.leave_by_delta;
+        const double f_there = add_end_depth(end, f, shift, moved, limit->outwards, at);
+        if (moves || held < limit->face) {
+            at->by_origin -= f_there * limit->per_shift;
+            at->by_delta += moves ? f_there * limit->per_shift : 0.0;
         }
     }
 }
 
 void gmi_side_sum_depths(const gm_pair *pair, const gmi_engagement *at, const gmi_side *prepared,
                          int side, const gm_position *position, gmi_depths *depths) {
-    depths_view view = {.pair = pair, .at = at};
-    gmi_lines_find(pair, at, side, position, &view.lines);
-    const gmi_line_ends ends = gmi_line_ends_find(pair, at, &view.lines);
-    const double delta = view.lines.delta;
-    const double wheel_reach = at->line_of_action + delta - at->wheel_profile_start;
+    gmi_lines lines;
+    gmi_lines_find(pair, at, side, position, &lines);
+    const gmi_line_ends ends = gmi_line_ends_find(pair, at, &lines);
+    const depth_limit begin = limit_of(at, &lines, &ends, 0);
+    const depth_limit end = limit_of(at, &lines, &ends, 1);
+    const double wheel_reach = at->line_of_action + lines.delta - at->wheel_profile_start;
 
     /* All lines: what does not touch at this depth may touch at another one. */
-    gmi_teeth teeth = gmi_lines_teeth(pair, side, position, &view.lines);
-    for (int k = view.lines.first; k <= view.lines.last; ++k) {
+    gmi_teeth teeth = gmi_lines_teeth(pair, side, position, &lines);
+    for (int k = lines.first; k <= lines.last; ++k) {
         const gmi_flank pinion = gmi_flank_of(prepared->pinion, teeth.pinion);
         const gmi_flank wheel = gmi_flank_of(prepared->wheel, teeth.wheel);
         const gmi_interval part = gmi_line_clip(&ends, k);
         if (part.from < part.to) {
-            const double rho_origin = view.lines.origin + (double)k * pair->transverse_base_pitch;
-            const gmi_line line =
-                line_between(pair, prepared, delta, wheel_reach, &pinion, &wheel, rho_origin, part);
+            const double rho_origin = lines.origin + (double)k * pair->transverse_base_pitch;
+            const gmi_line line = line_between(pair, prepared, lines.delta, wheel_reach, &pinion,
+                                               &wheel, rho_origin, part);
             gmi_line_sum sum;
             gmi_line_integrate_depths(&line, &prepared->pinion_grid, &prepared->wheel_grid, depths,
                                       &sum);
-            add_end_depths(&view, k, part, &sum, depths);
+
+            /* Places of line k lie k spacings before those of line 0. */
+            const double along = (double)k * ends.spacing;
+            add_end_depths(&begin, -along, part.from, sum.at_from, &depths->from, depths);
+            add_end_depths(&end, along, part.to, sum.at_to, &depths->to, depths);
         }
         teeth.pinion = gmi_next_tooth(teeth.pinion, teeth.step, pair->pinion.teeth);
         teeth.wheel = gmi_next_tooth(teeth.wheel, teeth.step, pair->wheel.teeth);
