@@ -2,8 +2,8 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 
 /*
- * The force law: everything that knows how force follows from overlap. Force and gradient stand in internal.h, to be
- * inlined; here are their inverse, and what users ask of a mesh as a whole. Nothing elsewhere multiplies by a stiffness.
+ * The force law: how force follows from overlap. Force and gradient stand in internal.h, to be inlined; here are their
+ * inverse, and what users ask of a mesh as a whole. Lines that lean, corners and line loads take its stiffness per length.
  */
 #include "internal.h"
 
