@@ -221,7 +221,7 @@ typedef struct front_state {
  * ------------------------------------------------------------------------------------------- */
 
 /*
- * Ending, through, beginning, alone. The copies for them are large and take clang, and sanitizers, minutes to compile: those, and
+ * Ending, through, beginning; lines alone where none goes through. The copies for them are large and take clang, and sanitizers, minutes to compile: those, and
  * builds for size, go without, to the same bits.
  */
 #if defined(__GNUC__) && !defined(__clang__) && !defined(__SANITIZE_ADDRESS__) &&                  \
@@ -231,31 +231,31 @@ typedef struct front_state {
 #include "elastic_step.h"
 /* clang-format off */
 #define USUAL_TRAFFIC(X)                                                                           \
-    X(0, 0, 0, 0) X(0, 0, 1, 0) X(0, 0, 2, 0) X(0, 0, 3, 0) X(0, 0, 1, 1) X(0, 0, 2, 1)            \
-    X(0, 0, 3, 1) X(1, 0, 0, 0) X(2, 0, 0, 0) X(3, 0, 0, 0) X(1, 0, 0, 1) X(2, 0, 0, 1)            \
-    X(3, 0, 0, 1) X(1, 0, 1, 0) X(0, 1, 0, 0) X(0, 1, 1, 0) X(1, 1, 0, 0) X(1, 1, 1, 0)            \
-    X(0, 2, 0, 0) X(0, 2, 1, 0) X(1, 2, 0, 0) X(1, 2, 1, 0) X(0, 3, 0, 0)
+    X(0, 0, 0) X(0, 0, 1) X(0, 0, 2) X(0, 0, 3) X(1, 0, 0) X(2, 0, 0) X(3, 0, 0) X(1, 0, 1)         \
+    X(0, 1, 0) X(0, 1, 1) X(1, 1, 0) X(1, 1, 1) X(0, 2, 0) X(0, 2, 1) X(1, 2, 0) X(1, 2, 1)         \
+    X(0, 3, 0)
 /* clang-format on */
 #else
 #define USUAL_TRAFFIC(X)
 #endif
 
 /* From element to element of a run. Fronts of usual size are on the stack. */
-#define SPECIAL_FUNCTIONS(e, g, b, a)                                                              \
-    SPECIAL void step_##e##g##b##a(front_state *f, int first, int last) {                          \
-        const traffic t = {e, g, b, a};                                                            \
+#define ALONE(e, g, b) ((g) == 0 ? work->high[first] + 1 - work->low[first] - (e) - (b) : 0)
+#define SPECIAL_FUNCTIONS(e, g, b)                                                                 \
+    SPECIAL void step_##e##g##b(front_state *f, int first, int last) {                             \
+        const gmi_elastic_work *work = f->work;                                                    \
+        const traffic t = {e, g, b, ALONE(e, g, b)};                                               \
         double front[((e) + (g) + 1) * ((e) + (g) + 1) +                                           \
                      ((e) + 2 * (g) + (b) + 2) * (((g) + (b) + 1 + LANES) & -LANES)];              \
         usual_step(t, f, first, last, front);                                                      \
     }                                                                                              \
-    SPECIAL void forward_##e##g##b##a(const gmi_elastic_work *work, int first, int last,           \
-                                      double *rows) {                                              \
-        const traffic t = {e, g, b, a};                                                            \
+    SPECIAL void forward_##e##g##b(const gmi_elastic_work *work, int first, int last,              \
+                                   double *rows) {                                                 \
+        const traffic t = {e, g, b, ALONE(e, g, b)};                                               \
         usual_forward(t, work, first, last, rows);                                                 \
     }                                                                                              \
-    SPECIAL void back_##e##g##b##a(const gmi_elastic_work *work, int first, int last,              \
-                                   double *rows) {                                                 \
-        const traffic t = {e, g, b, a};                                                            \
+    SPECIAL void back_##e##g##b(const gmi_elastic_work *work, int first, int last, double *rows) { \
+        const traffic t = {e, g, b, ALONE(e, g, b)};                                               \
         usual_back(t, work, first, last, rows);                                                    \
     }
 USUAL_TRAFFIC(SPECIAL_FUNCTIONS)
@@ -269,19 +269,20 @@ static traffic traffic_of(const gmi_elastic_work *work, int element) {
 }
 
 /* The same as a small number for what may be usual. */
-#define KIND(e, g, b, a) (64 * (a) + 16 * (e) + 4 * (g) + (b))
+#define KIND(e, g, b) (16 * (e) + 4 * (g) + (b))
 
 static int kind_of(const gmi_elastic_work *work, int element) {
     const traffic t = traffic_of(work, element);
-    const int is_small = t.ending < 4 && t.through < 4 && t.beginning < 4 && t.alone < 2;
-    return is_small ? KIND(t.ending, t.through, t.beginning, t.alone) : -1;
+    const int is_small = t.ending < 4 && t.through < 4 && t.beginning < 4;
+    const int is_usual = is_small && (t.alone == 0 || t.through == 0);
+    return is_usual ? KIND(t.ending, t.through, t.beginning) : -1;
 }
 
 static void step_run(front_state *f, const gmi_elastic_run *run) {
     switch (run->kind) {
-#define CASE(e, g, b, a)                                                                           \
-    case KIND(e, g, b, a):                                                                         \
-        step_##e##g##b##a(f, run->first, run->last);                                               \
+#define CASE(e, g, b)                                                                              \
+    case KIND(e, g, b):                                                                            \
+        step_##e##g##b(f, run->first, run->last);                                                  \
         return;
         USUAL_TRAFFIC(CASE)
 #undef CASE
@@ -292,9 +293,9 @@ static void step_run(front_state *f, const gmi_elastic_run *run) {
 
 static void forward_run(const gmi_elastic_work *work, const gmi_elastic_run *run, double *rows) {
     switch (run->kind) {
-#define CASE(e, g, b, a)                                                                           \
-    case KIND(e, g, b, a):                                                                         \
-        forward_##e##g##b##a(work, run->first, run->last, rows);                                   \
+#define CASE(e, g, b)                                                                              \
+    case KIND(e, g, b):                                                                            \
+        forward_##e##g##b(work, run->first, run->last, rows);                                      \
         return;
         USUAL_TRAFFIC(CASE)
 #undef CASE
@@ -305,9 +306,9 @@ static void forward_run(const gmi_elastic_work *work, const gmi_elastic_run *run
 
 static void back_run(const gmi_elastic_work *work, const gmi_elastic_run *run, double *rows) {
     switch (run->kind) {
-#define CASE(e, g, b, a)                                                                           \
-    case KIND(e, g, b, a):                                                                         \
-        back_##e##g##b##a(work, run->first, run->last, rows);                                      \
+#define CASE(e, g, b)                                                                              \
+    case KIND(e, g, b):                                                                            \
+        back_##e##g##b(work, run->first, run->last, rows);                                         \
         return;
         USUAL_TRAFFIC(CASE)
 #undef CASE

@@ -118,6 +118,20 @@ static void add_multiple(const gmi_elastic_work *work, double part, const double
     }
 }
 
+/* rows += part * other + more * another */
+static void add_two(const gmi_elastic_work *work, double part, const double *other, double more,
+                    const double *another, double *rows) {
+    for (int row = 0; row <= work->count; ++row) {
+        const gmi_elastic_span span = gmi_elastic_span_of(work, row);
+        const double *restrict first = other + span.at;
+        const double *restrict second = another + span.at;
+        double *restrict to = rows + span.at;
+        for (int k = span.begin; k < span.end; ++k) {
+            to[k] = (to[k] + part * first[k]) + more * second[k];
+        }
+    }
+}
+
 static void clear_rows(const gmi_elastic_work *work, double *rows) {
     for (int row = 0; row <= work->count; ++row) {
         const gmi_elastic_span span = gmi_elastic_span_of(work, row);
@@ -176,9 +190,11 @@ static void predict(gmi_elastic_work *work, double x) {
     memcpy(work->last, work->state,
            sizeof(double) * (size_t)(work->lines_max + 1) * (size_t)work->stations);
     const double rolled = place_of(work) - work->warm_place;
-    add_multiple(work, x - work->approach, work->adjoint, work->state);
+    const double change = x - work->approach;
     if (work->warm > 1 && fabs(rolled) <= FARTHEST * fabs(work->rolled)) {
-        add_multiple(work, rolled, work->by_place, work->state);
+        add_two(work, change, work->adjoint, rolled, work->by_place, work->state);
+    } else {
+        add_multiple(work, change, work->adjoint, work->state);
     }
 }
 
