@@ -2,9 +2,9 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 
 /*
- * The value is scaled by a power of ten to an integer of the wanted number of digits, in double-double
- * arithmetic (about 100 bits), and rounded; up to ten digits are told by doubles. Where the rest is so near one half that the rounding could
- * be in doubt, and outside 1e-20..1e20, printf does the work.
+ * The value is scaled by a power of ten to an integer of the wanted number of digits, in double-double arithmetic (about
+ * 100 bits), and rounded; up to ten digits are told by doubles. Where the rest is so near one half that the rounding
+ * could be in doubt, and outside 1e-20..1e20, printf does the work.
  */
 #include "number.h"
 

@@ -9,8 +9,9 @@
  * rows: flat within 0.01 % up to 0.4 (SAMPLE_HAT with factor 2: 0.03 %), and at least 90 dB down from 0.6 on (Kaiser
  * window, 30 samples per factor and one). What lies between folds to 0.4..0.5 of the rate and stays there.
  *
- * Samples may be values at their time or half a period behind it, or means around it: then the filter lifts what the mean has taken off, so that
- * rows are the same for a slow signal, but what lies beyond the rate of the samples does not fold into them.
+ * Samples may be values at their time or half a period behind it, or means around it: then the filter lifts what the mean
+ * has taken off, so that rows are the same for a slow signal, but what lies beyond the rate of the samples does not fold
+ * into them.
  *
  * Ends: before the first sample its value is taken as held, or what is given. A row needs the samples up to 15 rows after
  * it, so the run goes on that far beyond its end.
