@@ -22,6 +22,9 @@ WAS_HANDED_ON = os.environ.pop(HANDED_ON, None) is not None
 TEMPORARY = ".gearmesh_"  # names of what grows beside its place begin so
 CONTROLS = r"\x00-\x08\x0b-\x1f\x7f-\x9f\u2028\u2029"  # characters that tell a terminal what to do, but tab and newline
 
+# No script multiplies large matrices, and threads for that take half of the time in which numpy starts.
+os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
+
 
 class InputError(Exception):
     """What the user asked for cannot be done; the text says why. Exit status 2."""
