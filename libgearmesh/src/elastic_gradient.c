@@ -183,6 +183,8 @@ static double move_energy(const gmi_elastic *law, const gmi_elastic_work *work,
         const double own = half_compliance * load;
         double energy = 0.5 * load * (work->approach_at[p] - own);
         double along = work->force[p] * (opened_at(work, &state, p) + own * rate_by_z);
+
+        /* What is lacking on the straight part of the contact law. */
         if (work->slope[p] >= 1.0) {
             const double excess = load - last_load(law, work, p);
             const double lacking = half_compliance * excess * excess;
@@ -322,16 +324,22 @@ void gmi_elastic_differentiate(const gmi_elastic *law, gmi_elastic_work *work,
     if (!work->touching) {
         return;
     }
+
+    /* The energy: by x it is the force. */
     const int count = 2 * work->slots;
     energy->value = work->energy;
     energy->by_approach = gmi_elastic_sum(count, work->force);
     differentiate_energy(law, work, energy);
+
+    /* The force, by the adjoint that it has left. */
     if (force != NULL) {
         force->value = energy->by_approach;
         force->by_approach = gmi_elastic_sum(count, work->by_deviation);
         move_points(law, work, force);
         move_action(law, work, force);
     }
+
+    /* Both by the ends of the lines, which move with the roll. */
     add_ends(law, work, &unit, work->adjoint, force, energy);
 }
 

@@ -133,6 +133,7 @@ static int refuse(const char *at_fault, const char *wanted, const char **field,
 
 /* Why a tooth has no compliance, in the words of a drawing; [enum gm_role]. */
 static void explain(int fault, int role, const char **field, const char **requirement) {
+    /* Of the drawing's numbers the one that most likely has to change ... */
     static const char *const fields[][2] = {
         [GMI_TOOTH_FINE] = {"pinion_teeth", "wheel_teeth"},
         [GMI_TOOTH_FILLET] = {"pinion_rack_fillet_radius", "wheel_rack_fillet_radius"},
@@ -142,6 +143,8 @@ static void explain(int fault, int role, const char **field, const char **requir
         [GMI_TOOTH_POINTED] = {"pinion_tip_radius", "wheel_tip_radius"},
         [GMI_TOOTH_SPACE] = {"pinion_rack_fillet_radius", "wheel_rack_fillet_radius"},
     };
+
+    /* ... and what would be right. */
     static const char *const requirements[] = {
         [GMI_TOOTH_FINE] = "teeth that give way by more than the rim under them",
         [GMI_TOOTH_FILLET] = "a rounding that fits between the rack's flanks: up to "

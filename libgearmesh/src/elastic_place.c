@@ -33,18 +33,24 @@ typedef struct span {
 
 static span find_span(const gmi_elastic *law, const gmi_elastic_lines_at *at, double roll) {
     span part = {0.0, law->face_width, {0, 0}};
+
+    /* A line of spur gears is within the path as a whole, or not at all. */
     if (at->climb == 0.0) {
         if (!(roll >= at->lower - at->below && roll <= at->upper + at->above)) {
             part.to = 0.0;
         }
         return part;
     }
+
+    /* Where the line passes the ends of the path, and what edges carry it on by. */
     const double per_climb = 1.0 / at->climb;
     const double lower = (at->lower - at->below - roll) * per_climb;
     const double upper = (at->upper + at->above - roll) * per_climb;
     const int climbs = at->climb > 0.0;
     const double from = climbs ? lower : upper;
     const double to = climbs ? upper : lower;
+
+    /* Within the face it ends there: at which end of the path, unless it goes on. */
     if (from > part.from) {
         part.from = from;
         part.limited[0] = at->goes_on ? 0 : climbs ? -1 : 1;
@@ -131,6 +137,8 @@ static void count_lines(gmi_elastic_work *work) {
         work->high[e] = -1;
         work->traffic[e] = 0;
     }
+
+    /* Each line through all of its elements; where it begins or ends it counts as that. */
     work->begin = work->stations;
     work->end = 0;
     for (int row = 0; row < work->count; ++row) {
@@ -141,12 +149,14 @@ static void count_lines(gmi_elastic_work *work) {
             work->high[e] = row;
             work->traffic[e] += 16;
         }
+
         if (line->elements > 1) {
             work->traffic[begin] += 1 - 16;
             work->traffic[end - 1] += 256 - 16;
         } else {
             work->traffic[begin] -= 16;
         }
+
         work->begin = begin < work->begin ? begin : work->begin;
         work->end = end > work->end ? end : work->end;
     }
@@ -351,15 +361,20 @@ APART void join_slopes(int count, const tooth_pair *teeth, const double *restric
     const double pinion_half = 0.5 * teeth->softness[0] * pinion_rate;
     const double wheel_half = 0.5 * teeth->softness[1] * wheel_rate;
     for (int k = 0; k < count; ++k) {
+        /* s is the root of the compliances of both teeth, less what the rim takes. */
         const double per_tooth = 1.0 / tooth[k];
         const double by_pinion = pinion_half * pinion_slope[2 * k] * per_tooth;
         const double by_wheel = wheel_half * wheel_slope[2 * k] * per_tooth;
+
+        /* The rate is the product of both curvature factors over the line of action. */
         const double factor = pinion[2 * k + 1] * wheel[2 * k + 1] + LEAST_FACTOR;
         const double per_factor = 1.0 / factor;
         const double of_pinion =
             pinion_rate * pinion_slope[2 * k + 1] * wheel[2 * k + 1] * per_factor;
         const double of_wheel =
             wheel_rate * wheel_slope[2 * k + 1] * pinion[2 * k + 1] * per_factor;
+
+        /* The wheel's roll length is the line of action less rho_p. */
         tooth_by_roll[k] = by_pinion - by_wheel;
         tooth_by_action[k] = by_wheel;
         rate_by_roll[k] = of_pinion - of_wheel;
@@ -561,6 +576,8 @@ int gmi_elastic_place(const gmi_elastic *law, const gmi_elastic_lines_at *at,
     work->count = 0;
     work->slots = 0;
     work->cuts = 0;
+
+    /* The lines that lie within the path somewhere, in the order of the pinion's teeth. */
     const int lines = at->last - at->first + 1;
     for (int i = 0; i < lines; ++i) {
         const int k = row_step(at) > 0 ? at->first + i : at->last - i;
@@ -572,11 +589,15 @@ int gmi_elastic_place(const gmi_elastic *law, const gmi_elastic_lines_at *at,
         parts[work->count] = part;
         add_line(law, work, k, &part);
     }
+
+    /* Their points, and what teeth there give way by. */
     place_slots(law, work, parts);
     const int good = place_teeth(law, work);
     if (at->goes_on) {
         hold_teeth(work);
     }
+
+    /* For the elimination, and where each line's last solution lies. */
     count_lines(work);
     gmi_elastic_find_runs(work);
     follow_teeth(work);
