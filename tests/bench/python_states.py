@@ -34,7 +34,7 @@ def calls(count):
     wheel_angle = (pair.pinion.base_radius * pinion_angle - 54e-6) / pair.wheel.base_radius
     offset, zeros = np.full(count, 54e-6), np.zeros(count)
     by_angles = "gm_state *", LIB.evaluate_states, "evaluate", (pinion_angle, wheel_angle, zeros, zeros)
-    by_offset = "double *", LIB.evaluate_offsets, "evaluate_offset", (pinion_angle, offset, zeros)
+    by_offset = "double *", LIB.evaluate_offsets, "evaluate_offset", (pinion_angle, offset, zeros, zeros)
 
     for flanks_title, flanks in (("ideal flanks", []), ("tables on all teeth", tables)):
         mesh = gearmesh.Mesh(pair, *flanks, stiffness=1.05e8, damping=844)

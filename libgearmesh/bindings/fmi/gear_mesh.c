@@ -19,7 +19,15 @@ enum {
     POSE_RATE = POSE + 5,
     INPUTS = POSE_RATE + 5
 };
-enum { PINION_TORQUE, WHEEL_TORQUE, FORCE, TRANSMISSION_ERROR, WRENCH, OUTPUTS = WRENCH + 12 };
+enum {
+    PINION_TORQUE,
+    WHEEL_TORQUE,
+    FORCE,
+    TRANSMISSION_ERROR,
+    APEX_SHIFT,
+    WRENCH,
+    OUTPUTS = WRENCH + 12
+};
 
 #define INPUT(name, unit, description, place)                                                      \
     { name, unit, description, KIND_REAL, ROLE_INPUT, offsetof(fmu_values, input[place]), 0.0, 0 }
@@ -47,6 +55,7 @@ static const fmu_variable variables[] = {
     OUTPUT("force", "N", "along the transverse line of action, > 0 drives the wheel forward",
            FORCE),
     OUTPUT("transmission_error", "m", "-x, along the line of action", TRANSMISSION_ERROR),
+    OUTPUT("apex_shift", "m", "how far a double-helical pinion has floated along +z", APEX_SHIFT),
     OUTPUT("pinion_force.x", "N", "on the pinion", WRENCH),
     OUTPUT("pinion_force.y", "N", "likewise", WRENCH + 1),
     OUTPUT("pinion_force.z", "N", "likewise", WRENCH + 2),
@@ -81,10 +90,11 @@ static void set_row(double *row, const gm_gradient *gradient) {
     row[WHEEL_SPEED] = gradient->wheel_speed;
 }
 
-/* Force and wrench by all coordinates and their rates, exactly, where the law has its tangent. */
-static void set_tangent(const gm_mesh *mesh, const gm_motion *motion, fmu_jacobian *jacobian) {
+/* Force and wrench by all coordinates and their rates, exactly, where the law has its tangent; the pinion of a
+ * double-helical pair would stand still in it. */
+static void set_tangent(const file_mesh *made, const gm_motion *motion, fmu_jacobian *jacobian) {
     gm_tangent tangent;
-    if (gm_mesh_tangent(mesh, motion, &tangent) != GM_OK) {
+    if (made->halves == 2 || gm_mesh_tangent(made->mesh[0], motion, &tangent) != GM_OK) {
         return;
     }
     for (int coordinate = 0; coordinate < GM_COORDINATES; ++coordinate) {
@@ -108,25 +118,41 @@ static void set_tangent(const gm_mesh *mesh, const gm_motion *motion, fmu_jacobi
 }
 
 /* The error is that of the angles; what is not known exactly is left to differences. */
-static void differentiate(const gm_mesh *mesh, const gm_motion *motion,
-                          const gm_mesh_result *result, fmu_jacobian *jacobian) {
+static void differentiate(const file_mesh *made, const gm_motion *motion,
+                          const gm_mesh_result *result, const gm_gradient *float_by,
+                          fmu_jacobian *jacobian) {
     for (int row = 0; row < OUTPUTS; ++row) {
         for (int column = 0; column < INPUTS; ++column) {
             jacobian->by[row][column] = row == TRANSMISSION_ERROR ? 0.0 : NAN;
         }
     }
-    set_tangent(mesh, motion, jacobian);
+    set_tangent(made, motion, jacobian);
     set_row(jacobian->by[PINION_TORQUE], &result->pinion_torque_by);
     set_row(jacobian->by[WHEEL_TORQUE], &result->wheel_torque_by);
     set_row(jacobian->by[FORCE], &result->force_by);
-    const gm_pair *pair = gm_mesh_pair(mesh);
+    set_row(jacobian->by[APEX_SHIFT], float_by);
+    const gm_pair *pair = file_mesh_pair(made);
     jacobian->by[TRANSMISSION_ERROR][PINION_ANGLE] = -pair->pinion.base_radius;
     jacobian->by[TRANSMISSION_ERROR][WHEEL_ANGLE] = pair->wheel.base_radius;
 }
 
-static int evaluate(fmu_values *values, const gm_mesh *mesh, gm_workspace *workspace,
-                    fmu_jacobian *jacobian) {
-    const gm_pair *pair = gm_mesh_pair(mesh);
+/* The wheel in a pose of its own at every call, but not between halves with a floating pinion, whose wheel stands. */
+static int evaluate_moving(const file_mesh *made, const double *input, const gm_motion *motion,
+                           int wanted, file_mesh_float *floated, gm_mesh_result *result) {
+    if (made->halves == 1) {
+        memset(floated, 0, sizeof *floated);
+        return gm_mesh_evaluate_posed(made->mesh[0], motion, wanted, made->workspace[0], result);
+    }
+    for (int k = POSE; k < INPUTS; ++k) {
+        if (input[k] != 0.0) {
+            return FMU_HALVES_MOVE;
+        }
+    }
+    return file_mesh_evaluate(made, &motion->position, wanted, floated, result);
+}
+
+static int evaluate(fmu_values *values, const file_mesh *made, fmu_jacobian *jacobian) {
+    const gm_pair *pair = file_mesh_pair(made);
     const gm_state state = {.pinion_angle = values->input[PINION_ANGLE],
                             .wheel_angle = values->input[WHEEL_ANGLE],
                             .pinion_speed = values->input[PINION_SPEED],
@@ -134,10 +160,11 @@ static int evaluate(fmu_values *values, const gm_mesh *mesh, gm_workspace *works
     gm_motion motion = {.pose = pose_of(&values->input[POSE]),
                         .pose_rate = pose_of(&values->input[POSE_RATE])};
     gm_mesh_result result;
+    file_mesh_float floated;
     int status = gm_position_from_state(pair, &state, &motion.position);
     if (status == GM_OK) {
         const int wanted = GM_WANT_WRENCH | (jacobian != NULL ? GM_WANT_DERIVATIVES : 0);
-        status = gm_mesh_evaluate_posed(mesh, &motion, wanted, workspace, &result);
+        status = evaluate_moving(made, values->input, &motion, wanted, &floated, &result);
     }
     if (status != GM_OK) {
         return status;
@@ -147,16 +174,17 @@ static int evaluate(fmu_values *values, const gm_mesh *mesh, gm_workspace *works
     values->output[WHEEL_TORQUE] = result.wheel_torque;
     values->output[FORCE] = result.force;
     values->output[TRANSMISSION_ERROR] = -motion.position.offset;
+    values->output[APEX_SHIFT] = floated.shift;
     const double *parts[] = {result.wrench.pinion_force, result.wrench.pinion_moment,
                              result.wrench.wheel_force, result.wrench.wheel_moment};
     for (int part = 0; part < 4; ++part) {
         memcpy(&values->output[WRENCH + 3 * part], parts[part], 3 * sizeof(double));
     }
 
-    values->indicator[GM_DRIVE] = motion.position.offset - gm_mesh_clearance(mesh, GM_DRIVE);
-    values->indicator[GM_COAST] = -motion.position.offset - gm_mesh_clearance(mesh, GM_COAST);
+    values->indicator[GM_DRIVE] = motion.position.offset - file_mesh_clearance(made, GM_DRIVE);
+    values->indicator[GM_COAST] = -motion.position.offset - file_mesh_clearance(made, GM_COAST);
     if (jacobian != NULL) {
-        differentiate(mesh, &motion, &result, jacobian);
+        differentiate(made, &motion, &result, &floated.by, jacobian);
     }
     return GM_OK;
 }

@@ -10,7 +10,7 @@
 
 enum { ANGLE, SPEED, OFFSET, OFFSET_RATE, STATES };
 enum { DRIVE_TORQUE, LOAD_TORQUE, INPUTS };
-enum { WHEEL_ANGLE, WHEEL_SPEED, TRANSMISSION_ERROR, FORCE, OUTPUTS };
+enum { WHEEL_ANGLE, WHEEL_SPEED, TRANSMISSION_ERROR, FORCE, APEX_SHIFT, OUTPUTS };
 
 static const fmu_variable variables[] = {
     {"time", "s", "simulation time", KIND_REAL, ROLE_TIME, offsetof(fmu_values, time), 0.0, 0},
@@ -42,6 +42,8 @@ static const fmu_variable variables[] = {
      offsetof(fmu_values, output[TRANSMISSION_ERROR]), 0.0, 0},
     {"force", "N", "along the transverse line of action, > 0 drives the wheel forward", KIND_REAL,
      ROLE_OUTPUT, offsetof(fmu_values, output[FORCE]), 0.0, 0},
+    {"apex_shift", "m", "how far a double-helical pinion has floated along +z", KIND_REAL,
+     ROLE_OUTPUT, offsetof(fmu_values, output[APEX_SHIFT]), 0.0, 0},
 #include "common_variables.inc"
     {"pinion_inertia", "kg.m2", "I_p, > 0", KIND_REAL, ROLE_PARAMETER,
      offsetof(fmu_values, pinion_inertia), 0.0, 0},
@@ -53,16 +55,17 @@ static const fmu_variable variables[] = {
 
 /* The partial derivatives, from those of the torques by both angles and speeds. */
 static void differentiate(const fmu_values *values, const gm_pair *pair,
-                          const gm_mesh_result *result, fmu_jacobian *jacobian) {
+                          const gm_mesh_result *result, const gm_gradient *float_by,
+                          fmu_jacobian *jacobian) {
     const double r_bp = pair->pinion.base_radius;
     const double r_bw = pair->wheel.base_radius;
     double(*by)[MAX_STATES + MAX_INPUTS] = jacobian->by;
 
     /* At a given x the wheel turns with the pinion, r_bp / r_bw; at a given pinion angle dphi_w = -dx / r_bw. */
     const gm_gradient *gradients[] = {&result->pinion_torque_by, &result->wheel_torque_by,
-                                      &result->force_by};
-    double quantity_by[3][STATES];
-    for (int k = 0; k < 3; ++k) {
+                                      &result->force_by, float_by};
+    double quantity_by[4][STATES];
+    for (int k = 0; k < 4; ++k) {
         const gm_gradient *given = gradients[k];
         quantity_by[k][ANGLE] = given->pinion_angle + given->wheel_angle * r_bp / r_bw;
         quantity_by[k][SPEED] = given->pinion_speed + given->wheel_speed * r_bp / r_bw;
@@ -71,7 +74,6 @@ static void differentiate(const fmu_values *values, const gm_pair *pair,
     }
 
     /* The equations of motion, line by line. */
-    const double *force_by = quantity_by[2];
     by[ANGLE][SPEED] = 1.0;
     by[OFFSET][OFFSET_RATE] = 1.0;
     for (int k = 0; k < STATES; ++k) {
@@ -79,7 +81,8 @@ static void differentiate(const fmu_values *values, const gm_pair *pair,
         const double wheel_by = quantity_by[1][k] / values->wheel_inertia;
         by[SPEED][k] = pinion_by;
         by[OFFSET_RATE][k] = r_bp * pinion_by - r_bw * wheel_by;
-        by[STATES + FORCE][k] = force_by[k];
+        by[STATES + FORCE][k] = quantity_by[2][k];
+        by[STATES + APEX_SHIFT][k] = quantity_by[3][k];
     }
     by[SPEED][STATES + DRIVE_TORQUE] = 1.0 / values->pinion_inertia;
     by[OFFSET_RATE][STATES + DRIVE_TORQUE] = r_bp / values->pinion_inertia;
@@ -93,22 +96,23 @@ static void differentiate(const fmu_values *values, const gm_pair *pair,
     by[STATES + TRANSMISSION_ERROR][OFFSET] = -1.0;
 }
 
-static int evaluate(fmu_values *values, const gm_mesh *mesh, gm_workspace *workspace,
-                    fmu_jacobian *jacobian) {
-    const gm_pair *pair = gm_mesh_pair(mesh);
+static int evaluate(fmu_values *values, const file_mesh *made, fmu_jacobian *jacobian) {
+    const gm_pair *pair = file_mesh_pair(made);
     const double r_bp = pair->pinion.base_radius;
     const double r_bw = pair->wheel.base_radius;
     const double *state = values->state;
 
-    /* The mesh. */
+    /* The mesh, whose friction needs to know how fast the gears turn. */
     gm_position position;
     gm_mesh_result result;
+    file_mesh_float floated;
     int status = gm_position_from_pinion_angle(pair, state[ANGLE], state[OFFSET],
                                                state[OFFSET_RATE], &position);
     if (status == GM_OK) {
-        status = gm_mesh_evaluate_at(mesh, &position,
-                                     jacobian != NULL ? GM_WANT_DERIVATIVES : GM_WANT_FORCE,
-                                     workspace, &result);
+        position.pinion_speed = state[SPEED];
+        status = file_mesh_evaluate(made, &position,
+                                    jacobian != NULL ? GM_WANT_DERIVATIVES : GM_WANT_FORCE,
+                                    &floated, &result);
     }
     if (status != GM_OK) {
         return status;
@@ -128,11 +132,12 @@ static int evaluate(fmu_values *values, const gm_mesh *mesh, gm_workspace *works
     values->output[WHEEL_SPEED] = (r_bp * state[SPEED] - state[OFFSET_RATE]) / r_bw;
     values->output[TRANSMISSION_ERROR] = -state[OFFSET];
     values->output[FORCE] = result.force;
+    values->output[APEX_SHIFT] = floated.shift;
 
-    values->indicator[GM_DRIVE] = state[OFFSET] - gm_mesh_clearance(mesh, GM_DRIVE);
-    values->indicator[GM_COAST] = -state[OFFSET] - gm_mesh_clearance(mesh, GM_COAST);
+    values->indicator[GM_DRIVE] = state[OFFSET] - file_mesh_clearance(made, GM_DRIVE);
+    values->indicator[GM_COAST] = -state[OFFSET] - file_mesh_clearance(made, GM_COAST);
     if (jacobian != NULL) {
-        differentiate(values, pair, &result, jacobian);
+        differentiate(values, pair, &result, &floated.by, jacobian);
     }
     return GM_OK;
 }

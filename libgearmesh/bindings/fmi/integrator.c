@@ -19,8 +19,7 @@ struct fmu_integrator {
     SUNMatrix matrix;
     SUNLinearSolver solver;
     fmu_values values; /* those of the call, with the states of a step that CVODE tries */
-    const gm_mesh *mesh;
-    gm_workspace *workspace;
+    const file_mesh *made;
     double end; /* of the last step (s) */
 };
 
@@ -29,7 +28,7 @@ static int evaluate(fmu_integrator *integrator, double time, N_Vector state,
     fmu_values *values = &integrator->values;
     values->time = time;
     memcpy(values->state, NV_DATA_S(state), (size_t)model.states * sizeof(double));
-    return model.evaluate(values, integrator->mesh, integrator->workspace, jacobian);
+    return model.evaluate(values, integrator->made, jacobian);
 }
 
 static int right_hand_side(sunrealtype time, N_Vector state, N_Vector derivative, void *data) {
@@ -92,8 +91,7 @@ static fmu_integrator *start(const fmu_instance *instance) {
         return NULL;
     }
     integrator->values = instance->values;
-    integrator->mesh = instance->made.mesh;
-    integrator->workspace = instance->made.workspace;
+    integrator->made = &instance->made;
     integrator->end = instance->values.time;
 
     /* Few states and stiff contacts: BDF with the exact Jacobian, dense. */

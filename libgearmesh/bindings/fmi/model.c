@@ -19,6 +19,7 @@ void fmu_defaults(fmu_values *values) {
     memset(values, 0, sizeof *values);
     gm_pair_params_default(&values->pair);
     gm_mesh_params_default(&values->mesh);
+    values->double_helical_gap = NAN;
 
     /* What a drawing has to give is that of the paper's gears, so that the FMU runs as it is. */
     values->pair.pinion_teeth = 45;
@@ -112,9 +113,13 @@ static int prepare(fmu_instance *instance) {
             return -1;
         }
     }
-    const file_mesh_paths paths = {{path[0], path[2]}, {path[1], path[3]}};
-    if (file_mesh_init(&instance->made, &values->pair, &values->mesh, &paths, instance->message,
-                       sizeof instance->message) != 0) {
+    const file_mesh_params params = {.pair = values->pair,
+                                     .law = values->mesh,
+                                     .gap = values->double_helical_gap,
+                                     .files = {{{path[0], path[2]}, {path[1], path[3]}},
+                                               {{path[4], path[6]}, {path[5], path[7]}}}};
+    if (file_mesh_init(&instance->made, &params, instance->message, sizeof instance->message) !=
+        0) {
         return failed(instance, instance->message);
     }
     instance->is_prepared = 1;
@@ -125,15 +130,20 @@ static int prepare(fmu_instance *instance) {
  * Evaluation
  * ------------------------------------------------------------------------------------------- */
 
+static const char *text_of(int status) {
+    return status == FMU_HALVES_MOVE ? "motion, motion_rate: must be 0 with double_helical_gap, "
+                                       "whose wheel stands in its pose"
+                                     : gm_status_text(status);
+}
+
 /* The mesh at the values as they are; what the model says of them with its Jacobian unless that is NULL. */
 static int evaluate(fmu_instance *instance, fmu_jacobian *jacobian) {
     if (!instance->is_prepared && prepare(instance) != 0) {
         return -1;
     }
-    const int status =
-        model.evaluate(&instance->values, instance->made.mesh, instance->made.workspace, jacobian);
+    const int status = model.evaluate(&instance->values, &instance->made, jacobian);
     if (status != GM_OK) {
-        failed(instance, gm_status_text(status));
+        failed(instance, text_of(status));
         return status;
     }
     instance->is_evaluated = 1;
@@ -291,7 +301,7 @@ int fmu_step(fmu_instance *instance, double end) {
         }
         const int status = fmu_integrate(instance, end);
         if (status != 0) {
-            failed(instance, status > 0 ? gm_status_text(status) : "the integration failed");
+            failed(instance, status > 0 ? text_of(status) : "the integration failed");
             return -1;
         }
     }
@@ -350,8 +360,7 @@ static int differences(const fmu_instance *instance, int column, unsigned refere
     const double step = step_of(&model.variables[reference]);
     for (int side = 0; side < 2; ++side) {
         aside[side].input[column - model.states] += side == 0 ? -step : step;
-        const int status =
-            model.evaluate(&aside[side], instance->made.mesh, instance->made.workspace, NULL);
+        const int status = model.evaluate(&aside[side], &instance->made, NULL);
         if (status != GM_OK) {
             return status;
         }

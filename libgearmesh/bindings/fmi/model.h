@@ -14,9 +14,9 @@
 enum {
     MAX_STATES = 4,
     MAX_INPUTS = 14,
-    MAX_OUTPUTS = 16,
+    MAX_OUTPUTS = 17,
     INDICATORS = 2,
-    TEXTS = 4,
+    TEXTS = 8,
     TEXT_SIZE = 1024
 };
 
@@ -24,13 +24,16 @@ enum {
 typedef struct fmu_values {
     gm_pair_params pair;
     gm_mesh_params mesh;
-    double pinion_inertia; /* kg m2 */
+    double double_helical_gap; /* m; NaN: one helix */
+    double pinion_inertia;     /* kg m2 */
     double wheel_inertia;
-    double tolerance;            /* relative, of the integration of co-simulation */
-    char text[TEXTS][TEXT_SIZE]; /* files: deviations and pitch of pinion and wheel */
-    double time;                 /* s */
-    double input[MAX_INPUTS];    /* as the model says */
-    double state[MAX_STATES];    /* likewise */
+    double tolerance; /* relative, of the integration of co-simulation */
+
+    /* files: deviations and pitch of pinion and wheel, then those of the second half */
+    char text[TEXTS][TEXT_SIZE];
+    double time;              /* s */
+    double input[MAX_INPUTS]; /* as the model says */
+    double state[MAX_STATES]; /* likewise */
     double derivative[MAX_STATES];
     double output[MAX_OUTPUTS];
 
@@ -78,10 +81,13 @@ typedef struct fmu_model {
     int inputs;
     int outputs;
 
-    /* Derivatives, outputs and indicators of the values; the Jacobian unless it is NULL. Status of gearmesh.h. */
-    int (*evaluate)(fmu_values *values, const gm_mesh *mesh, gm_workspace *workspace,
-                    fmu_jacobian *jacobian);
+    /* Derivatives, outputs and indicators of the values; the Jacobian unless it is NULL. Status of gearmesh.h, or
+     * FMU_HALVES_MOVE. */
+    int (*evaluate)(fmu_values *values, const file_mesh *made, fmu_jacobian *jacobian);
 } fmu_model;
+
+/* Beside the status of gearmesh.h: a double-helical pair between shafts of which the wheel's moves. */
+enum { FMU_HALVES_MOVE = -100 };
 
 extern const fmu_model model; /* the one that this FMU is */
 

@@ -4,6 +4,7 @@
 import ctypes
 import pathlib
 import shutil
+import sys
 import zipfile
 
 import fmpy
@@ -16,6 +17,8 @@ from fmpy.validation import validate_fmu
 import gearmesh
 
 ROOT = pathlib.Path(__file__).resolve().parents[3]
+sys.path.insert(0, str(ROOT / "tests" / "clients"))
+import random_meshes  # noqa: E402
 EXAMPLE = ROOT / "data" / "example"
 VERSIONS = (2, 3)
 MODELS = ("GearMesh", "GearPair")
@@ -207,10 +210,9 @@ def test_a_mesh_follows_the_motion_of_the_wheel(fmu, version, tmp_path):
 
     expected = evaluate(pose, rate)
     assert expected.force > 100
-    parts = [f"{gear}_{part}.{axis}" for gear in ("pinion", "wheel") for part in ("force", "moment") for axis in "xyz"]
     wrench = np.concatenate([expected.wrench[name] for name in
                              ("pinion_force", "pinion_moment", "wheel_force", "wheel_moment")])
-    assert instance.get("force", *parts) == pytest.approx([expected.force, *wrench], rel=1e-9, abs=1e-9)
+    assert instance.get("force", *WRENCH) == pytest.approx([expected.force, *wrench], rel=1e-9, abs=1e-9)
 
     # By the pose and its rate, against one-sided differences.
     for known, more in (("motion.skew", ({**pose, "skew": 3e-8}, rate)),
@@ -232,6 +234,114 @@ def test_elastic_teeth_come_by_a_parameter(fmu, version, tmp_path):
     expected = mesh.evaluate(1.3e-3, 0.0, 0.01)
     assert instance.get("force") == pytest.approx(expected.force, rel=1e-6)
     assert expected.force > 100
+    instance.free()
+
+
+# ----------------------------------------------------------------------------------------------------
+# Meshes of all kinds
+# ----------------------------------------------------------------------------------------------------
+
+WRENCH = [f"{gear}_{part}.{axis}" for gear in ("pinion", "wheel") for part in ("force", "moment") for axis in "xyz"]
+FILES = ["pinion_flanks", "wheel_flanks", "pinion_second_half"]
+SHAFTS = ["pinion_angle", "wheel_angle", "pinion_speed", "wheel_speed"]
+
+
+def parameters_of(case, folder):
+    """Of a random mesh, as an FMU has them; its tables in files."""
+    values = {"double_helical_gap": case.gap}
+    for struct, given in (("gm_pair_params", case.pair), ("gm_mesh_params", case.law)):
+        values |= dict(random_meshes.fields(struct, given))
+    files = case.table_files([folder / f"{name}.csv" for name in FILES]) or [""] * len(FILES)
+    return values | dict(zip(FILES, files))
+
+
+def set_motion(instance, state, pose, rate):
+    instance.set(**dict(zip(SHAFTS, state)), **{f"motion.{name}": value for name, value in pose.items()},
+                 **{f"motion_rate.{name}": value for name, value in rate.items()})
+
+
+@pytest.mark.parametrize("version", VERSIONS)
+def test_random_meshes_have_the_bits_of_the_library(fmu, version, tmp_path):
+    instance = Instance(fmu("GearMesh", version), tmp_path)
+    outputs = ["force", "pinion_torque", "wheel_torque", *WRENCH, "apex_shift"]
+    floated = 0
+    for case in random_meshes.cases():
+        parameters = parameters_of(case, tmp_path)
+        instance.set(**parameters)
+        files = [parameters[name] for name in FILES] if case.tables is not None else None
+        for (state, pose, rate), found in zip(case.states, random_meshes.evaluations(case, files)):
+            if case.kind == "double_helical":
+                pose, rate = dict.fromkeys(pose, 0.0), dict.fromkeys(rate, 0.0)
+            set_motion(instance, state, pose, rate)
+            values = random_meshes.numbers(*found)
+            expected = np.concatenate([values[:3], values[8:]])
+            assert random_meshes.bits(instance.get(*outputs)) == random_meshes.bits(expected), case.kind
+            floated += found[1] != 0
+    assert floated > 10
+    instance.free()
+
+
+@pytest.mark.parametrize("version", VERSIONS)
+def test_a_double_helical_mesh_between_two_shafts_has_its_derivatives(fmu, version, tmp_path):
+    instance = Instance(fmu("GearMesh", version), tmp_path)
+    compared = 0
+    for case in random_meshes.cases():
+        if case.kind != "double_helical":
+            continue
+        instance.set(**parameters_of(case, tmp_path))
+        state, pose, rate = case.states[0]
+        set_motion(instance, state, dict.fromkeys(pose, 0.0), dict.fromkeys(rate, 0.0))
+        rows = ["pinion_torque", "wheel_torque", "force", "apex_shift"]
+        exact = instance.derivatives(rows, SHAFTS)
+
+        # Differences on both sides of it: those of one side are off where a kink lies there.
+        for column, step in enumerate((3e-10, 3e-10, 1e-2, 1e-2)):
+            values = []
+            for places in (-1, 0, 1):
+                instance.set(**{SHAFTS[column]: state[column] + places * step})
+                values.append(instance.get(*rows))
+            instance.set(**{SHAFTS[column]: state[column]})
+            slopes = np.diff(values, axis=0) / step
+            size = np.abs(exact[:, :2] if column < 2 else exact[:, 2:]).max(axis=1)
+            assert (np.abs(slopes - exact[:, column]).min(axis=0) <= 1e-3 * size + 1e-12).all(), (column, slopes, exact)
+            compared += 1
+        wrench = instance.derivatives(WRENCH, ["wheel_angle"])
+        assert np.isfinite(wrench).all() and np.abs(wrench).max() > 1e6
+
+        # What cannot be is told.
+        with pytest.raises(Exception):
+            instance.set(**{"motion.skew": 1e-5})
+            instance.get("force")
+    assert compared == 4 * random_meshes.EACH
+    instance.free()
+
+
+@pytest.mark.parametrize("version", VERSIONS)
+@pytest.mark.parametrize("kind", ("friction", "double_helical"))
+def test_a_gearbox_moves_by_the_torques_of_its_mesh(fmu, version, kind, tmp_path):
+    instance = Instance(fmu("GearPair", version), tmp_path, "ModelExchange")
+    if version == 2:
+        instance.fmu.enterContinuousTimeMode()
+    lost = 0
+    for case in random_meshes.cases():
+        if case.kind != kind:
+            continue
+        instance.set(**parameters_of(case, tmp_path), pinion_inertia=2e-3, wheel_inertia=4e-3, drive_torque=30.0, load_torque=20.0)
+        mesh = case.mesh()
+        radii = mesh.pair.pinion.base_radius, mesh.pair.wheel.base_radius
+        for (phi_p, phi_w, speed, wheel_speed), _, _ in case.states:
+            x, rate = (radii[0] * a - radii[1] * b for a, b in ((phi_p, phi_w), (speed, wheel_speed)))
+            states = {"pinion_angle": phi_p, "pinion_speed": speed, "offset": x, "offset_rate": rate}
+            if version == 2:
+                instance.fmu.setContinuousStates((ctypes.c_double * 4)(*states.values()), 4)
+            else:
+                instance.set(**states)
+            found = mesh.evaluate_offset(phi_p, x, rate, speed)
+            result = found if kind == "friction" else found.result
+            expected = [(30.0 - result.pinion_torque) / 2e-3, result.force, 0.0 if kind == "friction" else float(found.apex)]
+            assert instance.get("der(pinion_speed)", "force", "apex_shift") == pytest.approx(expected, rel=1e-12, abs=1e-18)
+            lost += abs(result.pinion_torque / radii[0] - result.wheel_torque / radii[1]) > 1e-3 * abs(result.force)
+    assert lost > 3
     instance.free()
 
 
@@ -316,6 +426,7 @@ def test_instances_have_nothing_in_common(fmu, version, tmp_path):
 def test_wrong_values_are_refused_and_named(fmu, version, capfd):
     for start, named in (({"normal_module": -1.0}, "normal_module: must be"),
                          ({"pinion_flanks": "nowhere.csv"}, "nowhere.csv"),
+                         ({"double_helical_gap": 0.1}, "double_helical_gap: must be"),
                          ({"offset": 1.0}, "half a base pitch")):
         with pytest.raises(Exception):
             fmpy.simulate_fmu(fmu("GearPair", version), fmi_type="CoSimulation", start_values=start, stop_time=1e-3)

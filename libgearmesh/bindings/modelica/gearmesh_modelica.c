@@ -62,25 +62,29 @@ static void check(int status) {
 }
 
 void *gearmesh_modelica_new(const double *pair, size_t pair_size, const double *law,
-                            size_t law_size, const char *pinion_flanks, const char *pinion_pitch,
-                            const char *wheel_flanks, const char *wheel_pitch) {
+                            size_t law_size, double gap, const char *pinion_flanks,
+                            const char *pinion_pitch, const char *wheel_flanks,
+                            const char *wheel_pitch, const char *pinion_second_half,
+                            const char *pinion_second_half_pitch, const char *wheel_second_half,
+                            const char *wheel_second_half_pitch) {
     need(pair_size == sizeof pair_places / sizeof pair_places[0] &&
              law_size == sizeof law_places / sizeof law_places[0],
          "GearMesh: package and library must be of one version");
 
-    gm_pair_params pair_params;
-    gm_mesh_params law_params;
-    gm_pair_params_default(&pair_params);
-    gm_mesh_params_default(&law_params);
-    fill(&pair_params, pair_places, pair, pair_size);
-    fill(&law_params, law_places, law, law_size);
+    file_mesh_params params = {
+        .gap = gap >= derived ? NAN : gap,
+        .files = {{{pinion_flanks, wheel_flanks}, {pinion_pitch, wheel_pitch}},
+                  {{pinion_second_half, wheel_second_half},
+                   {pinion_second_half_pitch, wheel_second_half_pitch}}}};
+    gm_pair_params_default(&params.pair);
+    gm_mesh_params_default(&params.law);
+    fill(&params.pair, pair_places, pair, pair_size);
+    fill(&params.law, law_places, law, law_size);
 
     /* Nothing is held any more when the tool takes over. */
     char message[MESSAGE_SIZE] = "out of memory";
-    const file_mesh_paths paths = {{pinion_flanks, wheel_flanks}, {pinion_pitch, wheel_pitch}};
     file_mesh *object = malloc(sizeof *object);
-    if (object == NULL ||
-        file_mesh_init(object, &pair_params, &law_params, &paths, message, sizeof message) != 0) {
+    if (object == NULL || file_mesh_init(object, &params, message, sizeof message) != 0) {
         free(object);
         ModelicaError(message);
     }
@@ -95,8 +99,7 @@ void gearmesh_modelica_free(void *object) {
 }
 
 void gearmesh_modelica_base_radii(void *object, double *radii, size_t size) {
-    const file_mesh *made = object;
-    const gm_pair *pair = gm_mesh_pair(made->mesh);
+    const gm_pair *pair = file_mesh_pair(object);
     need(size == 2, "GearMesh: two radii");
     radii[0] = pair->pinion.base_radius;
     radii[1] = pair->wheel.base_radius;
@@ -106,7 +109,10 @@ static void evaluate(const file_mesh *made, const double *state, size_t size, in
                      gm_mesh_result *result) {
     need(size == 4, "GearMesh: the state must be two angles and two speeds");
     const gm_state at = {state[0], state[1], state[2], state[3]};
-    check(gm_mesh_evaluate(made->mesh, &at, wanted, made->workspace, result));
+    gm_position position;
+    file_mesh_float floated;
+    check(gm_position_from_state(file_mesh_pair(made), &at, &position));
+    check(file_mesh_evaluate(made, &position, wanted, &floated, result));
 }
 
 void gearmesh_modelica_evaluate(void *object, const double *state, size_t state_size,
@@ -144,18 +150,19 @@ void gearmesh_modelica_loads(void *object, const double *pinion, size_t pinion_s
              loads_size * sizeof(double) == sizeof on,
          "GearMesh: a body must have 18 numbers");
 
+    need(made->halves == 1,
+         "GearMesh: double-helical gears between bodies must be two meshes of opposite hand");
+
     /* The structs are plain numbers in the order of the arrays. */
     memcpy(&bodies[0], pinion, sizeof bodies[0]);
     memcpy(&bodies[1], wheel, sizeof bodies[1]);
-    check(gm_mesh_evaluate_bodies(made->mesh, &bodies[0], &bodies[1], GM_WANT_FORCE,
-                                  made->workspace, &found, &on[0], &on[1]));
+    check(gm_mesh_evaluate_bodies(made->mesh[0], &bodies[0], &bodies[1], GM_WANT_FORCE,
+                                  made->workspace[0], &found, &on[0], &on[1]));
     memcpy(loads, on, sizeof on);
 }
 
 double gearmesh_modelica_static_offset(void *object, double pinion_angle, double wheel_torque) {
-    const file_mesh *made = object;
     double offset;
-    check(gm_static_equilibrium(made->mesh, pinion_angle, wheel_torque, NAN, made->workspace,
-                                &offset, NULL));
+    check(file_mesh_equilibrium(object, pinion_angle, 0.0, wheel_torque, &offset));
     return offset;
 }

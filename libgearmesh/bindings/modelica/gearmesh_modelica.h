@@ -10,10 +10,14 @@
 
 #include <stddef.h>
 
-/* pair, law: `values` of the records PairParameters and MeshParameters. Files: "" for none. */
+/* pair, law: `values` of the records PairParameters and MeshParameters. gap: of a double-helical pair (m), 1e60: one helix.
+ * Files: "" for none; those of the second half, at face II, "" as in the first. */
 void *gearmesh_modelica_new(const double *pair, size_t pair_size, const double *law,
-                            size_t law_size, const char *pinion_flanks, const char *pinion_pitch,
-                            const char *wheel_flanks, const char *wheel_pitch);
+                            size_t law_size, double gap, const char *pinion_flanks,
+                            const char *pinion_pitch, const char *wheel_flanks,
+                            const char *wheel_pitch, const char *pinion_second_half,
+                            const char *pinion_second_half_pitch, const char *wheel_second_half,
+                            const char *wheel_second_half_pitch);
 void gearmesh_modelica_free(void *object);
 
 /* radii: [2] base radii of pinion and wheel (m). */

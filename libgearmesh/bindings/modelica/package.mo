@@ -17,9 +17,15 @@ package GearMesh "The open gear mesh element: contact of two real, measured heli
       input String pinion_pitch "File of pitch deviations; empty: none";
       input String wheel_flanks "Likewise";
       input String wheel_pitch "Likewise";
+      input Real double_helical_gap = derived "Between two halves of opposite hand (m); derived: one helix";
+      input String pinion_second_half = "" "File of the half at face II; empty: as pinion_flanks";
+      input String pinion_second_half_pitch = "" "Likewise";
+      input String wheel_second_half = "" "Likewise";
+      input String wheel_second_half_pitch = "" "Likewise";
       output Mesh mesh;
-      external "C" mesh = gearmesh_modelica_new(pair, size(pair, 1), law, size(law, 1),
-        pinion_flanks, pinion_pitch, wheel_flanks, wheel_pitch)
+      external "C" mesh = gearmesh_modelica_new(pair, size(pair, 1), law, size(law, 1), double_helical_gap,
+        pinion_flanks, pinion_pitch, wheel_flanks, wheel_pitch,
+        pinion_second_half, pinion_second_half_pitch, wheel_second_half, wheel_second_half_pitch)
         annotation(Include="#include \"gearmesh_modelica.h\"",
           Library={"gearmesh_modelica", "gearmesh_io", "gearmesh"});
     end constructor;
@@ -112,6 +118,8 @@ integrator try a smaller step.</p></html>"));
 <p>The pinion's shaft is <code>flange_a</code>, the wheel's <code>flange_b</code>. Both angles are positive in the driven
 direction, as with <code>Modelica.Mechanics.Rotational.Components.IdealGear</code>. At zero angles the backlash is the same on
 both flanks. Drive and coast flanks are always both there: reversal of the load and rattle need no switch.</p>
+<p>With <code>double_helical_gap</code> the pinion has two halves and floats along its axis to where both carry the same;
+stiffness and damping are those of both together.</p>
 </html>"));
     end MeshElement;
 
@@ -133,7 +141,8 @@ both flanks. Drive and coast flanks are always both there: reversal of the load 
       annotation(Documentation(info="<html>
 <p>The pinion is at <code>frame_a</code>, the wheel at <code>frame_b</code>: the origin of each frame is the middle of the
 gear's own face on its axis, z is the axis. At zero angle, as drawn, x of both points from the pinion to the wheel. Shafts
-may bend, tilt and float; whole turns need not be known. Both bodies have to determine their frames.</p>
+may bend, tilt and float; whole turns need not be known. Both bodies have to determine their frames. Double-helical gears
+between bodies are two meshes, of helix angles of opposite sign, each at the middle of its own half.</p>
 </html>"));
     end MeshElement3D;
 
@@ -144,7 +153,13 @@ may bend, tilt and float; whole turns need not be known. Both bodies have to det
       parameter String pinion_pitch = "" "File of pitch deviations; empty: none" annotation(Dialog(group="Flanks"));
       parameter String wheel_flanks = "" "Likewise" annotation(Dialog(group="Flanks"));
       parameter String wheel_pitch = "" "Likewise" annotation(Dialog(group="Flanks"));
-      final parameter Mesh mesh = Mesh(gears.values, law.values, pinion_flanks, pinion_pitch, wheel_flanks, wheel_pitch);
+      parameter Real double_helical_gap(unit="m") = derived "Between two halves of opposite hand, helix_angle that of the one at face I; derived: one helix" annotation(Dialog(group="Double-helical"));
+      parameter String pinion_second_half = "" "File of the half at face II; empty: as pinion_flanks" annotation(Dialog(group="Double-helical"));
+      parameter String pinion_second_half_pitch = "" "Likewise" annotation(Dialog(group="Double-helical"));
+      parameter String wheel_second_half = "" "Likewise" annotation(Dialog(group="Double-helical"));
+      parameter String wheel_second_half_pitch = "" "Likewise" annotation(Dialog(group="Double-helical"));
+      final parameter Mesh mesh = Mesh(gears.values, law.values, pinion_flanks, pinion_pitch, wheel_flanks, wheel_pitch,
+        double_helical_gap, pinion_second_half, pinion_second_half_pitch, wheel_second_half, wheel_second_half_pitch);
       final parameter SI.Radius radii[2] = Functions.base_radii(mesh) "Base radii of pinion and wheel";
       annotation(Icon(graphics={
         Ellipse(extent={{-100, 60}, {20, -60}}, lineColor={0, 0, 0}, fillColor={215, 215, 215}, fillPattern=FillPattern.Solid),

@@ -7,6 +7,11 @@
  * Examples.GearPair (time in s, x in um).
  *
  *     test_modelica GEARMESH_PACKAGE_FOLDER FLANKS.csv
+ *
+ * Of the meshes of tests/clients/random_meshes.py, whose tables are in files of the folder beside it, it prints torques and
+ * force at each state, without the motion of the wheel.
+ *
+ *     test_modelica --meshes MESHES.txt FOLDER
  */
 #include "gearmesh_modelica.h"
 
@@ -83,8 +88,8 @@ static void set(record *of, const char *name, double value) {
 }
 
 static void *new_mesh(const record *gears, const record *law, const char *pinion_flanks) {
-    return gearmesh_modelica_new(gears->value, gears->count, law->value, law->count, pinion_flanks,
-                                 "", "", "");
+    return gearmesh_modelica_new(gears->value, gears->count, law->value, law->count, 1e60,
+                                 pinion_flanks, "", "", "", "", "", "", "");
 }
 
 /* Why a mesh is refused; "" if it is not. */
@@ -93,6 +98,21 @@ static const char *refusal(const record *gears, const record *law, const char *p
     if (setjmp(tool_return) == 0) {
         gearmesh_modelica_free(new_mesh(gears, law, pinion_flanks));
     }
+    return tool_message;
+}
+
+/* What is said of double-helical gears between bodies, whose pinion floats without being told. */
+static const char *refusal_of_halves(const record *gears, const record *law) {
+    const double body[18] = {0.0};
+    double loads[12];
+    void *volatile halves = NULL;
+    tool_message[0] = '\0';
+    if (setjmp(tool_return) == 0) {
+        halves = gearmesh_modelica_new(gears->value, gears->count, law->value, law->count, 1e-3, "",
+                                       "", "", "", "", "", "", "");
+        gearmesh_modelica_loads(halves, body, 18, body, 18, loads, 12);
+    }
+    gearmesh_modelica_free(halves);
     return tool_message;
 }
 
@@ -217,7 +237,77 @@ static void print_motion(void *mesh) {
     }
 }
 
+/* ---------------------------------------------------------------------------------------------
+ * Random meshes
+ * ------------------------------------------------------------------------------------------- */
+
+enum { TABLES = 3, PATH_SIZE = 1024 };
+
+static double number(FILE *file) {
+    double value;
+    if (fscanf(file, "%lf", &value) != 1) {
+        stop("a number is missing");
+    }
+    return value;
+}
+
+/* As a record has them: what is left to the library is 1e60. */
+static size_t read_values(FILE *file, double *values) {
+    const size_t count = (size_t)number(file);
+    for (size_t k = 0; k < count && k < FIELDS_MAX; ++k) {
+        values[k] = number(file);
+        values[k] = isnan(values[k]) ? 1e60 : values[k];
+    }
+    return count;
+}
+
+static void *read_mesh(FILE *file, const char *folder, int mesh) {
+    double pair[FIELDS_MAX], law[FIELDS_MAX];
+    char path[TABLES][PATH_SIZE] = {"", "", ""};
+    const double gap = number(file);
+    const size_t pair_size = read_values(file, pair);
+    const size_t law_size = read_values(file, law);
+    const int nodes = (int)number(file) * (int)number(file);
+    for (int k = 0; k < TABLES && nodes > 0; ++k) {
+        snprintf(path[k], PATH_SIZE, "%s/%d_%d.csv", folder, mesh, k);
+        for (int node = 0; node < nodes; ++node) {
+            number(file);
+        }
+    }
+    return gearmesh_modelica_new(pair, pair_size, law, law_size, isnan(gap) ? 1e60 : gap, path[0],
+                                 "", path[1], "", path[2], "", "", "");
+}
+
+static int print_meshes(const char *path, const char *folder) {
+    FILE *file = fopen(path, "r");
+    if (file == NULL) {
+        stop("no such file of meshes");
+    }
+    if (setjmp(tool_return) != 0) {
+        stop(tool_message);
+    }
+    const int meshes = (int)number(file);
+    for (int mesh = 0; mesh < meshes; ++mesh) {
+        void *made = read_mesh(file, folder, mesh);
+        const int states = (int)number(file);
+        for (int k = 0; k < states; ++k) {
+            double state[14], result[3]; /* angles and speeds; motion, which shafts have not */
+            for (int i = 0; i < 14; ++i) {
+                state[i] = number(file);
+            }
+            gearmesh_modelica_evaluate(made, state, 4, result, 3);
+            printf("%.17g %.17g %.17g\n", result[0], result[1], result[2]);
+        }
+        gearmesh_modelica_free(made);
+    }
+    fclose(file);
+    return 0;
+}
+
 int main(int argc, char **argv) {
+    if (argc == 4 && strcmp(argv[1], "--meshes") == 0) {
+        return print_meshes(argv[2], argv[3]);
+    }
     if (argc != 3) {
         stop("needs a package and a file of flanks");
     }
@@ -250,6 +340,8 @@ int main(int argc, char **argv) {
     --plain.count;
     expect(strstr(refusal(&gears, &plain, ""), "one version") != NULL, "a value is missing");
     expect(refusal(&gears, &law, argv[2])[0] == '\0', "flanks from a file");
+    expect(strstr(refusal_of_halves(&gears, &law), "opposite hand") != NULL,
+           "halves between bodies");
 
     /* A record as it is, and one that leaves all but the stiffness to the library, are the same mesh. */
     if (setjmp(tool_return) != 0) {

@@ -48,16 +48,17 @@ static int evaluate_tangents(const gm_mesh *mesh, size_t count, const gm_state *
     return status < GM_OK ? status : GM_OK;
 }
 
-/* coordinates: [count][3] pinion angle (rad), x (m), dx/dt (m/s). */
+/* coordinates: [count][4] pinion angle (rad), x (m), dx/dt (m/s), speed of the pinion (rad/s). */
 static int evaluate_offsets(const gm_mesh *mesh, size_t count, const double *coordinates,
                             const gm_pose *poses, int wanted, gm_workspace *workspace,
                             gm_mesh_result *results) {
     int status = GM_OK;
     for (size_t k = 0; k < count && status >= GM_OK; ++k) {
-        const double *given = &coordinates[3 * k];
+        const double *given = &coordinates[4 * k];
         gm_position position;
         status = gm_position_from_pinion_angle(gm_mesh_pair(mesh), given[0], given[1], given[2],
                                                &position);
+        position.pinion_speed = given[3];
         if (status >= GM_OK) {
             status = evaluate_position(mesh, &position, poses != NULL ? &poses[2 * k] : NULL,
                                        wanted, workspace, &results[k]);
@@ -77,27 +78,27 @@ static int evaluate_bodies(const gm_mesh *mesh, size_t count, const gm_body *bod
     return status < GM_OK ? status : GM_OK;
 }
 
-/* Where to begin at the second of two loads [2] from the first: x goes on in first order. NaN: under another torque. */
-static double guess_from(const gm_pair *pair, const double loads[4], double offset,
+/* Where to begin at the second of two loads [3] from the first: x goes on in first order. NaN: under another torque. */
+static double guess_from(const gm_pair *pair, const double loads[6], double offset,
                          const gm_mesh_result *result) {
     const gm_gradient *by = &result->force_by;
     const double slope =
         pair->pinion.base_radius + pair->wheel.base_radius * by->pinion_angle / by->wheel_angle;
 
-    return loads[3] == loads[1] ? offset + slope * (loads[2] - loads[0]) : NAN;
+    return loads[4] == loads[1] ? offset + slope * (loads[3] - loads[0]) : NAN;
 }
 
-/* loads: [count][2] pinion angle (rad), torque on the wheel (N m). */
+/* loads: [count][3] pinion angle (rad), torque on the wheel (N m), speed of the pinion (rad/s). */
 static int solve_static(const gm_mesh *mesh, size_t count, const double *loads,
                         gm_workspace *workspace, double *offsets, gm_mesh_result *results) {
     const gm_pair *pair = gm_mesh_pair(mesh);
     int status = GM_OK;
     for (size_t k = 0; k < count && status >= GM_OK; ++k) {
-        const double *load = &loads[2 * k];
+        const double *load = &loads[3 * k];
         const double guess =
-            k > 0 ? guess_from(pair, load - 2, offsets[k - 1], &results[k - 1]) : NAN;
-        status = gm_static_equilibrium(mesh, load[0], load[1], guess, workspace, &offsets[k],
-                                       &results[k]);
+            k > 0 ? guess_from(pair, load - 3, offsets[k - 1], &results[k - 1]) : NAN;
+        status = gm_rolling_equilibrium(mesh, load[0], load[2], load[1], guess, workspace,
+                                        &offsets[k], &results[k]);
     }
     return status < GM_OK ? status : GM_OK;
 }
@@ -133,10 +134,11 @@ static int evaluate_halves_offsets(const gm_double_helical *gears, size_t count,
                                    gm_mesh_result *each, gm_mesh_result *results) {
     int status = GM_OK;
     for (size_t k = 0; k < count && status >= GM_OK; ++k) {
-        const double *given = &coordinates[3 * k];
+        const double *given = &coordinates[4 * k];
         gm_position position;
         status = gm_position_from_pinion_angle(gm_mesh_pair(gears->half[0]), given[0], given[1],
                                                given[2], &position);
+        position.pinion_speed = given[3];
         if (status >= GM_OK) {
             status = evaluate_halves_at(gears, k, &position, wanted, apexes, each, results);
         }
@@ -150,12 +152,12 @@ static int solve_halves(const gm_double_helical *gears, size_t count, const doub
                         gm_mesh_result *results) {
     int status = GM_OK;
     for (size_t k = 0; k < count && status >= GM_OK; ++k) {
-        const double *load = &loads[2 * k];
-        const double guess = k > 0 ? guess_from(gm_mesh_pair(gears->half[0]), load - 2,
+        const double *load = &loads[3 * k];
+        const double guess = k > 0 ? guess_from(gm_mesh_pair(gears->half[0]), load - 3,
                                                 offsets[k - 1], &results[k - 1])
                                    : NAN;
         apexes[k] = k > 0 && isfinite(apexes[k - 1]) ? apexes[k - 1] : 0.0;
-        status = gm_double_helical_equilibrium(gears, load[0], 0.0, load[1], guess, &offsets[k],
+        status = gm_double_helical_equilibrium(gears, load[0], load[2], load[1], guess, &offsets[k],
                                                &apexes[k], &each[2 * k], &results[k]);
     }
     return status < GM_OK ? status : GM_OK;

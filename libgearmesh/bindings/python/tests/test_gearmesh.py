@@ -150,6 +150,24 @@ def test_static_equilibrium_carries_the_torque(pair, mesh):
     assert mesh.static(0.5, 10.0).offset == pytest.approx(mesh.static([0.4, 0.5], 10.0).offset[1], abs=1e-15)
 
 
+def test_friction_comes_with_the_speed_of_the_pinion(pair):
+    rough = gearmesh.Mesh(pair, **LAW, friction_coefficient=0.08)
+    halves = gearmesh.DoubleHelical(gearmesh.Pair.half(1e-3, **{**DRAWING, "face_width": 36e-3}), 1e-3, **LAW, friction_coefficient=0.08)
+    angle, speed = np.linspace(0, 0.14, 8), 100.0
+    for gears in (rough, halves):
+        rolls, stands = gears.static(angle, 20.0, speed), gears.static(angle, 20.0)
+        assert rolls.result.wheel_torque == pytest.approx(20.0, rel=1e-9)
+        assert (rolls.result.loss > 0.01).all() and (stands.result.loss == 0).all()
+        assert np.abs(rolls.offset - stands.offset).max() > 1e-9
+
+        # What the pinion gives goes into the wheel and into heat.
+        found = gears.evaluate_offset(angle, rolls.offset, 0.0, speed)
+        result = getattr(found, "result", found)
+        power = result.pinion_torque * speed - result.wheel_torque * speed * pair.pinion.base_radius / pair.wheel.base_radius
+        assert result.loss == pytest.approx(power, rel=1e-6)
+        assert result.loss == pytest.approx(rolls.result.loss, rel=1e-6)
+
+
 def test_refused_states_are_nan_and_the_others_are_not(mesh):
     result = mesh.evaluate([1.25e-3, np.nan, 1.25e-3, 1.0], [0.0, 0.0, 0.0, 0.0], want="wrench")
     assert np.isnan(result.force).tolist() == [False, True, False, True]

@@ -97,17 +97,19 @@ class DoubleHelical:
                                 "wheel_speed": wheel_speed})
         return self._evaluate(lib.evaluate_halves, "gm_state *", states, states.shape, want)
 
-    def evaluate_offset(self, pinion_angle: ArrayLike, offset: ArrayLike, offset_rate: ArrayLike = 0.0, *,
-                        want: str | Iterable[str] = ()) -> DoubleHelicalResult:
+    def evaluate_offset(self, pinion_angle: ArrayLike, offset: ArrayLike, offset_rate: ArrayLike = 0.0,
+                        pinion_speed: ArrayLike = 0.0, *, want: str | Iterable[str] = ()) -> DoubleHelicalResult:
         """
-        The same for a solver that integrates x = r_bp phi_p - r_bw phi_w: pinion angle (rad), x (m) and dx/dt (m/s).
+        The same for a solver that integrates x = r_bp phi_p - r_bw phi_w: pinion angle (rad), x (m) and dx/dt (m/s), and for
+        friction the speed of the pinion (rad/s).
         """
-        coordinates = stacked(pinion_angle, offset, offset_rate)
+        coordinates = stacked(pinion_angle, offset, offset_rate, pinion_speed)
         return self._evaluate(lib.evaluate_halves_offsets, "double *", coordinates, coordinates.shape[:-1], want)
 
-    def static(self, pinion_angle: ArrayLike, wheel_torque: ArrayLike) -> DoubleHelicalStaticResult:
+    def static(self, pinion_angle: ArrayLike, wheel_torque: ArrayLike,
+               pinion_speed: ArrayLike = 0.0) -> DoubleHelicalStaticResult:
         """Quasi-static equilibrium, as Mesh.static(): under a torque on the wheel (N m) that both halves carry."""
-        loads = stacked(pinion_angle, wheel_torque)
+        loads = stacked(pinion_angle, wheel_torque, pinion_speed)
         results, halves, apex = self._arrays(loads.shape[:-1])
         offsets = np.empty(apex.shape)
         check(lib.solve_halves(self._struct, results.size, pointer("double *", loads), pointer("double *", offsets),

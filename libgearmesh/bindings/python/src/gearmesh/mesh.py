@@ -120,16 +120,16 @@ class Mesh:
                                 "wheel_speed": wheel_speed})
         return self._evaluate(lib.evaluate_states, "gm_state *", states, states.shape, want, pose, pose_rate, out)
 
-    def evaluate_offset(self, pinion_angle: ArrayLike, offset: ArrayLike, offset_rate: ArrayLike = 0.0, *,
-                        want: str | Iterable[str] = (), pose: Mapping[str, ArrayLike] | None = None,
+    def evaluate_offset(self, pinion_angle: ArrayLike, offset: ArrayLike, offset_rate: ArrayLike = 0.0,
+                        pinion_speed: ArrayLike = 0.0, *, want: str | Iterable[str] = (), pose: Mapping[str, ArrayLike] | None = None,
                         pose_rate: Mapping[str, ArrayLike] | None = None, out: MeshResult | None = None) -> MeshResult:
         """
         The same for a solver that integrates x = r_bp phi_p - r_bw phi_w in place of the wheel's angle: pinion angle (rad),
-        x (m) and dx/dt (m/s).
+        x (m) and dx/dt (m/s), and for friction the speed of the pinion (rad/s).
 
         Derivatives are by the angles all the same; at a fixed pinion angle d/dx = -(d/d phi_w) / r_bw.
         """
-        coordinates = stacked(pinion_angle, offset, offset_rate)
+        coordinates = stacked(pinion_angle, offset, offset_rate, pinion_speed)
         return self._evaluate(lib.evaluate_offsets, "double *", coordinates, coordinates.shape[:-1], want, pose, pose_rate,
                               out)
 
@@ -140,7 +140,7 @@ class Mesh:
         Exact derivatives of force and wrench by both angles and the pose, and by their rates, where evaluate() has the same
         arguments: `force_by` [..., 7], `wrench_by.wheel_moment` [..., 7, 3] ..., in the order of gm_coordinate.
 
-        Friction is in the wrench. Not for elastic teeth and corner contact (Error).
+        Friction is in the wrench. Not for elastic teeth (Error).
         """
         states = filled(STATE, {"pinion_angle": pinion_angle, "wheel_angle": wheel_angle, "pinion_speed": pinion_speed,
                                 "wheel_speed": wheel_speed})
@@ -167,14 +167,15 @@ class Mesh:
         return BodiesResult(shown(results), loads["force"][..., 0, :], loads["moment"][..., 0, :],
                             loads["force"][..., 1, :], loads["moment"][..., 1, :])
 
-    def static(self, pinion_angle: ArrayLike, wheel_torque: ArrayLike) -> StaticResult:
+    def static(self, pinion_angle: ArrayLike, wheel_torque: ArrayLike, pinion_speed: ArrayLike = 0.0) -> StaticResult:
         """
-        Quasi-static equilibrium at pinion angles (rad) under a torque on the wheel (N m, > 0 loads the drive flanks).
+        Quasi-static equilibrium at pinion angles (rad) under a torque on the wheel (N m, > 0 loads the drive flanks), with
+        friction while the gears roll on each other at the speed of the pinion (rad/s).
 
         The transmission error is -offset. Neighbouring angles under the same torque cost half. NaN where there is no
         equilibrium.
         """
-        loads = stacked(pinion_angle, wheel_torque)
+        loads = stacked(pinion_angle, wheel_torque, pinion_speed)
         shape = loads.shape[:-1]
         offsets = np.empty(shape)
         results = np.empty(shape, RESULT)
