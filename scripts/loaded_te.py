@@ -169,15 +169,14 @@ def call(gearsim, path, values, *options):
 class Runs:
     """Runs of one parameter file, one after the other, in one process that begins with the first of them."""
 
-    END = re.compile(rb"(?:^|\n)# exit (\d+)\n\Z")
-    MESSAGE = re.compile(rb"^# message: (.*)$", re.MULTILINE)
+    END, ROWS, MESSAGE = b"# exit ", b"# rows ", b"# message: "
 
     def __init__(self, command):
-        self.command = [*command, "--each"]
+        self.command = [*command, "--each", "--binary"]
         self.process = None
 
     def run(self, values):
-        """Head lines {key: text} and rows of a run with {section.key: value}."""
+        """Lines of comments and rows of a run with {section.key: value}."""
         if self.process is not None and self.process.poll() is not None:  # as after Ctrl-C, between two runs
             self.close()
         if self.process is None:
@@ -188,23 +187,29 @@ class Runs:
             self.process.stdin.flush()
         except BrokenPipeError:
             pass  # it has ended, and what it has said of that is read below
-        answer, status = self._answer()
-        check(status, b"\n".join(self.MESSAGE.findall(answer)).decode(errors="replace"))
-        return _head_and_rows(answer)
+        lines, rows, status = self._answer()
+        said = [line.removeprefix(self.MESSAGE) for line in lines if line.startswith(self.MESSAGE)]
+        check(status, b"".join(said).decode(errors="replace"))
+        return lines, rows
 
     def _answer(self):
-        """All that a run prints, and its exit status."""
-        answer = bytearray()
-        while not (end := self.END.search(answer, max(0, len(answer) - 32))):
-            piece = self.process.stdout.read1(1 << 20)
-            if not piece:  # the process is gone, as after Ctrl-C
+        """Lines of comments that a run prints, its rows and its exit status."""
+        lines, blocks, columns = [], [], 0
+        while not (line := self.process.stdout.readline()).startswith(self.END):
+            if not line:  # the process is gone, as after Ctrl-C
                 self._end_input()  # a script around it may wait for more
                 said = self.process.stderr.read().decode(errors="replace")
                 status = self.process.wait()
                 self.close()
                 check(status or 1, said)
-            answer += piece
-        return bytes(answer), int(end[1])
+            if line.startswith(self.ROWS):
+                size = int(line.removeprefix(self.ROWS)) * columns
+                blocks.append(self.process.stdout.read(8 * size))
+            elif line.startswith(b"#"):
+                lines.append(line)
+            else:
+                columns = line.count(b",") + 1
+        return lines, np.frombuffer(b"".join(blocks)).reshape(-1, max(columns, 1)), int(line.removeprefix(self.END))
 
     def stop(self):
         """Ends the process while another thread waits for its answer."""
@@ -225,19 +230,10 @@ class Runs:
             self.process = None
 
 
-def _head_and_rows(text):
-    """Head lines {key: text} and rows of what gearsim has printed."""
-    head, at = {}, 0
-    while text.startswith(b"#", at):
-        end = text.index(b"\n", at)
-        key, equals, value = text[at + 1 : end].decode(errors="replace").partition("=")
-        if equals:
-            head[key.strip()] = value.strip()
-        at = end + 1
-    end = text.index(b"\n", at)
-    columns = text.count(b",", at, end) + 1
-    rows = text[end + 1 : text.rindex(b"#")].strip().replace(b"\n", b",")
-    return head, np.fromstring(rows, sep=",").reshape(-1, columns)
+def _head(lines):
+    """{key: text} of the lines `# key = text`."""
+    parts = (line.decode(errors="replace").removeprefix("#").partition("=") for line in lines)
+    return {key.strip(): text.strip() for key, equals, text in parts if equals}
 
 
 def listing(text):
@@ -288,7 +284,8 @@ class Gears:
         """What the file says, with all defaults, and what follows from its gears."""
         self.geometry = listing(self._call({}, "--geometry"))
         names = "pinion_angle_rad,te_um"
-        self.parameters, table = self._run({"output.columns": names, "analysis.loads": 1})
+        lines, table = self._run({"output.columns": names, "analysis.loads": 1})
+        self.parameters = _head(lines)
         self.mean_Nm = float(self.parameters["load.mean_Nm"])
         self.flank, self.other_flank = ("drive", "coast") if self.mean_Nm > 0 else ("coast", "drive")
         if self.differs_by_tooth() and self.parameters["analysis.period"] == "mesh":
@@ -306,9 +303,8 @@ class Gears:
         return call(self.gearsim, self.path, {**self.settings, **values}, *options)
 
     def _run(self, values):
-        """Head lines and rows of a static run."""
-        forced = {"analysis.type": "static", "output.digits": 12,
-                  "output.load_distribution": ""}  # one file for runs that go side by side
+        """Lines of comments and rows of a static run."""
+        forced = {"analysis.type": "static", "output.load_distribution": ""}  # one file for runs that go side by side
         if self.positions is not None:
             forced["analysis.positions"] = self.positions
         return self._runs().run({**forced, **values})
@@ -399,7 +395,7 @@ class Gears:
         cycles = self.mesh_cycles
         if self.differs_by_tooth() and self.parameters["analysis.period"] != "hunting":
             return cycles, te_um
-        period = max(1, round(cycles[-1] + cycles[1])) if len(cycles) > 1 else 1  # angles have some digits only
+        period = max(1, round(cycles[-1] + cycles[1])) if len(cycles) > 1 else 1  # up to rounding
         return np.concatenate([cycles, cycles + period, [2 * period]]), np.hstack([te_um, te_um, te_um[:, :1]])
 
     # ------------------------------------------------------------------------------------------------

@@ -5,10 +5,12 @@ import importlib
 import itertools
 import math
 import re
+import statistics
 
 import numpy as np
 
 import program
+import spread
 from program import InputError
 
 MOST_RUNS = 1_000_000
@@ -32,9 +34,8 @@ class Random:
     def at(self, u):
         if self.kind == "uniform":
             return self.first + u * (self.second - self.first)
-        from scipy.stats import norm  # pylint: disable=import-outside-toplevel
-
-        return norm.ppf(u, self.first, self.second)
+        normal = statistics.NormalDist(self.first, self.second)
+        return np.array([normal.inv_cdf(share) for share in u])
 
     def problem(self):
         """As SALib names it."""
@@ -125,9 +126,7 @@ class Plan:
             values = salib("sample.sobol").sample(self.problem(), samples, calc_second_order=False, seed=self.seed)
         else:
             if self.method == "lhs":
-                from scipy.stats import qmc  # pylint: disable=import-outside-toplevel
-
-                shares = qmc.LatinHypercube(len(self.random), seed=self.seed).random(samples)
+                shares = spread.latin_hypercube(len(self.random), samples, self.seed)
             else:
                 shares = np.random.default_rng(self.seed).random((samples, len(self.random)))
             values = np.column_stack([axis.at(shares[:, i]) for i, axis in enumerate(self.random)])

@@ -9,6 +9,8 @@ The command line of gearsim: options, INI files, flank files, --geometry, and ab
 Every refusal must name the place (file and line, or the option), the key and the value, end with exit
 code 2, leave an existing result as it was and nothing else behind.
 """
+import array
+import io
 import json
 import math
 import os
@@ -142,7 +144,7 @@ class Options(Case):
     def test_help_lists_all_options_exit_codes_and_keys(self):
         text = self.accepted("--help").stdout
         for option in ["--set section.key=value", "--output FILE", "--quiet", "--version", "--help", "--geometry",
-                       "--check", "--each"]:
+                       "--check", "--each", "--binary"]:
             self.assertIn(option, text)
         self.assertRegex(text, r"0 done; 1 .*; 2 .*; 130 interrupted")
         for line in ["helix_angle_deg           [0]", "profile_blend             [0.1]", "relative_tolerance        [1e-4]",
@@ -177,6 +179,8 @@ class Options(Case):
                                     (["run.ini", "--each", "--check"], "exclude each other"),
                                     (["run.ini", "--each", "--output", "x.csv"], "not to x.csv"),
                                     (["-", "--each"], "not the INI file"),
+                                    (["run.ini", "--binary"], "--binary goes with --each"),
+                                    (["run.ini", "--check", "--binary"], "--binary goes with --each"),
                                     ([""], "the name of the INI file is empty")]:
             with self.subTest(arguments):
                 result = self.run_gearsim(*arguments)
@@ -308,6 +312,30 @@ class Streams(Case):
                 said = "".join(f"{text}\n" for text in re.findall(r"(?m)^# message: (.*)$", answer))
                 self.assertEqual((re.sub(r"(?m)^# message: .*\n", "", answer), said), (alone.stdout, alone.stderr))
         self.assertEqual((self.read("run.csv"), sorted(os.listdir(self.folder))), (OLD_RESULT, ["run.csv", "run.ini"]))
+
+    def test_binary_rows_are_the_numbers_of_the_text(self):
+        """All else is the same line by line; the second run has more rows than one block holds."""
+        self.write("run.ini", PARAMS)
+        lines = ["", "analysis.type=static\toutput.columns=te_um,pinion_angle_rad\tanalysis.positions=5000", "load.mean_Nm=x",
+                 "analysis.type=static\tload.mean_Nm=-1e9\toutput.columns=te_um"]
+        command = [GEARSIM, "run.ini", "--each", "--quiet", "--set", "output.digits=17"]
+        text, binary = (subprocess.run([*command, *option], cwd=self.folder, input="\n".join(lines).encode(), timeout=60,
+                                       capture_output=True, check=False) for option in ([], ["--binary"]))
+        self.assertEqual((binary.returncode, binary.stderr), (text.returncode, text.stderr))
+        told, blocks, columns = [], [], 0
+        stream = io.BytesIO(binary.stdout)
+        while line := stream.readline():
+            if line.startswith(b"# rows "):
+                blocks.append(int(line.split()[-1]))
+                numbers = array.array("d", stream.read(8 * columns * blocks[-1]))
+                told += [tuple(numbers[i : i + columns]) for i in range(0, len(numbers), columns)]
+            else:
+                columns = columns if line.startswith(b"#") else line.count(b",") + 1
+                told.append(line)
+        wanted = [line if not re.match(rb"[-\d]", line) else tuple(map(float, line.split(b",")))
+                  for line in text.stdout.splitlines(keepends=True)]
+        self.assertTrue(told == wanted)  # a list of differences would take minutes
+        self.assertEqual((sum(blocks[1:]), len(blocks)), (5000, 3))  # 80 000 bytes in blocks of 64 KiB
 
     def test_an_interrupt_ends_all_runs(self):
         self.write("run.ini", PARAMS)

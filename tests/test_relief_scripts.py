@@ -9,6 +9,7 @@ scripts/harris and scripts/relief against the closed form of the long tip relief
 import csv
 import importlib.machinery
 import importlib.util
+import itertools
 import math
 import os
 import re
@@ -587,8 +588,27 @@ class Parts(unittest.TestCase):
         placed = loaded_te.apart(np.array([0.0, 1.0, 1.5, 9]), 2)
         np.testing.assert_allclose(placed, [-7 / 6, 5 / 6, 17 / 6, 9])
 
+    def test_the_linear_step_promises_what_its_model_says_of_all_positions(self):
+        """Positions that its linear program leaves out limit nothing: the merit of the whole model at the step is told."""
+        relief = script_case.module_of("relief")
+        random = np.random.default_rng(5)
+        with loaded_te.Gears(SPUR, [], GEARSIM) as gears:
+            keys = ("pinion_tip_relief_um", "wheel_tip_relief_um", "pinion_tip_relief_length_mm")
+            variables = [relief.Variable(gears, f"modifications.{key}", 0, 40) for key in keys]
+            for objective, weight_um, box in itertools.product(("worst", "mean"), (0.0, 3.0), (0.02, 0.2, 0.8)):
+                search = relief.Search(gears, variables, np.array([30.0, 60.0]), objective, weight_um, None)
+                search.price_um = 0.01
+                x, shape = np.array([0.1, 0.5, 0.95]), (2, 2, 60, len(search.columns))
+                curves = random.normal(size=shape) + (0, 3)[: shape[-1]]
+                slopes = random.normal(size=(*shape, 3))
+                step, hoped = search.linear_step(x, curves, slopes, box)
+                self.assertLessEqual(np.abs(step).max(), box + 1e-12)
+                merit_um = search.merit_um(curves + slopes @ step)
+                amounts = np.abs(search.offset + search.gain * (x + step)).sum()
+                self.assertAlmostEqual(hoped, merit_um + search.price_um * amounts, delta=1e-6)
+
     def test_two_mesh_cycles_are_no_more(self):
-        with loaded_te.Gears(HELICAL, ["analysis.positions=200"], GEARSIM) as gears:  # steps of rounded angles
+        with loaded_te.Gears(HELICAL, ["analysis.positions=200"], GEARSIM) as gears:
             cycles, te_um = gears.periods(np.arange(200.0)[np.newaxis])
         self.assertEqual((cycles[-1], cycles.shape, te_um.shape), (2, (401,), (1, 401)))
 

@@ -27,6 +27,9 @@ import program  # noqa: E402
 
 program.require("numpy", "scipy")
 
+import numpy as np  # noqa: E402
+
+import spread  # noqa: E402
 import summary  # noqa: E402
 import sweep_plan  # noqa: E402
 import sweep_runs  # noqa: E402
@@ -49,6 +52,13 @@ class Plans(unittest.TestCase):
             self.assertEqual(parts, list(range(20)))
         self.assertEqual(made.rows, plan("a.x=uniform(2,4)", "b.y=uniform(-1,0)", samples=20).rows)
         self.assertNotEqual(made.rows, plan("a.x=uniform(2,4)", "b.y=uniform(-1,0)", samples=20, seed=2).rows)
+
+    def test_a_latin_hypercube_has_the_numbers_of_scipy(self):
+        from scipy.stats import qmc  # pylint: disable=import-outside-toplevel
+
+        for dimensions, points, seed in ((1, 1, 0), (6, 48, 1), (3, 100, 7)):
+            np.testing.assert_array_equal(spread.latin_hypercube(dimensions, points, seed),
+                                          qmc.LatinHypercube(dimensions, seed=seed).random(points))
 
     def test_a_normal_distribution_has_its_mean_and_deviation(self):
         for method, error in (("lhs", 0.01), ("random", 0.2)):

@@ -150,6 +150,7 @@ typedef struct config {
     char *columns;           /* names separated by commas, NULL = all */
     enum wrench_use wrench;  /* all contains force and moment on each gear */
     char *load_distribution; /* file of a static analysis, NULL = none */
+    int binary_rows;         /* numbers of standard output as they are in memory */
 
     message_sink *messages; /* where to speak, NULL = nobody listens */
     enum config_purpose purpose;
@@ -183,6 +184,7 @@ typedef struct config_request {
     const char *const *overrides; /* "section.key=value" of each --set, in order */
     int override_count;
     const char *output_file; /* of --output, NULL = not given */
+    int binary_rows;         /* of --binary */
     enum config_purpose purpose;
     message_sink *messages; /* where to speak, NULL = nobody listens */
 } config_request;

@@ -221,6 +221,7 @@ static int read_values(config *conf, const config_request *request) {
     if (conf->output_file == NULL) {
         conf->output_file = default_output_file(conf->path);
     }
+    conf->binary_rows = request->binary_rows;
     return conf->output_file != NULL ? 0 : EXIT_RUN_FAILED;
 }
 

@@ -615,6 +615,15 @@ static void judge_amount(const config *conf, const char *key, double amount) {
 }
 
 /* The keys of one kind in one place: lengths in terms of face width, module and reference diameter. */
+static int has_number(const modification_values *given) {
+    for (int i = 0; i < (int)(sizeof given->value / sizeof given->value[0]); ++i) {
+        if (!isnan(given->value[i])) {
+            return 1;
+        }
+    }
+    return 0;
+}
+
 static void judge_modification(const config *conf, const usual_gear *usual, enum gm_role gear,
                                int place, int kind) {
     static const double width_possible[] = {3e-3, HUGE_VAL}, width_usual[] = {0.01, 1};
@@ -622,6 +631,10 @@ static void judge_modification(const config *conf, const usual_gear *usual, enum
     const modification_values *given = &conf->modifications[gear][place][kind];
     char key[MODIFICATION_KEY_SIZE];
 
+    /* Hardly any of all kinds is there, and names take longer to make than numbers to look at. */
+    if (!has_number(given)) {
+        return;
+    }
     modification_key_name(key, gear, place, kind, MODIFICATION_AMOUNT);
     judge_amount(conf, key, given->value[MODIFICATION_AMOUNT]);
 

@@ -11,7 +11,7 @@
 
 static const char usage[] =
     "usage: gearsim PARAMS.ini [--set section.key=value]... [--output FILE] [--quiet]\n"
-    "       gearsim PARAMS.ini --each [--set section.key=value]... [--quiet] <SETTINGS\n"
+    "       gearsim PARAMS.ini --each [--binary] [--set section.key=value]... [--quiet] <SETTINGS\n"
     "       gearsim PARAMS.ini --check | --geometry [--json]\n"
     "       gearsim --template [KIND]\n"
     "       gearsim --help | --version";
@@ -34,6 +34,12 @@ static const char options_help[] =
     "`# message: TEXT` lines\n"
     "                           and a last line `# exit CODE` each; the exit code is that of the "
     "last run that failed\n"
+    "  --binary                 with --each: rows come in blocks behind a line `# rows COUNT` "
+    "each, "
+    "their numbers row by\n"
+    "                           row as 64 bit floats in this machine's order of bytes, which takes "
+    "neither printing\n"
+    "                           nor reading of text\n"
     "  --check                  reads and checks everything, says what a run would do, runs and "
     "writes nothing\n"
     "  --geometry               derived quantities as `name = value` lines on stdout, no run\n"
@@ -116,6 +122,12 @@ static enum option_result take_each(parsing *state, const char *value) {
     return take_task(state, TASK_EACH);
 }
 
+static enum option_result take_binary(parsing *state, const char *value) {
+    (void)value;
+    state->args->request.binary_rows = 1;
+    return OPTION_TAKEN;
+}
+
 static enum option_result take_check(parsing *state, const char *value) {
     (void)value;
     return take_task(state, TASK_CHECK);
@@ -157,6 +169,7 @@ static const struct {
     {{"--output", "a file name"}, take_output},
     {{"--quiet", NULL}, take_quiet},
     {{"--each", NULL}, take_each},
+    {{"--binary", NULL}, take_binary},
     {{"--check", NULL}, take_check},
     {{"--geometry", NULL}, take_geometry},
     {{"--json", NULL}, take_json},
@@ -195,7 +208,7 @@ static int check_together(parsing *state) {
                                        "--template reads no file: ", state->line.file);
         }
         if (args->request.override_count > 0 || args->request.output_file != NULL ||
-            args->as_json) {
+            args->request.binary_rows || args->as_json) {
             return command_line_refuse(&state->line, "--template takes no other options", "");
         }
         if (args->template_kind == NULL) {
@@ -209,6 +222,9 @@ static int check_together(parsing *state) {
         }
         if (args->as_json && args->task != TASK_CHECK && args->task != TASK_GEOMETRY) {
             return command_line_refuse(&state->line, "--json goes with --check or --geometry", "");
+        }
+        if (args->request.binary_rows && args->task != TASK_EACH) {
+            return command_line_refuse(&state->line, "--binary goes with --each", "");
         }
         if (args->task == TASK_EACH && args->request.output_file != NULL) {
             return command_line_refuse(&state->line, "--each writes to standard output, not to ",

@@ -9,8 +9,9 @@
 
 /*
  * Performs a run for each line, which has what stands behind --set, separated by tabs, and wins over the command line. Its
- * messages go to standard output as `# message: TEXT`, and behind all of it comes a line `# exit STATUS`. Returns the exit
- * code of the last run that was not whole, else 0.
+ * messages go to standard output as `# message: TEXT`, and behind all of it comes a line `# exit STATUS`. With
+ * args->request.binary_rows the rows are not text (output_csv.c). Returns the exit code of the last run that was not whole,
+ * else 0.
  */
 int each_run(const arguments *args, int (*perform)(const arguments *args));
 

@@ -126,6 +126,7 @@ static output_file *create(const config *conf, const char *const names[], int na
     created->digits = conf->digits;
     created->format = format_of(conf);
     created->is_stream = is_stream(conf->output_file);
+    created->is_binary = conf->binary_rows;
     created->started = wall_clock();
     created->result.data = created->result.lock = -1;
     *exit_code = created->format == NULL

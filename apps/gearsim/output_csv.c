@@ -4,6 +4,8 @@
 /*
  * CSV: provenance lines that begin with '#', a line of names, rows; a run that ends early leaves whole
  * lines and a last line `# incomplete: why`, which takes the place of rows where the disk is full.
+ * A program that reads standard output may have the numbers of rows as they are in memory, in blocks
+ * behind a line `# rows COUNT` each.
  */
 #include "number.h"
 #include "output_format.h"
@@ -18,7 +20,8 @@ enum { BUFFER_SIZE = 1 << 16, ROW_SIZE_MAX = COLUMNS_MAX * NUMBER_TEXT_SIZE };
 typedef struct csv_memory {
     off_t head;    /* bytes of the lines before the first row */
     off_t written; /* bytes of whole lines in the file */
-    size_t used;   /* bytes in the buffer; whole lines only */
+    size_t used;   /* bytes in the buffer; whole lines or whole rows only */
+    long rows;     /* in the buffer as they are in memory */
     char buffer[BUFFER_SIZE];
 } csv_memory;
 
@@ -54,6 +57,15 @@ static void cut_to_whole_lines(const output_file *output) {
     }
 }
 
+/* So many rows follow as they are in memory. */
+static int announce(const output_file *output, long rows) {
+    char line[32];
+    size_t done;
+
+    const int length = snprintf(line, sizeof line, "# rows %ld\n", rows);
+    return write_all(output->result.data, line, (size_t)length, &done);
+}
+
 /* Empties the buffer. After an error nothing more is written. */
 static int flush(output_file *output) {
     csv_memory *memory = output->memory;
@@ -62,9 +74,13 @@ static int flush(output_file *output) {
     if (output->error != 0) {
         return output->error;
     }
-    const int error = write_all(output->result.data, memory->buffer, memory->used, &done);
-    memory->written += (off_t)whole_lines(memory->buffer, done);
+    int error = memory->rows > 0 ? announce(output, memory->rows) : 0;
+    if (error == 0) {
+        error = write_all(output->result.data, memory->buffer, memory->used, &done);
+        memory->written += (off_t)whole_lines(memory->buffer, done);
+    }
     memory->used = 0;
+    memory->rows = 0;
     if (error != 0) {
         cut_to_whole_lines(output);
     }
@@ -111,6 +127,26 @@ static int begin(output_file *output, const config *conf, const char *const name
     return error;
 }
 
+/* Both return where the text, or the numbers, end. */
+static char *put_text(char *out, const output_file *output, const double values[]) {
+    for (int i = 0; i < output->columns.count; ++i) {
+        /* + 0.0: no "-0" in tables. */
+        out += number_format(out, values[output->columns.name[i]] + 0.0, output->digits);
+        *out++ = ',';
+    }
+    out[-1] = '\n';
+    return out;
+}
+
+static char *put_numbers(char *out, const output_file *output, const double values[]) {
+    for (int i = 0; i < output->columns.count; ++i) {
+        const double value = values[output->columns.name[i]];
+        memcpy(out, &value, sizeof value);
+        out += sizeof value;
+    }
+    return out;
+}
+
 static int row(output_file *output, const double values[]) {
     csv_memory *memory = output->memory;
 
@@ -119,14 +155,11 @@ static int row(output_file *output, const double values[]) {
         return error;
     }
 
-    char *out = memory->buffer + memory->used;
-    for (int i = 0; i < output->columns.count; ++i) {
-        /* + 0.0: no "-0" in tables. */
-        out += number_format(out, values[output->columns.name[i]] + 0.0, output->digits);
-        *out++ = ',';
-    }
-    out[-1] = '\n';
-    memory->used = (size_t)(out - memory->buffer);
+    char *start = memory->buffer + memory->used;
+    const char *behind =
+        output->is_binary ? put_numbers(start, output, values) : put_text(start, output, values);
+    memory->used = (size_t)(behind - memory->buffer);
+    memory->rows += output->is_binary;
     return 0;
 }
 

@@ -41,6 +41,7 @@ struct output_file {
     column_list columns;
     int digits;
     int is_stream;  /* standard output: no names, and nothing that was written comes back */
+    int is_binary;  /* numbers of rows as they are in memory; a stream only */
     double rows;    /* written so far */
     double started; /* by wall_clock() */
     int error;      /* errno of the write that failed, 0 = none: nothing more is written */
