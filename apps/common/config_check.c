@@ -44,9 +44,15 @@ static int check_profile_window(const config *conf) {
     if (conf->profile_from < conf->profile_to) {
         return 0;
     }
-    config_complain(conf, "flanks.profile_from",
-                    "must be smaller than flanks.profile_to (got %.9g and %.9g)",
-                    conf->profile_from, conf->profile_to);
+    if (config_text(conf, "flanks.profile_from") != NULL) {
+        config_complain(conf, "flanks.profile_from",
+                        "must be smaller than flanks.profile_to (got %.9g and %.9g)",
+                        conf->profile_from, conf->profile_to);
+    } else {
+        config_complain(conf, "flanks.profile_to",
+                        "must be larger than flanks.profile_from (got %.9g and %.9g)",
+                        conf->profile_to, conf->profile_from);
+    }
     return 1;
 }
 

@@ -200,10 +200,10 @@ static int refuse_elastic(const config *conf, const gm_pair *pair, const gm_mesh
     if (strstr(field, "fillet_radius") != NULL && strstr(requirement, "rack's flanks") != NULL) {
         snprintf(most, sizeof most, ", here %.6g", largest_fillet_radius(pair, field));
     }
-    config_complain(conf, key,
-                    "must be %s%s (got %s), for elastic teeth: mesh.law = elastic is taken "
-                    "without mesh.stiffness_N_per_m",
-                    requirement, most, text != NULL ? text : "none, so it is derived");
+    const int is_asked_for = config_text(conf, "mesh.law") != NULL;
+    config_complain(conf, key, "must be %s%s (got %s), for elastic teeth: mesh.law = elastic%s",
+                    requirement, most, text != NULL ? text : "none, so it is derived",
+                    is_asked_for ? "" : " is taken without mesh.stiffness_N_per_m");
     return EXIT_BAD_INPUT;
 }
 
