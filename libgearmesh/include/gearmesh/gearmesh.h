@@ -1112,6 +1112,7 @@ typedef struct gm_tangent {
  *         gm_mesh_evaluate(), and differences for the pose
  *
  * The wrench contains friction; the rates of both angles change how fast the flanks approach and how fast they slide.
+ * libgearmesh/examples/bodies.c takes it to the coordinates of two bodies.
  * Accuracy: roundings. Cost: two to three evaluations with tables, and more with friction and corners, as lines are cut
  * into parts; docs/performance.md. Source: docs/equations.md.
  */
