@@ -290,6 +290,14 @@ static void add_touching(const line *l, const long double c[3], long double low,
         result->contact_t1[side] += weight * t1;
         result->contact_rho[side] += weight * rho;
     }
+
+    /* Boole's rule: exact for delta squared, which is of fourth degree. */
+    static const long double boole[5] = {7.0L, 32.0L, 12.0L, 32.0L, 7.0L};
+    for (int k = 0; k < 5; ++k) {
+        const long double u = u_a + (u_b - u_a) * k / 4;
+        const long double delta = c[0] + u * (c[1] + u * c[2]);
+        result->square[side] += boole[k] / 90.0L * length * delta * delta;
+    }
 }
 
 /** Adds the piece low .. high, on which delta is a polynomial of second degree. */

@@ -547,7 +547,7 @@ static void a_cache_serves_its_own_mesh_alone(void) {
     free_fixture(&other);
 }
 
-/* Numbers of pairs and wrenches are exact on request, the force beside the pairs is that of the cache. */
+/* Numbers of pairs, wrenches and energies are exact on request, the force beside the pairs is that of the cache. */
 static void pairs_and_wrenches_are_exact_on_request(void) {
     const gm_cache_params params = params_of(GM_DRIVE, 8, 8, 8e-6);
     fixture f;
@@ -557,13 +557,15 @@ static void pairs_and_wrenches_are_exact_on_request(void) {
         gm_test_context("state %d", i);
         gm_position position = random_position(&f, &seed);
         position.offset = offset_of(&f, gm_test_uniform(&seed, 0.0, 6e-6));
-        gm_mesh_result held, counted, wrench, exact;
+        gm_mesh_result held, counted, wrench, energy, exact;
         GM_ASSERT_INT(gm_mesh_evaluate_at(f.mesh, &position, GM_WANT_FORCE, NULL, &held), GM_OK);
         GM_ASSERT_INT(gm_mesh_evaluate_at(f.mesh, &position, GM_WANT_PAIRS, NULL, &counted), GM_OK);
         GM_ASSERT_INT(gm_mesh_evaluate_at(f.mesh, &position, GM_WANT_WRENCH, NULL, &wrench), GM_OK);
+        GM_ASSERT_INT(gm_mesh_evaluate_at(f.mesh, &position, GM_WANT_ENERGY, NULL, &energy), GM_OK);
         GM_ASSERT_INT(plain_evaluate(&f.pair, f.flanks[0], f.flanks[1], &position, 1e8, 0.0,
-                                     GM_WANT_WRENCH, &exact),
+                                     GM_WANT_WRENCH | GM_WANT_ENERGY, &exact),
                       GM_OK);
+        GM_ASSERT_REL(energy.energy, exact.energy, 0.0);
         GM_ASSERT_REL(counted.force, held.force, 0.0);
         GM_ASSERT_INT(counted.contact.drive_pairs, exact.contact.drive_pairs);
         GM_ASSERT(memcmp(&wrench.wrench, &exact.wrench, sizeof exact.wrench) == 0);

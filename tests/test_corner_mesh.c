@@ -101,9 +101,9 @@ static double deviation_at(const model_flanks *flanks, int side, int tooth, doub
 }
 
 typedef struct brute {
-    double sum, contact, arm[2]; /* of one side; arm: integral of f gap', [role] */
-    double force[3], moment[3];  /* on the wheel, about the pinion's axis, per stiffness */
-    double beyond;               /* part of the sum that is beyond the path */
+    double sum, square, largest, contact, arm[2]; /* of one side; arm: integral of f gap', [role] */
+    double force[3], moment[3]; /* on the wheel, about the pinion's axis, per stiffness */
+    double beyond;              /* part of the sum that is beyond the path */
 
     /* Friction, and by what: mu, v0, speeds of both gears counter-clockwise. */
     double coefficient, creep, pinion_speed, wheel_speed;
@@ -221,6 +221,8 @@ static void brute_side(const random_case *c, const gm_position *position, int si
             }
             const double share = f / POINTS;
             b->sum += share;
+            b->square += share * f;
+            b->largest = fmax(b->largest, f);
             b->contact += 1.0 / POINTS;
             for (int role = GM_PINION; role <= GM_WHEEL; ++role) {
                 b->arm[role] += roll[role] > 0.0 ? share * place[role].by_roll : 0.0;
@@ -282,9 +284,8 @@ static void forces_are_sums_over_points(void) {
             gm_position position = random_place(&seed, &c, i);
             position.offset_rate = 0.01; /* of no force: without damping */
             gm_mesh_result r;
-            GM_ASSERT_INT(gm_mesh_evaluate_at(mesh, &position, GM_WANT_WRENCH | GM_WANT_DERIVATIVES,
-                                              NULL, &r),
-                          GM_OK);
+            const int wanted = GM_WANT_WRENCH | GM_WANT_DERIVATIVES | GM_WANT_ENERGY;
+            GM_ASSERT_INT(gm_mesh_evaluate_at(mesh, &position, wanted, NULL, &r), GM_OK);
             brute b[2] = {{.sum = 0.0}, {.sum = 0.0}};
             brute_side(&c, &position, GM_DRIVE, &b[GM_DRIVE]);
             brute_side(&c, &position, GM_COAST, &b[GM_COAST]);
@@ -297,6 +298,9 @@ static void forces_are_sums_over_points(void) {
             GM_ASSERT_ABS(r.contact.drive, b[GM_DRIVE].sum, e);
             GM_ASSERT_ABS(r.contact.coast, b[GM_COAST].sum, e);
             GM_ASSERT_ABS(r.contact.drive_contact, b[GM_DRIVE].contact, 30.0 / POINTS);
+            const double square = b[GM_DRIVE].square + b[GM_COAST].square;
+            GM_ASSERT_ABS(r.energy, 0.5 * k * square,
+                          k * e * fmax(b[GM_DRIVE].largest, b[GM_COAST].largest));
             check_contact(&r, position.offset_rate);
             GM_ASSERT_ABS(r.pinion_torque,
                           k * r_bp *

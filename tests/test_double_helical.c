@@ -142,7 +142,7 @@ static void rotation_of(double skew, double inclination, double about_z, double 
 typedef struct whole_load {
     double pinion_force[3], pinion_moment[3], wheel_force[3], wheel_moment[3];
     double force[2]; /* of each half along its line of action */
-    double pinion_torque, wheel_torque, loss;
+    double pinion_torque, wheel_torque, loss, energy;
 } whole_load;
 
 typedef struct two_bodies {
@@ -165,7 +165,7 @@ static void add_about(const gm_load *load, const double at[3], const double abou
 }
 
 static whole_load load_of(const two_bodies *gears) {
-    whole_load sum = {{0.0}, {0.0}, {0.0}, {0.0}, {0.0}, 0.0, 0.0, 0.0};
+    whole_load sum = {{0.0}, {0.0}, {0.0}, {0.0}, {0.0}, 0.0, 0.0, 0.0, 0.0};
     const double pinion_width = gears->whole.pinion_face_width;
     for (int k = 0; k < 2; ++k) {
         const gm_pair *pair = gm_mesh_pair(gears->mesh[k]);
@@ -196,7 +196,7 @@ static whole_load load_of(const two_bodies *gears) {
 
         gm_mesh_result result;
         gm_load on_pinion, on_wheel;
-        GM_ASSERT_INT(gm_mesh_evaluate_bodies(gears->mesh[k], &pinion, &wheel, GM_WANT_FORCE, NULL,
+        GM_ASSERT_INT(gm_mesh_evaluate_bodies(gears->mesh[k], &pinion, &wheel, GM_WANT_ENERGY, NULL,
                                               &result, &on_pinion, &on_wheel),
                       GM_OK);
         const double about_pinion[3] = {0.0, 0.0, 0.0};
@@ -208,6 +208,7 @@ static whole_load load_of(const two_bodies *gears) {
         sum.pinion_torque += result.pinion_torque;
         sum.wheel_torque += result.wheel_torque;
         sum.loss += result.loss;
+        sum.energy += result.energy;
     }
     return sum;
 }
@@ -301,9 +302,9 @@ static void both_halves_are_two_meshes_between_two_bodies(void) {
                                                     &offset, &apex, each, &result),
                       GM_OK);
         gm_position position = position_at(&pair, angle, offset, 1e-3, speed);
-        GM_ASSERT_INT(
-            gm_double_helical_evaluate_at(&gears, &position, GM_WANT_WRENCH, &apex, each, &result),
-            GM_OK);
+        GM_ASSERT_INT(gm_double_helical_evaluate_at(
+                          &gears, &position, GM_WANT_WRENCH | GM_WANT_ENERGY, &apex, each, &result),
+                      GM_OK);
 
         bodies.angle[0] = angle;
         bodies.angle[1] = (pair.pinion.base_radius * angle - offset) / pair.wheel.base_radius;
@@ -323,6 +324,7 @@ static void both_halves_are_two_meshes_between_two_bodies(void) {
         GM_ASSERT_ABS(result.pinion_torque, load.pinion_torque, 2.0 * allowed * radius);
         GM_ASSERT_ABS(result.wheel_torque, load.wheel_torque, 2.0 * allowed * radius);
         GM_ASSERT_ABS(result.loss, load.loss, 2.0 * allowed / force * load.loss);
+        GM_ASSERT_ABS(result.energy, load.energy, 4.0 * allowed / force * load.energy);
         compare_vectors(result.wrench.pinion_force, load.pinion_force, 2.0 * allowed);
         compare_vectors(result.wrench.wheel_force, load.wheel_force, 2.0 * allowed);
         compare_vectors(result.wrench.pinion_moment, load.pinion_moment, 2.0 * allowed * radius);

@@ -971,7 +971,7 @@ static void several_loads_are_refused_as_one_is(void) {
                   GM_STATE_OUT_OF_RANGE);
     GM_ASSERT_INT(gm_rolling_equilibria(mesh, 0.1, 0.0, torque, -1, 0, NULL, x, r),
                   GM_ERR_PARAMETER);
-    GM_ASSERT_INT(gm_rolling_equilibria(mesh, 0.1, 0.0, torque, 2, 8, NULL, x, r),
+    GM_ASSERT_INT(gm_rolling_equilibria(mesh, 0.1, 0.0, torque, 2, 16, NULL, x, r),
                   GM_ERR_PARAMETER);
     GM_ASSERT_INT(gm_rolling_equilibria(NULL, 0.1, 0.0, torque, 2, 0, NULL, x, r), GM_ERR_NULL);
     GM_ASSERT_INT(gm_rolling_equilibria(mesh, 0.1, 0.0, NULL, 2, 0, NULL, x, r), GM_ERR_NULL);

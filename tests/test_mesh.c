@@ -9,7 +9,7 @@
 
 #include <pthread.h>
 
-enum { ALL_WANTED = GM_WANT_DERIVATIVES | GM_WANT_WRENCH | GM_WANT_PAIRS };
+enum { ALL_WANTED = GM_WANT_DERIVATIVES | GM_WANT_WRENCH | GM_WANT_PAIRS | GM_WANT_ENERGY };
 
 static gm_mesh_params good_params(int model) {
     gm_mesh_params params;

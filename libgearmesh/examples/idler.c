@@ -72,14 +72,10 @@ static gm_body body_of(const row_of_gears *row, int gear, const double *y) {
     return body;
 }
 
-/* Of ideal flanks, which are pressed evenly on the side that touches. */
-static double energy_of(const gm_penetration *c, double *loss) {
+/* What damping takes: parallel axes approach each other at one speed all over the side that touches. */
+static double loss_of(const gm_penetration *c) {
     const double contact = c->drive_contact + c->coast_contact;
-    if (!(contact > 0.0)) {
-        return 0.0;
-    }
-    *loss += damping * c->rate * c->rate / contact;
-    return 0.5 * stiffness * c->penetration * c->penetration / contact;
+    return contact > 0.0 ? damping * c->rate * c->rate / contact : 0.0;
 }
 
 static int derivatives(sunrealtype t, N_Vector state, N_Vector rates, void *data) {
@@ -100,7 +96,7 @@ static int derivatives(sunrealtype t, N_Vector state, N_Vector rates, void *data
         const gm_body pinion = body_of(row, k, y), wheel = body_of(row, k + 1, y);
         gm_load on[2];
         gm_mesh_result result;
-        const int status = gm_mesh_evaluate_bodies(row->mesh[k], &pinion, &wheel, GM_WANT_FORCE,
+        const int status = gm_mesh_evaluate_bodies(row->mesh[k], &pinion, &wheel, GM_WANT_ENERGY,
                                                    NULL, &result, &on[0], &on[1]);
         if (status != GM_OK) {
             return status; /* > 0: a smaller step may help */
@@ -109,7 +105,8 @@ static int derivatives(sunrealtype t, N_Vector state, N_Vector rates, void *data
         moment[k + 1] += on[1].moment[2];
         bearing[0] += on[1 - k].force[0];
         bearing[1] += on[1 - k].force[1];
-        row->stored += energy_of(&result.contact, &loss);
+        row->stored += result.energy;
+        loss += loss_of(&result.contact);
     }
 
     /* Angles, speeds, and what is summed over time. */

@@ -73,13 +73,10 @@ static gm_body body_at(double radius, double place, double orbit, double angle, 
     return body;
 }
 
-/* Ideal flanks are pressed evenly, and only the drive flanks: overlap and speed of approach are the same all over. */
-static double energy_of(const gm_penetration *c, double *loss) {
-    if (!(c->drive_contact > 0.0)) {
-        return 0.0;
-    }
-    *loss += damping * c->drive_rate * c->drive_rate / c->drive_contact;
-    return 0.5 * stiffness * c->drive * c->drive / c->drive_contact;
+/* What damping takes: parallel axes approach each other at one speed all over the side that touches, the drive side. */
+static double loss_of(const gm_penetration *c) {
+    return c->drive_contact > 0.0 ? damping * c->drive_rate * c->drive_rate / c->drive_contact
+                                  : 0.0;
 }
 
 static double place_of(int planet, const double *y) {
@@ -113,10 +110,10 @@ static int derivatives(sunrealtype t, N_Vector state, N_Vector rates, void *data
         const gm_body planet = planet_of(box, k, y);
         gm_mesh_result inner, outer;
         gm_load on_sun, from_sun, from_ring, on_ring;
-        int status = gm_mesh_evaluate_bodies(box->at_sun, &sun, &planet, GM_WANT_FORCE, NULL,
+        int status = gm_mesh_evaluate_bodies(box->at_sun, &sun, &planet, GM_WANT_ENERGY, NULL,
                                              &inner, &on_sun, &from_sun);
         if (status == GM_OK) {
-            status = gm_mesh_evaluate_bodies(box->at_ring, &planet, &ring, GM_WANT_FORCE, NULL,
+            status = gm_mesh_evaluate_bodies(box->at_ring, &planet, &ring, GM_WANT_ENERGY, NULL,
                                              &outer, &from_ring, &on_ring);
         }
         if (status != GM_OK) {
@@ -131,7 +128,8 @@ static int derivatives(sunrealtype t, N_Vector state, N_Vector rates, void *data
         torque[1] += p[0] * f[1] - p[1] * f[0];
         torque[2 + k] = from_sun.moment[2] + from_ring.moment[2];
         box->push[k] = (p[0] * f[1] - p[1] * f[0]) / box->arm;
-        box->stored += energy_of(&inner.contact, &loss) + energy_of(&outer.contact, &loss);
+        box->stored += inner.energy + outer.energy;
+        loss += loss_of(&inner.contact) + loss_of(&outer.contact);
     }
 
     /* Angles, speeds, and what is summed over time. */

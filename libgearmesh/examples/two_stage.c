@@ -77,14 +77,10 @@ static gm_body body_of(const gearbox *box, int gear, const double *y) {
     return body;
 }
 
-/* Of ideal flanks, which are pressed evenly on the side that touches. */
-static double energy_of(const gm_penetration *c, double *loss) {
+/* What damping takes: parallel axes approach each other at one speed all over the side that touches. */
+static double loss_of(const gm_penetration *c) {
     const double contact = c->drive_contact + c->coast_contact;
-    if (!(contact > 0.0)) {
-        return 0.0;
-    }
-    *loss += damping * c->rate * c->rate / contact;
-    return 0.5 * stiffness * c->penetration * c->penetration / contact;
+    return contact > 0.0 ? damping * c->rate * c->rate / contact : 0.0;
 }
 
 static int derivatives(sunrealtype t, N_Vector state, N_Vector rates, void *data) {
@@ -111,15 +107,16 @@ static int derivatives(sunrealtype t, N_Vector state, N_Vector rates, void *data
         const gm_body pinion = body_of(box, driver, y), wheel = body_of(box, driven, y);
         gm_load on[2];
         gm_mesh_result result;
-        const int status = gm_mesh_evaluate_bodies(box->mesh[stage], &pinion, &wheel, GM_WANT_FORCE,
-                                                   NULL, &result, &on[0], &on[1]);
+        const int status = gm_mesh_evaluate_bodies(box->mesh[stage], &pinion, &wheel,
+                                                   GM_WANT_ENERGY, NULL, &result, &on[0], &on[1]);
         if (status != GM_OK) {
             return status; /* > 0: a smaller step may help */
         }
         moment[driver] += on[0].moment[2];
         moment[driven] += on[1].moment[2];
         axial += on[1 - stage].force[2];
-        box->stored += energy_of(&result.contact, &loss);
+        box->stored += result.energy;
+        loss += loss_of(&result.contact);
     }
 
     /* Angles, speeds, and what is summed over time. */

@@ -456,6 +456,9 @@ static OWN_STACK void add_sums(gmi_corner_view *v, const gmi_corner_line *whole,
     gmi_side_sum *side = &v->sums->side;
     const double advance = v->lines.advance;
     side->sum += sum->sum;
+    if (v->wanted & GMI_SQUARES) {
+        return; /* nothing else is known then */
+    }
     side->contact += sum->contact;
     side->sum_t1 += sum->sum_t1;
     side->sum_rho += whole->origin * sum->sum + advance * sum->sum_t1;
@@ -531,7 +534,7 @@ SPECIALIZED int add_part(gmi_corner_view *v, const gmi_corner_line *whole,
     gmi_line part = gmi_line_between(&whole->line, from->t1, to->t1);
     int held[2], is_beyond[2];
     hold_flanks(v, middle, &part, held);
-    int mask = v->sliding != NULL ? GMI_MOMENTS : v->wanted & GMI_MOMENTS;
+    int mask = v->sliding != NULL ? GMI_MOMENTS : v->wanted & (GMI_MOMENTS | GMI_SQUARES);
     if (follows || v->wanted & GMI_DERIVATIVES) {
         mask = GMI_TANGENT | GMI_MOMENTS;
         begin_tangent(v, whole, held);

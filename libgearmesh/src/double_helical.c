@@ -261,6 +261,7 @@ static void add_halves(const gm_double_helical *gears, const gm_mesh_result each
     sum->pinion_torque = each[0].pinion_torque + each[1].pinion_torque;
     sum->wheel_torque = each[0].wheel_torque + each[1].wheel_torque;
     sum->loss = each[0].loss + each[1].loss;
+    sum->energy = each[0].energy + each[1].energy;
     sum->contact = mean_of_contacts(pair, each);
 
     if (wanted & GM_WANT_DERIVATIVES) {

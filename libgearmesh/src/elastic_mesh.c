@@ -564,6 +564,17 @@ static int elastic_sum(const gm_mesh *mesh, int side, const gm_position *positio
     return GM_OK;
 }
 
+/* Of the teeth as the balance has it, and of the bodies, springs in series that bear the sum of the loads. */
+double gmi_elastic_energy(const gm_mesh *mesh, int side, const gmi_side_sum *total,
+                          const gm_workspace *workspace) {
+    const gmi_elastic_work *work = &workspace->side[side];
+    if (!(total->sum > 0.0)) {
+        return 0.0; /* clear of each other, and the workspace may be of another position */
+    }
+    const double load = gmi_elastic_sum(2 * work->slots, work->force);
+    return work->energy + 0.5 * mesh->elastic->body_compliance * load * load;
+}
+
 int gmi_side_sum_by_law(const gm_mesh *mesh, int side, const gm_position *position, int wanted,
                         gm_workspace *workspace, gmi_side_sum *total) {
     *total = gmi_no_contact();

@@ -131,6 +131,10 @@ void gmi_wide_set_material(const gm_mesh *mesh, int side, const gmi_lines *lines
 int gmi_side_sum_by_law(const gm_mesh *mesh, int side, const gm_position *position, int wanted,
                         gm_workspace *workspace, gmi_side_sum *total);
 
+/* Energy of one side with its bodies, from its last sum in that workspace (J). */
+double gmi_elastic_energy(const gm_mesh *mesh, int side, const gmi_side_sum *total,
+                          const gm_workspace *workspace);
+
 /*
  * elastic_friction.c: friction of one side, from its last sum in that workspace; mask: of that sum, derivatives with it.
  */

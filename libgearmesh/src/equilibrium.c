@@ -446,7 +446,7 @@ int gm_rolling_equilibria(const gm_mesh *mesh, double pinion_angle, double pinio
     if (mesh == NULL || wheel_torque == NULL) {
         return GM_ERR_NULL;
     }
-    int is_right = (wanted & ~(GM_WANT_DERIVATIVES | GM_WANT_WRENCH | GM_WANT_PAIRS)) == 0;
+    int is_right = (wanted & ~GMI_WANT_ALL) == 0;
     for (int k = 0; k < count; ++k) {
         is_right = is_right && gmi_is_finite(wheel_torque[k]);
     }

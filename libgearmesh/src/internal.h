@@ -237,7 +237,8 @@ enum gmi_wanted {
     GMI_ROLL = 8,                /* what a common roll of all lines does to the energy */
     GMI_CONTACT_DERIVATIVES = 4, /* of the touching part; only together with GMI_DERIVATIVES */
     GMI_TANGENT = 16,            /* all of gmi_side_tangent; only together with GMI_MOMENTS */
-    GMI_DEPTHS = 32 /* gmi_depths in place of the sums; only together with GMI_DERIVATIVES */
+    GMI_DEPTHS = 32, /* gmi_depths in place of the sums; only together with GMI_DERIVATIVES */
+    GMI_SQUARES = 64 /* the sum is that of the overlap squared (m2), and nothing else is there */
 };
 
 /* The sums over all lines of one side. */
@@ -581,7 +582,11 @@ static inline void gmi_line_add_slopes(const gmi_line_tangent *tangent, double p
 void gmi_line_integrate_depths(const gmi_line *line, const gmi_grid *pinion, const gmi_grid *wheel,
                                gmi_depths *depths, gmi_line_sum *result);
 
-/* wanted: neither GMI_TANGENT nor GMI_DEPTHS. */
+/* Of f squared, and of 1, alone. */
+void gmi_line_integrate_squares(const gmi_line *line, const gmi_grid *pinion, const gmi_grid *wheel,
+                                gmi_line_sum *result);
+
+/* wanted: none of GMI_TANGENT, GMI_DEPTHS and GMI_SQUARES. */
 void gmi_line_integrate(const gmi_line *line, const gmi_grid *pinion, const gmi_grid *wheel,
                         int wanted, gmi_line_sum *result);
 
@@ -727,6 +732,9 @@ void gmi_side_sum_tables(const gm_pair *pair, const gmi_engagement *at, const gm
                          int side, const gm_position *position, int wanted, gmi_side_sum *total);
 void gmi_side_sum_simple(const gm_pair *pair, const gmi_engagement *at, int side, double offset,
                          gmi_side_sum *total);
+
+/* penetration.c: the energy of one side with constant stiffness, K / 2 times the integral of the overlap squared (J). */
+double gmi_side_energy(const gm_mesh *mesh, int side, const gm_position *position);
 
 /* Weights of integrals over the touching part. */
 enum gmi_weight { GMI_WHOLE, GMI_BY_T1, GMI_BY_RHO, GMI_WEIGHTS };
@@ -1138,6 +1146,9 @@ void gmi_side_sum_tangent(const gm_mesh *mesh, int side, const gm_position *posi
 enum { GMI_LOADS_MAX = 32 };
 void gmi_equilibrium_guesses(const gm_mesh *mesh, const gm_position *position,
                              const double *wheel_torque, int count, double *offset, double *slope);
+
+/* All of enum gm_wanted. */
+enum { GMI_WANT_ALL = GM_WANT_DERIVATIVES | GM_WANT_WRENCH | GM_WANT_PAIRS | GM_WANT_ENERGY };
 
 /* As gm_mesh_evaluate_at() without the cache, of a position that has been checked and posed. GM_OK or GM_NO_CONVERGENCE. */
 int gmi_mesh_evaluate_exact(const gm_mesh *mesh, const gm_position *position, int wanted,

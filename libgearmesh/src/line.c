@@ -186,6 +186,16 @@ static inline double integral_of(const quadratic *f, double length, double middl
     return length * (at_middle + f->curvature * (length * length * (1.0 / 12.0)));
 }
 
+/*
+ * Integral of the square of a quadratic over a length, from its Bezier points: no terms of either sign where it is above 0.
+ */
+static inline double square_integral_of(double value, double control, double end_value,
+                                        double length) {
+    return length * (1.0 / 15.0) *
+           (3.0 * (value * value + end_value * end_value) + 3.0 * control * (value + end_value) +
+            2.0 * control * control + value * end_value);
+}
+
 /* First moments of the part [begin, end] (from the start of the piece), in which f > 0. */
 static inline void add_moments(const piece *part, double begin, double end, gmi_line_sum *total) {
     const double length = end - begin;
@@ -461,6 +471,19 @@ static inline void add_touching(const piece *part, double begin, double end, int
     }
 }
 
+/* The same with the square of f. */
+static inline void add_touching_square(const piece *part, double begin, double end,
+                                       gmi_line_sum *total) {
+    const quadratic *f = &part->f;
+    const double length = end - begin;
+    const double half_slope = f->half_slope + begin * f->curvature;
+    const double value = f->value + begin * (f->half_slope + half_slope);
+    const double control = value + length * half_slope;
+    const double end_value = control + length * (half_slope + length * f->curvature);
+    total->sum += square_integral_of(value, control, end_value, length);
+    total->contact += length;
+}
+
 /*
  * A root of f within the piece ends a touching part. When f grows by df everywhere, it moves by df / |df/ds| and the
  * touching part grows by that, whichever way f crosses zero.
@@ -473,8 +496,8 @@ static inline void add_root(const piece *part, double root, double per_slope, gm
     }
 }
 
-/* A piece in which f may change its sign: split at the roots of the quadratic. */
-SPECIALIZED void split_piece(const piece *part, int wanted, tangent_walk *walked,
+/* A piece in which f may change its sign: split at the roots of the quadratic. is_square: a constant at each call. */
+SPECIALIZED void split_piece(const piece *part, int wanted, int is_square, tangent_walk *walked,
                              gmi_line_sum *total) {
     const quadratic f = part->f;
     if (!(part->length > 0.0)) { /* two crossings at the same t1, up to rounding */
@@ -508,6 +531,10 @@ SPECIALIZED void split_piece(const piece *part, int wanted, tangent_walk *walked
         const double middle = 0.5 * (cuts[k] + cuts[k + 1]);
         const double at_middle = f.value + middle * (2.0 * f.half_slope + middle * f.curvature);
         if (cuts[k + 1] > cuts[k] && at_middle > 0.0) {
+            if (is_square) {
+                add_touching_square(part, cuts[k], cuts[k + 1], total);
+                continue;
+            }
             add_touching(part, cuts[k], cuts[k + 1], wanted, total);
             if (walked != NULL) {
                 go_on_touching(part, cuts[k], cuts[k + 1], per_slope, walked, total->tangent);
@@ -517,13 +544,17 @@ SPECIALIZED void split_piece(const piece *part, int wanted, tangent_walk *walked
 }
 
 static void add_split(const piece *part, int wanted, gmi_line_sum *total) {
-    split_piece(part, wanted, NULL, total);
+    split_piece(part, wanted, 0, NULL, total);
+}
+
+static void add_split_squares(const piece *part, gmi_line_sum *total) {
+    split_piece(part, GMI_SUM, 1, NULL, total);
 }
 
 /* The same with the stretches of a tangent; end_value: f at the end, where rounding may have put a root on either side. */
 static void add_split_tangent(const piece *part, double end_value, int wanted, tangent_walk *walked,
                               gmi_line_sum *total) {
-    split_piece(part, wanted, walked, total);
+    split_piece(part, wanted, 0, walked, total);
     const double end = part->s + part->length;
     if (!(end_value > 0.0)) {
         end_stretch(walked, end, 0.0, total->tangent);
@@ -538,7 +569,7 @@ typedef struct walk_state {
     quadratic f;
     trace first, second; /* through the tables of both flanks; the first one's face lines lead */
     double faces;        /* face lines behind that one (GMI_MOMENTS without GMI_TANGENT) */
-    double three_sums;   /* three times the sum */
+    double three_sums;   /* three times the sum; of squares once */
     double contact;
     double two_first, two_second; /* twice the sums of d deviation / d u of both flanks */
 
@@ -732,7 +763,9 @@ SPECIALIZED void advance(walk_state *at, double end, int wanted, tangent_walk *w
                              {grows, 0.5 * (grows + grows_at_end), grows_at_end}};
         add_depths(&part, &points, split->depths);
     } else if (gmi_smaller(gmi_smaller(value, control), end_value) > 0.0) {
-        const double three = length * (value + control + end_value);
+        const double three = wanted & GMI_SQUARES
+                                 ? square_integral_of(value, control, end_value, length)
+                                 : length * (value + control + end_value);
         at->three_sums += three;
         if (!(wanted & GMI_TANGENT)) { /* whose stretches tell */
             at->contact += length;
@@ -752,6 +785,8 @@ SPECIALIZED void advance(walk_state *at, double end, int wanted, tangent_walk *w
         const piece part = piece_ahead(at, length, wanted);
         if (wanted & GMI_TANGENT) {
             add_split_tangent(&part, end_value, wanted, walked, split);
+        } else if (wanted & GMI_SQUARES) {
+            add_split_squares(&part, split);
         } else {
             add_split(&part, wanted, split);
         }
@@ -871,7 +906,8 @@ SPECIALIZED void walk(walk_state at, const gmi_grid *first, const gmi_grid *seco
         result->sum_t1 += (2.0 * at.six_moments + at.twelve_moments) * (1.0 / 12.0);
     }
     const double per_rate = 1.0 / first->face_rate; /* from s to t1 */
-    result->sum = per_rate * (result->sum + at.three_sums * (1.0 / 3.0));
+    const double share = wanted & GMI_SQUARES ? 1.0 : 1.0 / 3.0;
+    result->sum = per_rate * (result->sum + at.three_sums * share);
     result->contact = per_rate * (result->contact + at.contact);
     if (wanted & GMI_MOMENTS) { /* from v1 = face_base + face_rate t1 */
         const double base = first->face_base * per_rate;
@@ -927,7 +963,8 @@ static OWN_STACK void walk_apart(walk_state at, const gmi_grid *first, const gmi
     if (wanted == GMI_SUM) {
         walk(at, first, second, end, GMI_SUM, 0, NULL, result);
     } else {
-        walk(at, first, second, end, wanted & ~(GMI_TANGENT | GMI_DEPTHS), 0, NULL, result);
+        walk(at, first, second, end, wanted & ~(GMI_TANGENT | GMI_DEPTHS | GMI_SQUARES), 0, NULL,
+             result);
     }
 }
 
@@ -961,8 +998,18 @@ static OWN_STACK void walk_depths(walk_state at, const gmi_grid *first, const gm
     }
 }
 
+/* The walk for squares. */
+static OWN_STACK void walk_squares(walk_state at, const gmi_grid *first, const gmi_grid *second,
+                                   double end, int same_faces, gmi_line_sum *result) {
+    if (same_faces) {
+        walk(at, first, second, end, GMI_SQUARES, 1, NULL, result);
+    } else {
+        walk(at, first, second, end, GMI_SQUARES, 0, NULL, result);
+    }
+}
+
 /* What a walk is for, beside sums. */
-enum walk_kind { WALK_SUMS, WALK_TANGENT, WALK_DEPTHS };
+enum walk_kind { WALK_SUMS, WALK_TANGENT, WALK_DEPTHS, WALK_SQUARES };
 
 /* The pinion, which leads, has a table; the wheel may have one. */
 SPECIALIZED void walk_tables(const gmi_line *line, const gmi_grid *first, const gmi_grid *second,
@@ -1020,6 +1067,8 @@ SPECIALIZED void walk_tables(const gmi_line *line, const gmi_grid *first, const 
     }
     if (kind == WALK_TANGENT) {
         walk_tangent(&at, first, second, end, same_faces, result);
+    } else if (kind == WALK_SQUARES) {
+        walk_squares(at, first, second, end, same_faces, result);
     } else if (kind == WALK_DEPTHS) {
         walk_depths(at, first, second, end, same_faces, result);
     } else if (!same_faces) {
@@ -1033,7 +1082,8 @@ SPECIALIZED void walk_tables(const gmi_line *line, const gmi_grid *first, const 
     } else if (wanted == GMI_MOMENTS) {
         walk(at, first, second, end, GMI_MOMENTS, 1, NULL, result);
     } else {
-        walk(at, first, second, end, wanted & ~(GMI_TANGENT | GMI_DEPTHS), 1, NULL, result);
+        walk(at, first, second, end, wanted & ~(GMI_TANGENT | GMI_DEPTHS | GMI_SQUARES), 1, NULL,
+             result);
     }
 }
 
@@ -1085,6 +1135,21 @@ void gmi_line_integrate_tangent(const gmi_line *line, const gmi_grid *pinion, co
                     WALK_TANGENT, result);
     }
     finish_tangent(tangent);
+}
+
+void gmi_line_integrate_squares(const gmi_line *line, const gmi_grid *pinion, const gmi_grid *wheel,
+                                gmi_line_sum *result) {
+    const int wheel_leads = line->pinion == NULL && line->wheel != NULL;
+    result->sum = result->contact = 0.0;
+    if (line->pinion == NULL && line->wheel == NULL) {
+        const quadratic f = {line->overlap, line->half_slope, line->curvature};
+        const piece whole = {line->from, line->to - line->from, f, 0.0, 0.0, 0.0, 0.0};
+        add_split_squares(&whole, result);
+    } else {
+        const gmi_line led = wheel_leads ? led_by_wheel(line) : *line;
+        walk_tables(&led, wheel_leads ? wheel : pinion, wheel_leads ? &ideal_grid : wheel,
+                    GMI_SQUARES, WALK_SQUARES, result);
+    }
 }
 
 void gmi_line_integrate_depths(const gmi_line *line, const gmi_grid *pinion, const gmi_grid *wheel,

@@ -428,7 +428,7 @@ static inline void set_gradients_nan(gm_mesh_result *result) {
 void gmi_mesh_result_set_nan(gm_mesh_result *result) {
     const double nan = gmi_nan();
     result->force = result->drive_force = result->coast_force = nan;
-    result->pinion_torque = result->wheel_torque = result->loss = nan;
+    result->pinion_torque = result->wheel_torque = result->loss = result->energy = nan;
     set_gradients_nan(result);
     result->contact = gmi_penetration_nan();
     gmi_wrench_set(&result->wrench, nan);
@@ -507,6 +507,7 @@ SPECIALIZED void set_forces(const gm_mesh *mesh, const gmi_side_force *drive_for
     result->pinion_torque = result->force * mesh->pair->pinion.base_radius;
     result->wheel_torque = result->force * mesh->pair->wheel.base_radius;
     result->loss = 0.0;
+    result->energy = gmi_nan(); /* found apart, where it is wanted */
 
     if (wanted & GM_WANT_DERIVATIVES) {
         set_force_derivatives(mesh->pair, drive_force, coast_force, result);
@@ -612,6 +613,20 @@ static OWN_STACK int evaluate_any(const gm_mesh *mesh, const gm_position *positi
     return GM_OK;
 }
 
+/* Energy with constant stiffness: a walk along the lines for itself, so that those for the force know nothing of it. */
+static OWN_STACK void set_energy(const gm_mesh *mesh, const gm_position *position,
+                                 gm_mesh_result *result) {
+    result->energy = gmi_side_energy(mesh, GM_DRIVE, position);
+    result->energy += gmi_side_energy(mesh, GM_COAST, position);
+}
+
+static OWN_STACK int evaluate_with_energy(const gm_mesh *mesh, const gm_position *position,
+                                          int wanted, gm_mesh_result *result) {
+    (void)evaluate_any(mesh, position, wanted, result);
+    set_energy(mesh, position, result);
+    return GM_OK;
+}
+
 /*
  * Elastic teeth do work when all lines roll on together, with x held: the torque on the pinion exceeds F r_bp by it, or the
  * energy would not be kept. Its derivative by the roll itself, below 1e-4 of the gradient, is left out of that.
@@ -645,6 +660,10 @@ static OWN_STACK void finish_elastic(const gm_mesh *mesh, const gm_position *pos
     set_result(mesh, &sums[GM_DRIVE], &sums[GM_COAST], slides ? friction : NULL, approach, wanted,
                result);
     add_roll(mesh, &sums[GM_DRIVE], &sums[GM_COAST], wanted, result);
+    if (wanted & GM_WANT_ENERGY) {
+        result->energy = gmi_elastic_energy(mesh, GM_DRIVE, &sums[GM_DRIVE], workspace) +
+                         gmi_elastic_energy(mesh, GM_COAST, &sums[GM_COAST], workspace);
+    }
 }
 
 static OWN_STACK int evaluate_elastic(const gm_mesh *mesh, const gm_position *position, int wanted,
@@ -714,6 +733,9 @@ static OWN_STACK void evaluate_followed(const gm_mesh *mesh, const gm_position *
                         accumulated(mesh, 1, wanted), &result->contact);
     set_forces(mesh, &forces[GM_DRIVE], &forces[GM_COAST], slides ? friction : NULL, wanted,
                result);
+    if (wanted & GM_WANT_ENERGY) {
+        set_energy(mesh, position, result);
+    }
 }
 
 static inline int are_tilting(const gmi_rates rates[2]) {
@@ -745,6 +767,9 @@ static OWN_STACK void evaluate_rubbing(const gm_mesh *mesh, const gm_position *p
         gmi_friction_sum_of(mesh->pair, side, &rubbing, NULL, &friction[side]);
     }
     set_result(mesh, sums[GM_DRIVE], sums[GM_COAST], friction, approach, wanted, result);
+    if (wanted & GM_WANT_ENERGY) {
+        set_energy(mesh, position, result);
+    }
 }
 
 /* rates: NULL = axes at rest. */
@@ -913,6 +938,13 @@ static OWN_STACK void evaluate_corners(const gm_mesh *mesh, const gm_position *p
         } else if (sums.side.contact > 0.0) {
             add_coast(mesh, &sums, approach, wanted, result);
         }
+
+        /* The lines once more, for the squares. */
+        if (wanted & GM_WANT_ENERGY) {
+            gmi_side_sum_corners(mesh, side, position, GMI_SQUARES, 0.0, NULL, &sums);
+            const double energy = 0.5 * mesh->law.stiffness * sums.side.sum;
+            result->energy = side == GM_DRIVE ? energy : result->energy + energy;
+        }
     }
 }
 
@@ -926,7 +958,8 @@ int gmi_mesh_evaluate_exact(const gm_mesh *mesh, const gm_position *position, in
     } else if (mesh->friction.is_on) {
         evaluate_sliding(mesh, position, NULL, wanted, result);
     } else {
-        return evaluate_any(mesh, position, wanted, result);
+        return wanted & GM_WANT_ENERGY ? evaluate_with_energy(mesh, position, wanted, result)
+                                       : evaluate_any(mesh, position, wanted, result);
     }
     return GM_OK;
 }
@@ -936,7 +969,7 @@ static int evaluate_cached(const gm_mesh *mesh, const gm_position *position, int
                            gm_workspace *workspace, gm_mesh_result *result) {
     const int held = mesh->cache->side;
     gmi_side_sum sums[2];
-    if ((wanted & GM_WANT_WRENCH) ||
+    if ((wanted & (GM_WANT_WRENCH | GM_WANT_ENERGY)) ||
         !gmi_cache_look_up(mesh->cache, position, workspace, &sums[held])) {
         return gmi_mesh_evaluate_exact(mesh, position, wanted, workspace, result);
     }
@@ -962,8 +995,7 @@ static int evaluate_cached(const gm_mesh *mesh, const gm_position *position, int
 
 /* A sum of enum gm_wanted. */
 static inline int is_mask(int wanted) {
-    const int all = GM_WANT_DERIVATIVES | GM_WANT_WRENCH | GM_WANT_PAIRS;
-    return (wanted & ~all) == 0;
+    return (wanted & ~GMI_WANT_ALL) == 0;
 }
 
 static inline int check_evaluation(const gm_mesh *mesh, const gm_position *position, int wanted,
@@ -1002,8 +1034,11 @@ static OWN_STACK int evaluate_checked(const gm_mesh *mesh, const gm_position *po
         gmi_mesh_result_set_nan(result);
         return status;
     }
-    return mesh->is_special ? evaluate_special(mesh, position, wanted, workspace, result)
-                            : evaluate_any(mesh, position, wanted, result);
+    if (mesh->is_special) {
+        return evaluate_special(mesh, position, wanted, workspace, result);
+    }
+    return wanted & GM_WANT_ENERGY ? evaluate_with_energy(mesh, position, wanted, result)
+                                   : evaluate_any(mesh, position, wanted, result);
 }
 
 int gm_mesh_evaluate_at(const gm_mesh *mesh, const gm_position *position, int wanted,
@@ -1016,7 +1051,8 @@ int gm_mesh_evaluate_at(const gm_mesh *mesh, const gm_position *position, int wa
     if (mesh != NULL && position != NULL && mesh->is_plain && is_mask(wanted) &&
         gmi_check_position(mesh->pair, position) == GM_OK) {
         if (wanted != GM_WANT_FORCE) {
-            return evaluate_any(mesh, position, wanted, result);
+            return wanted & GM_WANT_ENERGY ? evaluate_with_energy(mesh, position, wanted, result)
+                                           : evaluate_any(mesh, position, wanted, result);
         }
         return mesh->side[GM_DRIVE].pinion == NULL && mesh->side[GM_DRIVE].wheel == NULL
                    ? evaluate_ideal_force(mesh, position, result)
@@ -1120,6 +1156,9 @@ static OWN_STACK int evaluate_moving(const gm_mesh *mesh, const gm_position *pos
         finish_elastic(mesh, position, sums, approach, rates, wanted, mask, workspace, result);
     } else {
         set_result(mesh, &sums[GM_DRIVE], &sums[GM_COAST], NULL, approach, wanted, result);
+        if (wanted & GM_WANT_ENERGY) {
+            set_energy(mesh, position, result);
+        }
     }
     return GM_OK;
 }

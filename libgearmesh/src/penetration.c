@@ -211,7 +211,7 @@ static int tilt_line(side_view *view, double rho_origin, int wanted, gmi_line *l
     if (!gmi_tilt_cut_line(&view->cuts, rho_origin, part)) {
         return 0;
     }
-    if ((wanted & ~(GMI_MOMENTS | GMI_TANGENT)) != 0) {
+    if ((wanted & ~(GMI_MOMENTS | GMI_TANGENT | GMI_SQUARES)) != 0) {
         move_ends(view, rho_origin);
     }
 
@@ -876,6 +876,33 @@ void gmi_side_sum_simple(const gm_pair *pair, const gmi_engagement *at, int side
     total->contact_rho = pitch_point;
     total->sum_t1 = delta * total->contact_t1;
     total->sum_rho = delta * total->contact_rho;
+}
+
+double gmi_side_energy(const gm_mesh *mesh, int side, const gm_position *position) {
+    const gmi_engagement *at = &mesh->engagement;
+    const gmi_side *prepared = &mesh->side[side];
+    const double half = 0.5 * mesh->law.stiffness;
+    const double delta = gmi_ideal_penetration(at, side, position->offset);
+    gmi_side_sum total;
+    if (gmi_side_is_clear(at, prepared, side, position->offset)) {
+        return 0.0;
+    }
+
+    /* One overlap all over the side: its square is that times the sum. */
+    if (mesh->model == GM_MODEL_SIMPLE) {
+        gmi_side_sum_simple(mesh->pair, at, side, position->offset, &total);
+        return half * delta * total.sum;
+    }
+    if (prepared->pinion == NULL && prepared->wheel == NULL && !at->is_tilted) {
+        total = gmi_no_contact();
+        gmi_side_sum_ideal(mesh->pair, at, side, position, GMI_SUM, &total);
+        return half * delta * total.sum;
+    }
+
+    /* Else line by line. */
+    total = gmi_no_contact();
+    gmi_side_sum_tables(mesh->pair, at, prepared, side, position, GMI_SQUARES, &total);
+    return half * total.sum;
 }
 
 /* ---------------------------------------------------------------------------------------------

@@ -38,6 +38,8 @@ static inline void gmi_flanks_integrate(const gmi_side *prepared, const gmi_grid
     } else if (prepared->ramps > 0) {
         gmi_ramps_integrate(line, pinion_grid, wheel_grid, prepared->pinion, prepared->wheel,
                             wanted, sum);
+    } else if (wanted & GMI_SQUARES) {
+        gmi_line_integrate_squares(line, pinion_grid, wheel_grid, sum);
     } else {
         gmi_line_integrate(line, pinion_grid, wheel_grid, wanted, sum);
     }

@@ -175,6 +175,8 @@ SPECIALIZED void follow_edges(const gmi_line *line, const gmi_grid *pinion, cons
         }
         if (wanted & GMI_TANGENT) {
             gmi_line_integrate_tangent(&part, pinion, wheel, &sum);
+        } else if (wanted & GMI_SQUARES) {
+            gmi_line_integrate_squares(&part, pinion, wheel, &sum);
         } else {
             gmi_line_integrate(&part, pinion, wheel, wanted, &sum);
         }
@@ -212,8 +214,15 @@ static OWN_STACK void integrate_all(const gmi_line *line, const gmi_grid *pinion
                                     const gmi_tables *wheel_tables, int wanted,
                                     gmi_line_sum *result) {
     trace list[2 * GM_FLANK_RAMPS_MAX];
-    follow_edges(line, pinion, wheel, pinion_tables, wheel_tables, wanted & ~GMI_TANGENT, list,
-                 result);
+    follow_edges(line, pinion, wheel, pinion_tables, wheel_tables,
+                 wanted & ~(GMI_TANGENT | GMI_SQUARES), list, result);
+}
+
+static OWN_STACK void integrate_squares(const gmi_line *line, const gmi_grid *pinion,
+                                        const gmi_grid *wheel, const gmi_tables *pinion_tables,
+                                        const gmi_tables *wheel_tables, gmi_line_sum *result) {
+    trace list[2 * GM_FLANK_RAMPS_MAX];
+    follow_edges(line, pinion, wheel, pinion_tables, wheel_tables, GMI_SQUARES, list, result);
 }
 
 void gmi_ramps_integrate_tangent(const gmi_line *line, const gmi_grid *pinion,
@@ -228,6 +237,8 @@ void gmi_ramps_integrate(const gmi_line *line, const gmi_grid *pinion, const gmi
                          int wanted, gmi_line_sum *result) {
     if (wanted == GMI_SUM) {
         integrate_sum(line, pinion, wheel, pinion_tables, wheel_tables, result);
+    } else if (wanted & GMI_SQUARES) {
+        integrate_squares(line, pinion, wheel, pinion_tables, wheel_tables, result);
     } else {
         integrate_all(line, pinion, wheel, pinion_tables, wheel_tables, wanted, result);
     }

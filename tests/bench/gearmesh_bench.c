@@ -62,6 +62,10 @@ static void run_wrench(const bench *b, long count) {
     run_positions(b, count, GM_WANT_WRENCH);
 }
 
+static void run_energy(const bench *b, long count) {
+    run_positions(b, count, GM_WANT_ENERGY);
+}
+
 /*
  * As a solver with shafts that bend asks: another pose at every call. A shift along the axis moves the face lines of both
  * tables apart.
@@ -191,12 +195,14 @@ static const bench_case cases[] = {
     {"ideal.derivatives", "   with exact derivatives", IDEAL, run_derivatives},
     {"ideal.angles", "   from angles, with derivatives", IDEAL, run_angles},
     {"ideal.wrench", "   wrench", IDEAL, run_wrench},
+    {"ideal.energy", "   force and stored energy", IDEAL, run_energy},
     {"ideal.equilibrium", "   equilibrium", IDEAL, run_equilibrium},
     {"ideal.curve", "   static curve, 1000 positions", IDEAL, run_curve},
     {"tables.force", "tables, force", TABLES, run_force},
     {"tables.derivatives", "   with exact derivatives", TABLES, run_derivatives},
     {"tables.angles", "   from angles, with derivatives", TABLES, run_angles},
     {"tables.wrench", "   wrench", TABLES, run_wrench},
+    {"tables.energy", "   force and stored energy", TABLES, run_energy},
     {"tables.posed", "   force, in a pose of each call", TABLES, run_posed},
     {"tables.tangent", "   all derivatives of force and wrench there", TABLES, run_tangent},
     {"tables.tilted", "   force, there without a shift along the axis", TABLES, run_tilted},

@@ -982,7 +982,11 @@ enum gm_wanted {
     GM_WANT_DERIVATIVES =
         1, /**< exact derivatives of force and penetration; about a third more work with tables */
     GM_WANT_WRENCH = 2, /**< force and moment on both gears */
-    GM_WANT_PAIRS = 4 /**< numbers of pairs also where a cache answers, which does not count them */
+    GM_WANT_PAIRS =
+        4, /**< numbers of pairs also where a cache answers, which does not count them */
+    GM_WANT_ENERGY =
+        8 /**< gm_mesh_result.energy; about another evaluation of the force with constant stiffness, of
+                            elastic teeth next to nothing */
 };
 
 /** Partial derivatives of one quantity by what a solver knows, all else fixed. */
@@ -1009,6 +1013,14 @@ typedef struct gm_mesh_result {
     /** power that friction takes, >= 0; pinion_torque times the pinion's speed is wheel_torque times the wheel's, F
      * dx/dt, and this (W) */
     double loss;
+
+    /**
+     * U stored in what is pressed together, both flank sides: K / 2 times the integral of the overlap squared, or what
+     * elastic teeth, contact and bodies hold. It depends on where the gears are alone. Without damping and friction,
+     * pinion_torque is dU/d phi_p and wheel_torque -dU/d phi_w, so that dU/dx = F, but for what docs/equations.md lists:
+     * with constant stiffness lines that end with some overlap, and the slope of deviations along the profile (J)
+     */
+    double energy;
 
     gm_gradient force_by;         /**< derivatives of F (N/rad, N s/rad) */
     gm_gradient pinion_torque_by; /**< of pinion_torque (N m/rad, N m s/rad) */

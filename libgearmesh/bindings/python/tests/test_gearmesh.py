@@ -105,6 +105,16 @@ def test_arguments_broadcast_and_what_is_not_wanted_is_nan(mesh):
     assert np.isnan(result.force_by.pinion_angle).all()
 
 
+def test_the_force_is_the_slope_of_the_energy(mesh):
+    offsets = np.linspace(20e-6, 70e-6, 1001)  # ideal flanks: apart, and then pressed together
+    result = mesh.evaluate_offset(0.01, offsets, want="energy")
+    assert np.isnan(mesh.evaluate_offset(0.01, offsets).energy).all()
+    assert (result.energy[result.force == 0] == 0).all() and result.energy[-1] > 0
+    slope = np.gradient(result.energy, offsets)
+    # Lines end with the overlap: 1e-3 of the force, as the overlap is to the length of the path.
+    assert slope[1:-1] == pytest.approx(result.force[1:-1], rel=0.01, abs=0.002 * result.force.max())
+
+
 def test_results_go_where_an_earlier_call_put_them(pair, mesh):
     states = states_about_contact(pair, 20)
     coordinates = states[0], np.full(20, 54e-6)

@@ -105,8 +105,9 @@ class Mesh:
         """
         Force, penetration and contact at angles (rad) and speeds (rad/s), numbers or arrays that broadcast together.
 
-        `want`: members of gm_wanted, one or several: "derivatives", "wrench", "pairs". `pose` of the wheel at each state,
-        in addition to the one that the mesh was prepared in, and its rate: dicts of fields of gm_pose (m, rad; m/s, rad/s).
+        `want`: members of gm_wanted, one or several: "derivatives", "wrench", "pairs", "energy". `pose` of the wheel at each
+        state, in addition to the one that the mesh was prepared in, and its rate: dicts of fields of gm_pose (m, rad; m/s,
+        rad/s).
 
         The result has the shape of the arguments and the fields of gm_mesh_result as attributes: `force` (N),
         `force_by.wheel_angle` (N/rad), `contact.drive_contact`, `wrench.pinion_moment` [..., 3] (N m) ...; what was not
@@ -114,7 +115,7 @@ class Mesh:
         where a tooth would be skipped. Solvers that control their step take NaN as a demand for a smaller one.
 
         `out`: the array that an earlier call returned, of the same shape, which is overwritten and returned. Of many states
-        of ideal flanks, new memory (328 bytes each) can take longer than the evaluation.
+        of ideal flanks, new memory (336 bytes each) can take longer than the evaluation.
         """
         states = filled(STATE, {"pinion_angle": pinion_angle, "wheel_angle": wheel_angle, "pinion_speed": pinion_speed,
                                 "wheel_speed": wheel_speed})
