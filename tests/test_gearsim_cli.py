@@ -1277,6 +1277,7 @@ class Output(Case):
         some = {"dynamic": {"apex_shift_um"},
                 "static": {"load_torque_Nm", "face_load_factor", "largest_line_load_N_per_mm", "largest_pressure_N_per_mm2",
                            "apex_shift_um", "loss_W"}}
+        asked = ["stored_energy_J"]  # by name alone
         everything = ["gears.double_helical_gap_mm=1", "mesh.law=elastic", "mesh.friction_coefficient=0.05", "mesh.stiffness_N_per_m=",
                       "mesh.damping_Ns_per_m=", "mesh.stations=9"]
         self.write("run.ini", PARAMS)
@@ -1285,6 +1286,9 @@ class Output(Case):
             with open(os.path.join(SOURCES, f"{kind}_columns.c"), encoding="utf-8") as file:
                 rows = re.findall(r'(?m)^ *\{"(\w+)", ', file.read())
             self.assertGreater(len(rows), 10)
+            self.assertEqual([name for name in rows if name in asked], asked)
+            self.assertEqual(self.columns_of([f"analysis.type={kind}", settings[0], "output.columns=stored_energy_J"]), asked)
+            rows = [name for name in rows if name not in asked]
             plain = self.columns_of([f"analysis.type={kind}", settings[0]])
             self.assertEqual(plain, [name for name in rows if name not in some[kind]])
             self.assertEqual(self.columns_of([f"analysis.type={kind}", *settings, *everything]), rows)

@@ -1153,6 +1153,33 @@ class Friction(Case):
         # 15 teeth pass, the last one in part, and what vibrates holds some of it.
         self.assert_close(lost, loss * 0.02, relative=0.03)
 
+    def test_stored_energy_is_that_of_the_springs(self):
+        """F^2 / (2 k) between ideal flanks, k of what touches; and only where it is named."""
+        names = "output.columns=te_um,mesh_stiffness_N_per_um,load_torque_Nm,stored_energy_J"
+        radius = self.geometry()["wheel_base_radius_mm"] * 1e-3
+        c = self.run_columns([*STATIC, "analysis.loads=2", "load.end_Nm=-5", names])
+        for stiffness, load, energy in zip(c["mesh_stiffness_N_per_um"], c["load_torque_Nm"], c["stored_energy_J"]):
+            self.assert_close(energy, (load / radius)**2 / (2 * stiffness * 1e6), relative=1e-9)
+        elastic = self.run_columns([*STATIC, "mesh.law=elastic", "mesh.stiffness_N_per_m=", "mesh.damping_Ns_per_m=",
+                                    "output.columns=te_um,stored_energy_J"])
+        for te, energy in zip(*elastic.values()):
+            # Less than that of a spring that does not stiffen, more than of one with Hertz's exponent of 1.11 alone.
+            work = LOAD / radius * (-te * 1e-6 - GAP / 2)
+            self.assertTrue(work / 2.11 < energy < work / 2, (energy, work))
+        self.assertNotIn("stored_energy_J", self.run_columns(STATIC))
+
+    def test_what_comes_in_is_kinetic_or_stored(self):
+        """Both bodies free, with corners, so that nothing leaves with an overlap; without damping."""
+        c = self.run_columns([*PLAIN, *TORQUE, *TIGHT, "mesh.damping_Ns_per_m=0", "mesh.corner_contact=on", "output.columns="
+                              "pinion_speed_rpm,wheel_speed_rpm,pinion_angle_rad,wheel_angle_rad,stored_energy_J"])
+        rows = list(zip(*c.values()))
+        turns = 2 * math.pi / 60
+        balance = [22 * phi_p - LOAD * phi_w - I_P / 2 * (n_p * turns)**2 - I_W / 2 * (n_w * turns)**2 - stored
+                   for n_p, n_w, phi_p, phi_w, stored in rows]
+        changes = max(c["stored_energy_J"]) - min(c["stored_energy_J"])
+        self.assertGreater(changes, 5e-5)
+        self.assert_all_close(balance, [balance[0]] * len(rows), absolute=1e-3 * changes)
+
     def test_force_is_filtered_from_values(self):
         """Momentum tells the torques, in which friction has its share."""
         c = self.run_columns([*self.RUBBING, "output.columns=contact_force_N,penetration_um,penetration_rate_um_per_s"])

@@ -29,6 +29,12 @@ static int contains(const column_list *columns, int name) {
     return 0;
 }
 
+/* Whether it belongs to `all`: some cost an evaluation for themselves. */
+static int is_of_all(const config *conf, const char *name) {
+    return is_wrench_column(name) ? conf->wrench == WRENCH_ON
+                                  : strcmp(name, "stored_energy_J") != 0;
+}
+
 /* All names of the analysis, for the message about a wrong one. */
 static void join(char *text, size_t size, const char *const names[], int name_count) {
     size_t used = 0;
@@ -66,7 +72,7 @@ int columns_select(column_list *columns, const config *conf, const char *const n
     columns->count = 0;
     if (conf->columns == NULL || strcmp(conf->columns, "all") == 0) {
         for (int i = 0; i < name_count; ++i) {
-            if (conf->wrench == WRENCH_ON || !is_wrench_column(names[i])) {
+            if (is_of_all(conf, names[i])) {
                 columns->name[columns->count++] = i;
             }
         }

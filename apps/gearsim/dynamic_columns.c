@@ -79,6 +79,10 @@ static double apex(const dynamic_sample *sample) {
     return sample->apex * micro;
 }
 
+static double stored_energy(const dynamic_sample *sample) {
+    return sample->mesh.energy;
+}
+
 #define COMPONENT(name, component)                                                                 \
     static double name(const dynamic_sample *sample) {                                             \
         return wrench_component(sample->model->gears, &sample->mesh.wrench, component);            \
@@ -103,6 +107,7 @@ const dynamic_column dynamic_columns[] = {
     WRENCH_COLUMNS(ROW)
 #undef ROW
         {"apex_shift_um", 1, NEEDS_MESH, apex, NULL},
+    {"stored_energy_J", 1, NEEDS_ENERGY, stored_energy, NULL},
 };
 
 const int dynamic_column_count = sizeof dynamic_columns / sizeof dynamic_columns[0];

@@ -30,7 +30,8 @@ enum column_need {
     NEEDS_FORCE,  /* that of the mesh */
     NEEDS_MESH,   /* and the penetration */
     NEEDS_PAIRS,  /* and the pairs that touch, which a cache has to count */
-    NEEDS_WRENCH  /* and where they touch */
+    NEEDS_WRENCH, /* and where they touch */
+    NEEDS_ENERGY  /* and what is stored there */
 };
 
 typedef struct dynamic_column {

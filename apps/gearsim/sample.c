@@ -35,9 +35,9 @@ int sample_mesh(sampling *s, enum column_need need) {
 
     /* Pairs are counted anyway, but by a cache. */
     const int pairs = s->model->cache != NULL ? GM_WANT_PAIRS : GM_WANT_FORCE;
-    const int wanted = need == NEEDS_WRENCH  ? pairs | GM_WANT_WRENCH
-                       : need == NEEDS_PAIRS ? pairs
-                                             : GM_WANT_FORCE;
+    const int wanted = (need >= NEEDS_PAIRS ? pairs : GM_WANT_FORCE) |
+                       (need >= NEEDS_WRENCH ? GM_WANT_WRENCH : GM_WANT_FORCE) |
+                       (need >= NEEDS_ENERGY ? GM_WANT_ENERGY : GM_WANT_FORCE);
     const int status = model_evaluate(s->model, &sample->motion, wanted, &sample->mesh);
     sample->apex = gear_contact_apex(s->model->gears);
     if (status != GM_OK) {

@@ -57,6 +57,10 @@ static double apex(const static_position *position) {
     return position->apex * micro;
 }
 
+static double stored_energy(const static_position *position) {
+    return position->mesh.energy;
+}
+
 static double face_load_factor(const static_position *position) {
     return position->faces.face_load_factor;
 }
@@ -85,6 +89,7 @@ const static_column static_columns[] = {
     WRENCH_COLUMNS(ROW)
     {"apex_shift_um", OF_DOUBLE_HELICAL, TAKES_NOTHING, apex},
     {"loss_W", OF_FRICTION, TAKES_NOTHING, loss},
+    {"stored_energy_J", ALWAYS, TAKES_ENERGY, stored_energy},
 };
 #undef ROW
 /* clang-format on */

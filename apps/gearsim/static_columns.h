@@ -32,7 +32,7 @@ enum static_column_use {
 };
 
 /* What a column takes from static_position that is only found where a column is asked for. */
-enum static_column_taking { TAKES_NOTHING, TAKES_WRENCH, TAKES_FACES };
+enum static_column_taking { TAKES_NOTHING, TAKES_WRENCH, TAKES_ENERGY, TAKES_FACES };
 
 typedef struct static_column {
     const char *name;                 /* with its unit */

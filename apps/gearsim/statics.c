@@ -98,21 +98,24 @@ static void choose_columns(static_results *results, const config *conf) {
     }
 }
 
-/* The equilibrium itself has neither wrench nor line loads. */
+/* The equilibrium itself has neither wrench nor energy nor line loads. */
 static int find_needed(static_results *results, unsigned needs, static_position *at) {
-    const unsigned wrench = 1u << TAKES_WRENCH, faces = 1u << TAKES_FACES;
+    const unsigned faces = 1u << TAKES_FACES;
+    const int wanted = (needs & 1u << TAKES_WRENCH ? GM_WANT_WRENCH : 0) |
+                       (needs & 1u << TAKES_ENERGY ? GM_WANT_ENERGY : 0);
     gm_position position;
     gm_mesh_result result;
-    if ((needs & (wrench | faces)) == 0) {
+    if (wanted == 0 && (needs & faces) == 0) {
         return GM_OK;
     }
     int status = gm_position_from_pinion_angle(&at->gears->pair, at->pinion_angle, at->offset, 0.0,
                                                &position);
 
     position.pinion_speed = at->conf->start_speed;
-    if (status == GM_OK && (needs & wrench)) {
-        status = gear_contact_evaluate(at->gears, &position, GM_WANT_WRENCH, &result);
+    if (status == GM_OK && wanted != 0) {
+        status = gear_contact_evaluate(at->gears, &position, wanted, &result);
         at->mesh.wrench = result.wrench;
+        at->mesh.energy = result.energy;
     }
     if (status == GM_OK && (needs & faces)) {
         status = gear_contact_line_loads(at->gears, &position, results->points, results->capacity,
