@@ -258,7 +258,7 @@ static const key_spec keys[] = {
      .standard = "0", .used = FOR_DYNAMIC, .help = "longest step, 0 = no limit"},
     {NAME("solver", "lookup"), CHOICE("off on auto"), INTO(lookup),
      .standard = "auto", .used = FOR_DYNAMIC | FOR_3D,
-     .help = "on: approximate mesh from tables, error 2e-4; auto: with measured flanks, where the run is long enough"},
+     .help = "on: approximate mesh from tables; auto: where that is faster and no worse than the solver's error"},
     {NAME("solver", "lookup_depth_um"), NUMBER(UNIT_UM, BETWEEN(1e-3, 1e6)), INTO(lookup_depth),
      .derived = "from the loads", .used = FOR_DYNAMIC | FOR_3D,
      .help = "penetration up to which the tables reach, exact beyond"},

@@ -17,7 +17,7 @@
 #include "gear_mesh.h"
 #include "geometry_listing.h"
 #include "key_template.h"
-#include "mesh_cache.h"
+#include "lookup.h"
 #include "output.h"
 #include "platform.h"
 #include "sampling.h"
@@ -37,7 +37,7 @@ static int run(const config *conf, const gear_mesh *mesh) {
     return conf->analysis == ANALYSIS_STATIC ? statics_run(conf, mesh) : dynamics_run(conf, mesh);
 }
 
-static int perform(const arguments *args, const config *conf, const gear_mesh *mesh) {
+static int perform(const arguments *args, config *conf, const gear_mesh *mesh) {
     if (args->task == TASK_GEOMETRY) {
         geometry_print(mesh, conf, args->as_json, stdout);
         return EXIT_DONE;
@@ -45,7 +45,7 @@ static int perform(const arguments *args, const config *conf, const gear_mesh *m
 
     /* What can be wrong shows before the run, and then --check has done its work. */
     const column_names names = names_of(conf);
-    int status = mesh_cache_check(conf, mesh);
+    int status = lookup_note(mesh, conf);
     if (status == 0) {
         status = output_check(conf, names.name, names.count);
     }

@@ -1,16 +1,12 @@
 /* SPDX-FileCopyrightText: The gearmesh authors */
 /* SPDX-License-Identifier: BSD-3-Clause */
 
-/* The cache that `[solver] lookup` asks for, or the length of the run; it fills itself as the run
- * goes on, or is filled before. */
+/* The cache of a run that lookup.h gives one; it fills itself as the run goes on, or is filled before. */
 #ifndef GEARSIM_MESH_CACHE_H
 #define GEARSIM_MESH_CACHE_H
 
 #include "gear_mesh.h"
 #include "progress.h"
-
-/* Whether these gears can have what is asked for. Returns 0, or EXIT_BAD_INPUT after a message. */
-int mesh_cache_check(const config *conf, const gear_mesh *gears);
 
 /* Lets the mesh answer from a cache; NULL if the run is not to use one. Returns 0, or EXIT_RUN_FAILED if there is no
  * memory. */
