@@ -203,78 +203,104 @@ static double share_by_springs(const gearbox *box) {
     return (1.0 - less * (PLANETS - 1) / PLANETS) / PLANETS;
 }
 
-int main(int argc, char **argv) {
-    enum { ROWS = 1500 };
-    const double settled = 0.02, end = 0.05;
-    SUNContext context;
-    double distance, y[STATES] = {0.0}, before[STATES] = {0.0}, mean[PLANETS] = {0.0};
+/* What the run has found: means of what pushes the carrier, and energies since the start had settled (J). */
+typedef struct findings {
+    double push[PLANETS];
+    double in, out, loss, stored;
+} findings;
 
-    /* Two meshes, which all planets share, and the gears put together at their steady speeds. */
-    gearbox box = {.arm = 0.0};
-    box.at_sun = mesh_of(SUN, PLANET, pi / 18.0, &box.arm);
-    box.at_ring = mesh_of(PLANET, -RING, -pi / 18.0, &distance);
-    FILE *file = argc > 1 ? fopen(argv[1], "w") : NULL;
-    if (box.at_sun == NULL || box.at_ring == NULL || !assemble(&box, y)) {
-        return 1;
+enum { ROWS = 1500 };
+static const double settled = 0.02, end = 0.05;
+
+/* Behind the start: a row of the file at each step, and the means. */
+static int observe(void *cvode, gearbox *box, N_Vector state, N_Vector rates, FILE *file,
+                   findings *found) {
+    const double *y = N_VGetArrayPointer(state);
+    double before[STATES], energy = 0.0;
+    sunrealtype time = 0.0;
+    for (int row = 0; row <= ROWS; ++row) {
+        const double to = settled + (end - settled) * row / ROWS;
+        if (CVode(cvode, to, state, &time, CV_NORMAL) < 0 ||
+            derivatives(time, state, rates, box) != 0) {
+            return 1;
+        }
+        if (row == 0) {
+            memcpy(before, y, sizeof before);
+            energy = kinetic(y) + box->stored;
+        }
+        for (int k = 0; k < PLANETS; ++k) {
+            found->push[k] += box->push[k] / (ROWS + 1);
+        }
+        if (file != NULL) {
+            fprintf(file, "%.6f %.3f %.3f %.3f\n", time, box->push[0], box->push[1], box->push[2]);
+        }
     }
-    set_speeds(y);
 
-    /* The solver: implicit, as meshes are stiff. */
+    found->in = y[IN] - before[IN];
+    found->out = y[OUT] - before[OUT];
+    found->loss = y[LOSS] - before[LOSS];
+    found->stored = kinetic(y) + box->stored - energy;
+    return 0;
+}
+
+/* The solver: implicit, as meshes are stiff. */
+static int run(gearbox *box, double *y, FILE *file, findings *found) {
+    SUNContext context;
 #if SUNDIALS_VERSION_MAJOR < 7
     SUNContext_Create(NULL, &context);
 #else
     SUNContext_Create(SUN_COMM_NULL, &context);
 #endif
+    double rate[STATES];
     N_Vector state = N_VMake_Serial(STATES, y, context);
+    N_Vector rates = N_VMake_Serial(STATES, rate, context);
     SUNMatrix matrix = SUNDenseMatrix(STATES, STATES, context);
     SUNLinearSolver solver = SUNLinSol_Dense(state, matrix, context);
     void *cvode = CVodeCreate(CV_BDF, context);
-    sunrealtype time = 0.0;
-    int failed = CVodeInit(cvode, derivatives, 0.0, state) ||
-                 CVodeSStolerances(cvode, 1e-9, 1e-10) || CVodeSetUserData(cvode, &box) ||
-                 CVodeSetMaxNumSteps(cvode, 1000000) || CVodeSetLinearSolver(cvode, solver, matrix);
+    const int failed = CVodeInit(cvode, derivatives, 0.0, state) ||
+                       CVodeSStolerances(cvode, 1e-9, 1e-10) || CVodeSetUserData(cvode, box) ||
+                       CVodeSetMaxNumSteps(cvode, 1000000) ||
+                       CVodeSetLinearSolver(cvode, solver, matrix) ||
+                       observe(cvode, box, state, rates, file, found);
 
-    /* Behind the start the means are taken and the energies counted. */
-    double energy = 0.0, rates[STATES];
-    N_Vector unused = N_VMake_Serial(STATES, rates, context);
-    for (int row = 0; row <= ROWS && !failed; ++row) {
-        const double to = settled + (end - settled) * row / ROWS;
-        failed = CVode(cvode, to, state, &time, CV_NORMAL) < 0 ||
-                 derivatives(time, state, unused, &box) != 0;
-        if (row == 0) {
-            memcpy(before, y, sizeof y);
-            energy = kinetic(y) + box.stored;
-        }
-        for (int k = 0; k < PLANETS; ++k) {
-            mean[k] += box.push[k] / (ROWS + 1);
-        }
-        if (file != NULL) {
-            fprintf(file, "%.6f %.3f %.3f %.3f\n", time, box.push[0], box.push[1], box.push[2]);
-        }
+    CVodeFree(&cvode);
+    SUNLinSolFree(solver);
+    SUNMatDestroy(matrix);
+    N_VDestroy(rates);
+    N_VDestroy(state);
+    SUNContext_Free(&context);
+    return failed;
+}
+
+int main(int argc, char **argv) {
+    /* Two meshes, which all planets share, and the gears put together at their steady speeds. */
+    double distance, y[STATES] = {0.0};
+    gearbox box = {.arm = 0.0};
+    box.at_sun = mesh_of(SUN, PLANET, pi / 18.0, &box.arm);
+    box.at_ring = mesh_of(PLANET, -RING, -pi / 18.0, &distance);
+    if (box.at_sun == NULL || box.at_ring == NULL || !assemble(&box, y)) {
+        return 1;
+    }
+    set_speeds(y);
+
+    FILE *file = argc > 1 ? fopen(argv[1], "w") : NULL;
+    findings found = {{0.0}, 0.0, 0.0, 0.0, 0.0};
+    const int failed = run(&box, y, file, &found);
+    if (file != NULL) {
+        fclose(file);
     }
 
     /* What was found, beside what is known. */
     const double expected = share_by_springs(&box);
-    const double share = mean[0] / (mean[0] + mean[1] + mean[2]);
+    const double share = found.push[0] / (found.push[0] + found.push[1] + found.push[2]);
     printf("planet 0 carries %.1f %% of the load, by springs %.1f %%\n", 100.0 * share,
            100.0 * expected);
 
     /* Open are the accuracy of the solver, and flanks that leave at a tip with some overlap. */
-    const double in = y[IN] - before[IN], out = y[OUT] - before[OUT], loss = y[LOSS] - before[LOSS];
-    const double open = in - out - loss - (kinetic(y) + box.stored - energy);
-    printf("energy: %.3f J in, %.3f J out, %.2g J lost, %.2g %% open\n", in, out, loss,
-           100.0 * open / in);
-
-    if (file != NULL) {
-        fclose(file);
-    }
-    CVodeFree(&cvode);
-    SUNLinSolFree(solver);
-    SUNMatDestroy(matrix);
-    N_VDestroy(unused);
-    N_VDestroy(state);
-    SUNContext_Free(&context);
+    const double open = found.in - found.out - found.loss - found.stored;
+    printf("energy: %.3f J in, %.3f J out, %.2g J lost, %.2g %% open\n", found.in, found.out,
+           found.loss, 100.0 * open / found.in);
     free(box.at_sun);
     free(box.at_ring);
-    return failed || fabs(open) > 1e-3 * in || fabs(share - expected) > 0.01;
+    return failed || fabs(open) > 1e-3 * found.in || fabs(share - expected) > 0.01;
 }

@@ -11,9 +11,6 @@
 #include "corner.h"
 #include "internal.h"
 
-/* Of gmi_tilt_cuts_find(): nothing else ends a line. */
-enum { GMI_FACES_ALONE = 4 };
-
 /* What is known of the corner at a joint. */
 typedef struct gmi_corner_joint {
     double gap, slope;

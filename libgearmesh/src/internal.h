@@ -625,9 +625,16 @@ typedef struct gmi_tilt_cuts {
     unsigned char count;
 } gmi_tilt_cuts;
 
-/* tables: a sum of 1 = the pinion's, 2 = the wheel's ends the lines too, 4 = tips and starts do not. */
+/* What ends lines beside the faces, tips and starts, or does not: a sum of these. */
+enum {
+    GMI_ENDS_WITH_PINION_TABLE = 1,
+    GMI_ENDS_WITH_WHEEL_TABLE = 2,
+    GMI_FACES_ALONE = 4 /* tips and starts end none */
+};
+
+/* ends: a sum of the above. */
 void gmi_tilt_cuts_find(const gm_pair *pair, const gmi_engagement *at, int side, double delta,
-                        int tables, gmi_tilt_cuts *cuts);
+                        int ends, gmi_tilt_cuts *cuts);
 
 /* The part of one line; 0 where there is none. Not from_by and to_by, which gmi_tilt_move_ends() sets. */
 int gmi_tilt_cut_line(const gmi_tilt_cuts *cuts, double rho_origin, gmi_line_part *part);

@@ -242,6 +242,36 @@ static int has_tables(const gm_flanks *flanks) {
            (are_tables(&flanks->side[GM_DRIVE]) || are_tables(&flanks->side[GM_COAST]));
 }
 
+static int has_room(const gm_mesh_params *params, const gm_pair *pair, const void *memory,
+                    size_t memory_size) {
+    return memory_size >= gm_mesh_size(params, pair) && gmi_is_aligned(memory);
+}
+
+/* Constant stiffness at tip edges; elastic teeth have their own. */
+static int wants_corners(const gm_mesh_params *params) {
+    return params->corner_contact == GM_CORNER_ON && params->law != GM_LAW_ELASTIC;
+}
+
+/* 1 / E' of both materials together: what flattens under a line of contact. */
+static double compliance_of(const gm_mesh_params *params) {
+    const double nu_p = params->pinion_poisson_ratio, nu_w = params->wheel_poisson_ratio;
+    return (1.0 - nu_p * nu_p) / params->pinion_youngs_modulus +
+           (1.0 - nu_w * nu_w) / params->wheel_youngs_modulus;
+}
+
+/* Which flanks each side has; between axes that a pose moves together, tables end the path where they do as drawn. */
+static void take_flanks(gm_mesh *made, const gm_flanks *pinion, const gm_flanks *wheel) {
+    if (has_tables(pinion)) {
+        gmi_engagement_keep_tables(made->pair, GM_PINION, &made->engagement);
+    }
+    if (has_tables(wheel)) {
+        gmi_engagement_keep_tables(made->pair, GM_WHEEL, &made->engagement);
+    }
+    for (int side = GM_DRIVE; side <= GM_COAST; ++side) {
+        gmi_side_init(&made->side[side], made->pair, &made->engagement, pinion, wheel, side);
+    }
+}
+
 int gm_mesh_init(gm_mesh **mesh, const gm_mesh_params *params, const gm_pair *pair,
                  const gm_flanks *pinion_flanks, const gm_flanks *wheel_flanks, void *memory,
                  size_t memory_size) {
@@ -250,6 +280,7 @@ int gm_mesh_init(gm_mesh **mesh, const gm_mesh_params *params, const gm_pair *pa
     }
     *mesh = NULL;
 
+    /* The call: each of its arguments, and all of them together. */
     int status = memory == NULL ? GM_ERR_NULL : check(params, pair);
     if (status == GM_OK) {
         status = gmi_check_flanks(pair, pinion_flanks, wheel_flanks);
@@ -257,17 +288,17 @@ int gm_mesh_init(gm_mesh **mesh, const gm_mesh_params *params, const gm_pair *pa
     if (status == GM_OK && gm_mesh_size(params, pair) == 0) {
         status = GM_ERR_GEOMETRY;
     }
-    if (status == GM_OK && (memory_size < gm_mesh_size(params, pair) || !gmi_is_aligned(memory))) {
+    if (status == GM_OK && !has_room(params, pair, memory, memory_size)) {
         status = GM_ERR_MEMORY;
     }
+
+    /* How the gears stand in their pose. Nothing is written to the memory before that is known to be possible. */
     gmi_engagement engagement;
     gmi_corner corners[2];
-    const int has_corners = status == GM_OK && params->corner_contact == GM_CORNER_ON &&
-                            params->law != GM_LAW_ELASTIC; /* which has its own */
     if (status == GM_OK) {
         status = gmi_engagement_find(pair, &params->pose, &engagement);
     }
-    if (status == GM_OK && has_corners && !gmi_corners_init(pair, &engagement, corners)) {
+    if (status == GM_OK && wants_corners(params) && !gmi_corners_init(pair, &engagement, corners)) {
         status = GM_ERR_GEOMETRY;
     }
     if (status != GM_OK) {
@@ -282,10 +313,10 @@ int gm_mesh_init(gm_mesh **mesh, const gm_mesh_params *params, const gm_pair *pa
     made->pair = own_pair;
     made->pose = params->pose;
     made->model = params->model;
-
-    /* What its evaluations have in common. */
     made->engagement = engagement;
     made->engagement.is_tilted = engagement.is_tilted && knows_tilts(made);
+
+    /* The law; that of elastic teeth lies behind the pair. */
     gm_mesh_params law = *params;
     if (params->law == GM_LAW_ELASTIC) {
         status = make_elastic(made, (gmi_elastic_mesh *)(own_pair + 1), &law);
@@ -294,29 +325,17 @@ int gm_mesh_init(gm_mesh **mesh, const gm_mesh_params *params, const gm_pair *pa
         }
     }
     made->law = gmi_law_of(&law, pair);
-    made->contact_compliance = (1.0 - params->pinion_poisson_ratio * params->pinion_poisson_ratio) /
-                                   params->pinion_youngs_modulus +
-                               (1.0 - params->wheel_poisson_ratio * params->wheel_poisson_ratio) /
-                                   params->wheel_youngs_modulus;
+    made->contact_compliance = compliance_of(params);
     made->friction = gmi_friction_of(params, own_pair, &engagement);
-    made->has_corners = has_corners;
-    if (has_corners) {
+    made->has_corners = wants_corners(params);
+    if (made->has_corners) {
         memcpy(made->corners, corners, sizeof corners);
     }
     set_kind(made);
-    if (params->model == GM_MODEL_SIMPLE) {
-        pinion_flanks = wheel_flanks = NULL;
-    }
-    if (has_tables(pinion_flanks)) {
-        gmi_engagement_keep_tables(pair, GM_PINION, &made->engagement);
-    }
-    if (has_tables(wheel_flanks)) {
-        gmi_engagement_keep_tables(pair, GM_WHEEL, &made->engagement);
-    }
-    for (int side = GM_DRIVE; side <= GM_COAST; ++side) {
-        gmi_side_init(&made->side[side], own_pair, &made->engagement, pinion_flanks, wheel_flanks,
-                      side);
-    }
+
+    /* The simple model has ideal flanks. */
+    const int has_flanks = params->model != GM_MODEL_SIMPLE;
+    take_flanks(made, has_flanks ? pinion_flanks : NULL, has_flanks ? wheel_flanks : NULL);
     *mesh = made;
     return GM_OK;
 }
@@ -329,14 +348,18 @@ int gm_mesh_check_teeth(const gm_mesh_params *params, const gm_pair *pair, const
     if (requirement != NULL) {
         *requirement = NULL;
     }
-    gmi_engagement at;
+
+    /* The call, as that of gm_mesh_init(). */
     int status = memory == NULL ? GM_ERR_NULL : check(params, pair);
     if (status == GM_OK && params->law != GM_LAW_ELASTIC) {
         status = GM_ERR_PARAMETER;
     }
-    if (status == GM_OK && (memory_size < gm_mesh_size(params, pair) || !gmi_is_aligned(memory))) {
+    if (status == GM_OK && !has_room(params, pair, memory, memory_size)) {
         status = GM_ERR_MEMORY;
     }
+
+    /* The law is made where it would be without mesh and pair, and what is at fault is told. */
+    gmi_engagement at;
     if (status == GM_OK) {
         status = gmi_engagement_find(pair, &params->pose, &at);
     }
@@ -702,17 +725,23 @@ static OWN_STACK void follow_side(const gm_mesh *mesh, const gm_position *positi
     gmi_rubbing rubbing;
     gmi_rubbing_by rubbing_by;
     gmi_sliding sliding;
+
+    /* How fast the flanks approach, and how they slide. */
     tangent.rates = rates != NULL ? *rates : resting(position, side);
     if (friction != NULL) {
         gmi_sliding_find(&mesh->friction, mesh->pair, &mesh->engagement, position, &tangent.rates,
                          &sliding);
     }
+
+    /* One walk along the lines gives overlap, force, moments of friction, and how all of it moves. */
     gmi_side_sum_tangent(mesh, side, position, friction != NULL ? &sliding : NULL, sum, &tangent,
                          &rubbing, &rubbing_by);
     gmi_law_force_of_tangent(&tangent, force);
     if (friction != NULL) {
         gmi_friction_sum_of(mesh->pair, side, &rubbing, &rubbing_by, friction);
     }
+
+    /* The mean speed of approach where they touch. */
     *approach = sum->contact > 0.0 ? tangent.flow / sum->contact : 0.0;
 }
 

@@ -189,8 +189,10 @@ static inline void add_moments(const gmi_lines *lines, double rho_origin, const 
 static void find_cuts(side_view *view) {
     const gmi_side *prepared = view->prepared;
     const int has_ends = prepared->is_tilted && view->lines.advance != 0.0;
-    const int tables = has_ends ? (prepared->pinion != NULL) + 2 * (prepared->wheel != NULL) : 0;
-    gmi_tilt_cuts_find(view->pair, view->at, view->side, view->lines.delta, tables, &view->cuts);
+    const int of_pinion = has_ends && prepared->pinion != NULL ? GMI_ENDS_WITH_PINION_TABLE : 0;
+    const int of_wheel = has_ends && prepared->wheel != NULL ? GMI_ENDS_WITH_WHEEL_TABLE : 0;
+    gmi_tilt_cuts_find(view->pair, view->at, view->side, view->lines.delta, of_pinion + of_wheel,
+                       &view->cuts);
     if (prepared->is_tilted) {
         gmi_tilt_find(view->pair, view->at, view->side, &view->tilt);
     }

@@ -137,10 +137,15 @@ void gmi_surface_add_tilt(const gmi_surface_points *at, const gmi_line_flanks *l
 #ifndef GMI_IN_WIDE
 double gmi_line_flanks_at(const gmi_line_flanks *line, int side, double t1, double roll,
                           double reach, double *by_roll) {
-    double value = line->pinion.pitch + line->wheel.pitch, by_t1 = 0.0, by_origin = 0.0, a[7];
+    /* Pitch counts everywhere; t1 itself is the place. */
+    double value = line->pinion.pitch + line->wheel.pitch, by_t1 = 0.0, by_origin = 0.0;
     const gmi_surface_points at = {1, 0.0, 1.0, &t1, &roll, &value, &by_t1, by_roll};
     *by_roll = 0.0;
-    const gmi_surface_cells cells = {&a[0], &a[1], &a[2], &a[3], &a[4], &a[5], &a[6]};
+
+    /* The table of each gear: its cell, its four nodes, and what they come to at the point. */
+    double nodes[7];
+    const gmi_surface_cells cells = {&nodes[0], &nodes[1], &nodes[2], &nodes[3],
+                                     &nodes[4], &nodes[5], &nodes[6]};
     for (int role = GM_PINION; role <= GM_WHEEL; ++role) {
         const gmi_surface_gear gear = gmi_surface_gear_of(line->mesh, side, role, reach);
         if (gear.tables != NULL) {
@@ -151,6 +156,8 @@ double gmi_line_flanks_at(const gmi_line_flanks *line, int side, double t1, doub
             gmi_surface_add_ramps(&at, &gear);
         }
     }
+
+    /* A tilt shifts the whole line, whatever the roll length. */
     if (line->mesh->engagement.is_tilted) {
         const gmi_surface_points tilted = {1, 0.0, 1.0, &t1, &roll, &value, &by_t1, &by_origin};
         gmi_surface_add_tilt(&tilted, line, 0, 1);

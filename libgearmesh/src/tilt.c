@@ -207,23 +207,29 @@ static void set_cut(const gm_pair *pair, const gmi_engagement *at, const tilted 
 }
 
 OWN_STACK void gmi_tilt_cuts_find(const gm_pair *pair, const gmi_engagement *at, int side,
-                                  double delta, int tables, gmi_tilt_cuts *cuts) {
+                                  double delta, int ends, gmi_tilt_cuts *cuts) {
     const tilted line = tilted_of(pair, at, side, 0.0);
     const double a_tau = line.a * line.tau / line.length;
     cuts->count = 0;
+
+    /* The pinion's face does not tilt: its ends are those of all lines. */
     cuts->face = limits_of(pair, at, FACE_PINION);
     cuts->face.from = (cuts->face.from - pair->face_start) / pair->face_width;
     cuts->face.to = (cuts->face.to - pair->face_start) / pair->face_width;
-    if (!(tables & 4)) {
+
+    /* Tips and starts, by the roll lengths at the touching point, which the tilt moves along the flanks. */
+    if (!(ends & GMI_FACES_ALONE)) {
         const double with_wheel = line.tau * line.g + a_tau * line.r_bw;
         set_cut(pair, at, &line, delta, ROLL_PINION, 1.0 - a_tau * line.r_bp, cuts);
         set_cut(pair, at, &line, delta, ROLL_WHEEL, -1.0 - with_wheel, cuts);
     }
     set_cut(pair, at, &line, delta, FACE_WHEEL, line.g, cuts);
-    if (tables & 1) {
+
+    /* Tables, which are read where parallel axes would have the flanks touch. */
+    if (ends & GMI_ENDS_WITH_PINION_TABLE) {
         set_cut(pair, at, &line, delta, TABLE_PINION, 1.0, cuts);
     }
-    if (tables & 2) {
+    if (ends & GMI_ENDS_WITH_WHEEL_TABLE) {
         set_cut(pair, at, &line, delta, TABLE_WHEEL, -1.0, cuts);
     }
 }

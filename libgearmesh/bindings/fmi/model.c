@@ -310,30 +310,33 @@ int fmu_step(fmu_instance *instance, double end) {
     return fmu_events(instance) == 0 ? 0 : -1;
 }
 
-/*
- * Row or column of the Jacobian that belongs to a variable; -1 = none. Rows: derivatives of the states, then outputs; columns:
- * states, then inputs.
- */
-static int place_of(unsigned reference, int is_row) {
-    if (reference >= (unsigned)model.variable_count) {
-        return -1;
-    }
+/* The number of a variable within an array of fmu_values. */
+static int index_in(const fmu_variable *variable, size_t array) {
+    return (int)((variable->offset - array) / sizeof(double));
+}
+
+/* Row of the Jacobian that belongs to a variable, -1 = none: derivatives of the states, then outputs. */
+static int row_of(unsigned reference) {
     const fmu_variable *variable = &model.variables[reference];
-    const size_t offset = variable->offset;
     switch (variable->role) {
     case ROLE_DERIVATIVE:
-        return is_row ? variable->state : -1;
+        return variable->state;
     case ROLE_OUTPUT:
-        return is_row
-                   ? model.states + (int)((offset - offsetof(fmu_values, output)) / sizeof(double))
-                   : -1;
+        return model.states + index_in(variable, offsetof(fmu_values, output));
+    default:
+        return -1;
+    }
+}
+
+/* Column likewise: states, then inputs. */
+static int column_of(unsigned reference) {
+    const fmu_variable *variable = &model.variables[reference];
+    switch (variable->role) {
     case ROLE_STATE:
     case ROLE_STATE_OUTPUT:
-        return is_row ? -1 : (int)((offset - offsetof(fmu_values, state)) / sizeof(double));
+        return index_in(variable, offsetof(fmu_values, state));
     case ROLE_INPUT:
-        return is_row
-                   ? -1
-                   : model.states + (int)((offset - offsetof(fmu_values, input)) / sizeof(double));
+        return model.states + index_in(variable, offsetof(fmu_values, input));
     default:
         return -1;
     }
@@ -377,24 +380,34 @@ static int differences(const fmu_instance *instance, int column, unsigned refere
 int fmu_directional(fmu_instance *instance, const unsigned *unknown, size_t unknown_count,
                     const unsigned *known, size_t known_count, const double *seed,
                     double *sensitivity) {
+    for (size_t k = 0; k < unknown_count + known_count; ++k) {
+        if ((k < unknown_count ? unknown[k] : known[k - unknown_count]) >=
+            (unsigned)model.variable_count) {
+            return failed(instance, "there is no variable with this value reference");
+        }
+    }
+
+    /* All derivatives that the model knows, and those by the wanted inputs that it does not. */
     fmu_jacobian jacobian;
     memset(&jacobian, 0, sizeof jacobian);
     int status = evaluate(instance, &jacobian);
     for (size_t i = 0; i < known_count && status == GM_OK; ++i) {
-        const int column = place_of(known[i], 0);
+        const int column = column_of(known[i]);
         if (column >= model.states) {
             status = differences(instance, column, known[i], &jacobian);
         }
     }
+
+    /* A state that is an output too changes with itself. */
     for (size_t k = 0; k < unknown_count; ++k) {
         sensitivity[k] = 0.0;
-        const int row = place_of(unknown[k], 1);
+        const int row = row_of(unknown[k]);
         for (size_t i = 0; i < known_count; ++i) {
-            const int column = place_of(known[i], 0);
+            const int column = column_of(known[i]);
             if (column >= 0 && row >= 0) {
                 sensitivity[k] += jacobian.by[row][column] * seed[i];
             } else if (unknown[k] == known[i]) {
-                sensitivity[k] += seed[i]; /* a state that is an output */
+                sensitivity[k] += seed[i];
             }
         }
     }
