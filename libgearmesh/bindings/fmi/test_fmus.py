@@ -348,7 +348,7 @@ def test_a_gearbox_moves_by_the_torques_of_its_mesh(fmu, version, kind, tmp_path
 @pytest.mark.parametrize("version", VERSIONS)
 def test_directional_derivatives_are_those_of_differences(fmu, version, tmp_path):
     start = {"drive_torque": 3.0, "load_torque": 2.0, "pinion_angle": 0.123, "pinion_speed": 10.0, "offset": 53e-6,
-             "offset_rate": 1e-4, "pinion_inertia": 1e-3}
+             "offset_rate": 1e-4, "pinion_inertia": 1e-3, "friction_coefficient": 0.05, "friction_speed": 0.1}
     instance = Instance(fmu("GearPair", version), tmp_path, "ModelExchange", start)
     states = ["pinion_angle", "pinion_speed", "offset", "offset_rate"]
     unknown = [f"der({name})" for name in states] + ["wheel_angle", "wheel_speed", "transmission_error", "force"]
