@@ -16,7 +16,7 @@ import subprocess
 import sys
 import tempfile
 
-DEBIAN_PACKAGES = {"numpy": "python3-numpy", "scipy": "python3-scipy", "h5py": "python3-h5py"}
+DEBIAN_PACKAGES = {"numpy": "python3-numpy", "scipy": "python3-scipy", "h5py": "python3-h5py", "mpi4py": "python3-mpi4py"}
 HANDED_ON = "GEARMESH_HANDED_ON"  # set for a Python that a script was handed on to, not for what it starts
 WAS_HANDED_ON = os.environ.pop(HANDED_ON, None) is not None
 TEMPORARY = ".gearmesh_"  # names of what grows beside its place begin so
