@@ -291,6 +291,14 @@ static void add_touching(const line *l, const long double c[3], long double low,
         result->contact_rho[side] += weight * rho;
     }
 
+    /* Largest at an end, or where the slope is 0. */
+    const long double top = -c[1] / (2 * c[2]);
+    const long double places[3] = {u_a, u_b, top > u_a && top < u_b ? top : u_a};
+    for (int k = 0; k < 3; ++k) {
+        const long double u = places[k];
+        result->largest[side] = maximum(result->largest[side], c[0] + u * (c[1] + u * c[2]));
+    }
+
     /* Boole's rule: exact for delta squared, which is of fourth degree. */
     static const long double boole[5] = {7.0L, 32.0L, 12.0L, 32.0L, 7.0L};
     for (int k = 0; k < 5; ++k) {

@@ -71,6 +71,7 @@ typedef struct model_result {
     long double contact[2];     /**< over pairs: length in t1 where they touch */
     int pairs[2];               /**< pairs that touch somewhere */
     long double square[2];      /**< over pairs: integral over t1 of max(0, delta)^2 (m2) */
+    long double largest[2];     /**< largest delta (m) */
     long double sum_t1[2];      /**< over pairs: integral of t1 max(0, delta) (m) */
     long double sum_rho[2];     /**< over pairs: integral of ideal rho_p max(0, delta) (m2) */
     long double contact_t1[2];  /**< over pairs: integral of t1 where they touch */

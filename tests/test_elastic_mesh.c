@@ -1120,8 +1120,12 @@ static void line_loads_are_the_force(void) {
                           1e-9);
         }
         GM_ASSERT_REL(force, r.force, 2e-3);
-        GM_ASSERT_REL(loads.largest_line_load, largest, 1e-12);
-        GM_ASSERT_REL(loads.face_load_factor, largest * 2.0 * gears.face_width / r.force, 1e-9);
+
+        /* With constant stiffness the lines end where the tilted face does: some 2e-4 radii before the last station. */
+        const double moved = k == 0 ? 0.0 : 2e-4 * m.pair.wheel.tip_radius / gears.face_width;
+        GM_ASSERT_REL(loads.largest_line_load, largest, 1e-12 + moved);
+        GM_ASSERT_REL(loads.face_load_factor, largest * 2.0 * gears.face_width / r.force,
+                      1e-9 + 2.0 * moved);
         GM_ASSERT_REL(loads.touching_width, 2.0 * gears.face_width, k == 0 ? 1e-9 : 1e-3);
 
         /* Without points, and with too little room. */

@@ -1061,6 +1061,47 @@ class Static(Case):
         self.assertGreater(min(coast["te_um"]), 50.0)
 
 
+    FACES = "face_load_factor,largest_line_load_N_per_mm,largest_pressure_N_per_mm2"
+
+    def test_line_loads_of_ideal_flanks_are_even(self):
+        """By name with a constant stiffness: the force over the touching face, Hertz's pressure where curvature is least."""
+        g = self.geometry()
+        cosine = math.cos(math.radians(g["base_helix_angle_deg"]))
+        length = g["line_of_action_mm"]
+        force = LOAD / (g["wheel_base_radius_mm"] * 1e-3)
+        for law in ([], ["mesh.law=iso6336", "mesh.stiffness_N_per_m="]):
+            c = self.run_columns([*STATIC, *law, f"output.columns=contact_length_mm,{self.FACES}"])
+            for width, factor, load, pressure in zip(*c.values()):
+                self.assert_close(factor, 1, relative=1e-9)
+                self.assert_close(load, force / (width * cosine), relative=1e-9)
+
+                # Somewhere on the path: sqrt(q E / (2 (1 - nu^2)) / (pi rho_red)), rho_red = rho_p rho_w / (T cos(beta_b)).
+                rolls = [(rho, length - rho) for rho in (g["path_start_mm"], length / 2, g["path_end_mm"])]
+                known = [math.sqrt(load * 206e3 / (2 * 0.91) * length * cosine / (math.pi * p * w)) for p, w in rolls]
+                self.assertTrue(0.999 * min(known) < pressure < 1.001 * max(known), (pressure, known))
+        self.assertNotIn("face_load_factor", self.run_columns(STATIC))
+        result = self.gearsim([*STATIC, *SIMPLE, f"output.columns={self.FACES}"], "--output", "run.csv")
+        self.assertEqual(result.returncode, 2)
+
+    def test_largest_line_load_may_lie_between_stations(self):
+        c = self.run_columns([*STATIC, *MEASURED, f"output.columns=pinion_angle_rad,{self.FACES}",
+                              f"output.load_distribution={self.path('loads.csv')}"])
+        listed = {}
+        for line in self.text("loads.csv").splitlines():
+            if line[0] not in "#p":
+                fields = line.split(",")
+                listed.setdefault(float(fields[0]), []).append(float(fields[7]))
+        rows = list(zip(*c.values()))
+        self.assertEqual(len(rows), len(listed))
+        for angle, factor, largest, pressure in rows:
+            at_stations = max(listed[angle])
+            self.assertTrue(0.7 * largest < at_stations <= largest * (1 + 1e-9), (at_stations, largest))
+            self.assertGreater(factor, 1)
+            self.assertGreater(pressure, 0)
+        # Stations and ends of lines alone would find 26 that are off by so much.
+        self.assertGreater(sum(max(listed[row[0]]) < 0.99 * row[2] for row in rows), 35)
+
+
 class Ring(Case):
     """A spur pinion in a ring: its numbers in closed form. All pairs that touch share the load alike."""
 

@@ -29,8 +29,22 @@ static int contains(const column_list *columns, int name) {
     return 0;
 }
 
-/* Whether it belongs to `all`: some cost an evaluation for themselves. */
+static int is_among(const char *name, const char *const names[], size_t count) {
+    for (size_t k = 0; k < count; ++k) {
+        if (strcmp(names[k], name) == 0) {
+            return 1;
+        }
+    }
+    return 0;
+}
+
+/* Whether it belongs to `all`: not what costs an evaluation for itself, unless it is what the law is for. */
 static int is_of_all(const config *conf, const char *name) {
+    static const char *const faces[] = {"face_load_factor", "largest_line_load_N_per_mm",
+                                        "largest_pressure_N_per_mm2"};
+    if (is_among(name, faces, sizeof faces / sizeof faces[0])) {
+        return conf->law == LAW_ELASTIC;
+    }
     return is_wrench_column(name) ? conf->wrench == WRENCH_ON
                                   : strcmp(name, "stored_energy_J") != 0;
 }

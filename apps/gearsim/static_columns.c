@@ -80,12 +80,12 @@ const static_column static_columns[] = {
     {"pinion_angle_rad", ALWAYS, TAKES_NOTHING, pinion_angle},
     {"te_um", ALWAYS, TAKES_NOTHING, transmission_error},
     {"mesh_stiffness_N_per_um", ALWAYS, TAKES_NOTHING, mesh_stiffness},
-    {"contact_length_mm", ALWAYS, TAKES_FACES, contact_length},
+    {"contact_length_mm", ALWAYS, TAKES_WIDTH, contact_length},
     {"pairs_in_contact", ALWAYS, TAKES_NOTHING, pairs_in_contact},
     {"load_torque_Nm", OF_SEVERAL_LOADS, TAKES_NOTHING, load_torque},
-    {"face_load_factor", OF_ELASTIC_TEETH, TAKES_FACES, face_load_factor},
-    {"largest_line_load_N_per_mm", OF_ELASTIC_TEETH, TAKES_FACES, largest_line_load},
-    {"largest_pressure_N_per_mm2", OF_ELASTIC_TEETH, TAKES_FACES, largest_pressure},
+    {"face_load_factor", OF_FLANKS, TAKES_FACES, face_load_factor},
+    {"largest_line_load_N_per_mm", OF_FLANKS, TAKES_FACES, largest_line_load},
+    {"largest_pressure_N_per_mm2", OF_FLANKS, TAKES_FACES, largest_pressure},
     WRENCH_COLUMNS(ROW)
     {"apex_shift_um", OF_DOUBLE_HELICAL, TAKES_NOTHING, apex},
     {"loss_W", OF_FRICTION, TAKES_NOTHING, loss},
@@ -100,8 +100,8 @@ int static_column_is_there(const config *conf, int column) {
     switch (static_columns[column].use) {
     case OF_SEVERAL_LOADS:
         return conf->loads > 1;
-    case OF_ELASTIC_TEETH:
-        return conf->law == LAW_ELASTIC;
+    case OF_FLANKS:
+        return conf->model == MODEL_3D;
     case OF_FRICTION:
         return config_has_friction(conf);
     case OF_DOUBLE_HELICAL:

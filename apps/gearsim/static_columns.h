@@ -26,13 +26,19 @@ typedef struct static_position {
 enum static_column_use {
     ALWAYS,
     OF_SEVERAL_LOADS,
-    OF_ELASTIC_TEETH,
+    OF_FLANKS, /* the simple model has none */
     OF_FRICTION,
     OF_DOUBLE_HELICAL
 };
 
 /* What a column takes from static_position that is only found where a column is asked for. */
-enum static_column_taking { TAKES_NOTHING, TAKES_WRENCH, TAKES_ENERGY, TAKES_FACES };
+enum static_column_taking {
+    TAKES_NOTHING,
+    TAKES_WRENCH,
+    TAKES_ENERGY,
+    TAKES_FACES,
+    TAKES_WIDTH /* of elastic teeth the same; else it is known */
+};
 
 typedef struct static_column {
     const char *name;                 /* with its unit */

@@ -79,6 +79,14 @@ typedef struct static_results {
     gm_line_loads worst;     /* the load with the largest pressure that was seen */
 } static_results;
 
+/* Bits of what a column takes; with constant stiffness the sums tell the length of contact. */
+static unsigned need_of(const config *conf, enum static_column_taking taking) {
+    if (taking == TAKES_WIDTH) {
+        taking = conf->law == LAW_ELASTIC ? TAKES_FACES : TAKES_NOTHING;
+    }
+    return 1u << taking;
+}
+
 /* What of a position goes to the result, and what has to be found for it beyond the equilibrium. */
 static void choose_columns(static_results *results, const config *conf) {
     results->needs = results->distribution != NULL ? 1u << TAKES_FACES : 0;
@@ -89,12 +97,9 @@ static void choose_columns(static_results *results, const config *conf) {
         if (output_wants(results->output, place)) {
             results->column[results->columns] = i;
             results->place[results->columns++] = place;
-            results->needs |= 1u << static_columns[i].taking;
+            results->needs |= need_of(conf, static_columns[i].taking);
         }
         ++place;
-    }
-    if (conf->law != LAW_ELASTIC && results->distribution == NULL) {
-        results->needs &= ~(1u << TAKES_FACES); /* the sums tell the length of contact */
     }
 }
 

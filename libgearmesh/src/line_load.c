@@ -3,7 +3,8 @@
 
 /*
  * The load along the lines of contact, station by station. With constant stiffness K of a pair over the common face b the
- * line load is K f / b; elastic teeth have it from their deflections.
+ * line load is K f / b; elastic teeth have it from their deflections. The largest one of constant stiffness is looked for
+ * where it can be: at the bends of the overlap and on top of its humps.
  */
 #include "corner.h"
 #include "elastic_mesh.h"
@@ -281,8 +282,93 @@ static int count_edges(walk *w, const side_lines *found, const gmi_line_flanks *
     return touches;
 }
 
-/* Stations of one line within its ends, and the ends themselves. Returns GM_OK or GM_ERR_MEMORY. */
-static int walk_line(walk *w, const side_lines *found, int index, int row, gmi_interval part) {
+/* The next place behind t1 at which something that is straight along the line is a whole number; infinite if it never is. */
+static double next_whole(double at_zero, double per_t1, double t1) {
+    const double rounding = 1e-9; /* a place this close to one is at it */
+    const double here = at_zero + per_t1 * t1;
+    const double whole = per_t1 > 0.0 ? floor(here + rounding) + 1.0 : ceil(here - rounding) - 1.0;
+    return per_t1 != 0.0 ? (whole - at_zero) / per_t1 : HUGE_VAL;
+}
+
+static double next_zero(double at_zero, double per_t1, double t1, double next) {
+    const double zero = -at_zero / per_t1; /* no finite number if it stays as it is */
+    return zero > t1 && zero < next ? zero : next;
+}
+
+/* Where the overlap bends next: at lines of the grids, edges of linear reliefs, and tips. */
+static double next_bend(const gm_mesh *mesh, const side_lines *found, double origin, double t1,
+                        double to) {
+    double next = to;
+    for (int role = GM_PINION; role <= GM_WHEEL; ++role) {
+        const gmi_surface_gear gear = gmi_surface_gear_of(mesh, found->side, role, found->reach);
+        const double roll = gear.roll_from + gear.per_roll * origin;
+        const double per_roll = gear.per_roll * found->lines.advance;
+        if (gear.tables != NULL) {
+            const gmi_grid *grid = gear.grid;
+            next = fmin(next, next_whole(grid->face_base, grid->face_rate, t1));
+            next = fmin(next, next_whole(roll * grid->per_rho, per_roll * grid->per_rho, t1));
+            for (int k = 0; k < gear.tables->ramp_count; ++k) {
+                const gm_flank_ramp *ramp = &gear.tables->ramps[k];
+                const double per_own = ramp->per_t2 / grid->profile_cells * grid->per_rho;
+                next = next_zero(ramp->offset + ramp->per_t1 * grid->face_origin + per_own * roll,
+                                 ramp->per_t1 * grid->face_scale + per_own * per_roll, t1, next);
+            }
+        }
+        if (mesh->has_corners) {
+            gmi_beyond beyond;
+            gmi_tilt_beyond(mesh->pair, &mesh->engagement, found->side, origin, found->delta, role,
+                            &beyond);
+            next = next_zero(beyond.at_zero, beyond.per_t1, t1, next);
+        }
+    }
+    return next;
+}
+
+/*
+ * With constant stiffness the overlap is a parabola between two bends (beyond a tip next to one): it is largest at a bend
+ * or at the top of a hump. Whether the line touches there.
+ */
+static int count_bends(walk *w, const side_lines *found, const gmi_line_flanks *flanks, int index,
+                       gmi_interval part) {
+    const gm_mesh *mesh = w->mesh;
+    const double origin = found->lines.origin + (double)index * mesh->pair->transverse_base_pitch;
+    gm_line_load_point before = point_of_overlap(mesh, found, flanks, index, part.from);
+    int touches = 0;
+    for (double from = part.from, to; from < part.to; from = to) {
+        to = next_bend(mesh, found, origin, from, part.to);
+        const double half = 0.5 * (to - from), middle = from + half;
+        const gm_line_load_point at = point_of_overlap(mesh, found, flanks, index, middle);
+        const gm_line_load_point behind = point_of_overlap(mesh, found, flanks, index, to);
+        count_point(w, &behind);
+        touches = touches || behind.line_load > 0.0;
+
+        /* The parabola by the halves of the piece, in gaps: a hump of the overlap is a hollow of the gap. */
+        const double slope = 0.5 * (behind.gap - before.gap);
+        const double bend = behind.gap - 2.0 * at.gap + before.gap;
+        if (bend > 0.0 && fabs(slope) < bend) {
+            const gm_line_load_point top =
+                point_of_overlap(mesh, found, flanks, index, middle - half * slope / bend);
+            count_point(w, &top);
+            touches = touches || top.line_load > 0.0;
+        }
+        before = behind;
+    }
+    return touches;
+}
+
+/* Whether the overlap of constant stiffness changes along a line. */
+static int has_bends(const gm_mesh *mesh, const side_lines *found) {
+    const gmi_side *prepared = &mesh->side[found->side];
+    return found->work == NULL && (prepared->pinion != NULL || prepared->wheel != NULL ||
+                                   mesh->engagement.is_tilted || mesh->has_corners);
+}
+
+/*
+ * Stations of one line as parallel axes have it, and what its own part bears, ends included. Returns GM_OK or
+ * GM_ERR_MEMORY.
+ */
+static int walk_line(walk *w, const side_lines *found, int index, int row, gmi_interval listed,
+                     gmi_interval part) {
     const gm_mesh *mesh = w->mesh;
     const gmi_engagement *at = &mesh->engagement;
     const gmi_line_flanks flanks =
@@ -296,12 +382,14 @@ static int walk_line(walk *w, const side_lines *found, int index, int row, gmi_i
     /* The stations that the line passes go to the caller. */
     for (int k = 0; k < stations; ++k) {
         const double t1 = k == stations - 1 ? at->face_to : at->face_from + (double)k * spacing;
-        if (!(t1 >= part.from && t1 <= part.to)) {
+        if (!(t1 >= listed.from && t1 <= listed.to && listed.from < listed.to)) {
             continue;
         }
         const gm_line_load_point point = point_at(mesh, found, &flanks, index, row, t1);
-        count_point(w, &point);
-        touches = touches || point.line_load > 0.0;
+        if (t1 >= part.from && t1 <= part.to) {
+            count_point(w, &point);
+            touches = touches || point.line_load > 0.0;
+        }
 
         /* Counted in any case, also for a caller who asks only how many there are. */
         if (w->points != NULL) {
@@ -314,7 +402,7 @@ static int walk_line(walk *w, const side_lines *found, int index, int row, gmi_i
     }
 
     /* Between stations the load may be largest where the line ends. */
-    for (int end = 0; end < 2; ++end) {
+    for (int end = 0; end < 2 && part.from < part.to; ++end) {
         const gm_line_load_point point =
             point_at(mesh, found, &flanks, index, row, end == 0 ? part.from : part.to);
         count_point(w, &point);
@@ -323,6 +411,9 @@ static int walk_line(walk *w, const side_lines *found, int index, int row, gmi_i
 
     if (found->has_tips && found->lines.advance != 0.0) {
         touches = count_edges(w, found, &flanks, index, row, part) || touches;
+    }
+    if (has_bends(mesh, found)) {
+        touches = count_bends(w, found, &flanks, index, part) || touches;
     }
 
     /* All of a line that touches anywhere bears the mean line load. */
@@ -377,6 +468,69 @@ static OWN_STACK int sum_side(const gm_mesh *mesh, int side, const gm_position *
     return GM_OK;
 }
 
+/*
+ * Which part of the lines of a side is on both flanks: that of parallel axes; between tilted ones, with constant stiffness,
+ * as penetration.c and corner_line.c have it.
+ */
+typedef struct side_ends {
+    gmi_line_ends path;
+    int first, last; /* lines between parallel axes */
+    int is_tilted;
+    gmi_tilt_cuts cuts;
+} side_ends;
+
+static void find_ends(const gm_mesh *mesh, side_lines *found, side_ends *ends) {
+    const gmi_engagement *at = &mesh->engagement;
+    const gmi_side *prepared = &mesh->side[found->side];
+    ends->path = gmi_line_ends_find(mesh->pair, at, &found->lines);
+    ends->first = found->lines.first;
+    ends->last = found->lines.last;
+    ends->is_tilted = at->is_tilted && found->work == NULL;
+    if (!ends->is_tilted) {
+        return;
+    }
+
+    const gmi_lines *lines = &found->lines;
+    const int has_ends = lines->advance != 0.0;
+    const int of_pinion = has_ends && prepared->pinion != NULL ? GMI_ENDS_WITH_PINION_TABLE : 0;
+    const int of_wheel = has_ends && prepared->wheel != NULL ? GMI_ENDS_WITH_WHEEL_TABLE : 0;
+    gmi_tilt_cuts_find(mesh->pair, at, found->side, found->delta,
+                       mesh->has_corners ? GMI_FACES_ALONE : of_pinion | of_wheel, &ends->cuts);
+
+    /* That may bring a line in that is just outside; where corners touch, widen() knows. */
+    if (!mesh->has_corners) {
+        const double pitch = mesh->pair->transverse_base_pitch;
+        const double before = lines->origin + (double)(lines->first - 1) * pitch + lines->rise;
+        const double behind = lines->origin + (double)(lines->last + 1) * pitch + lines->fall;
+        found->lines.first -= before > lines->lower - prepared->tilt_reach;
+        found->lines.last += behind < lines->upper + prepared->tilt_reach;
+    }
+}
+
+/* listed: of the line between parallel axes. */
+static gmi_interval part_of(const side_ends *ends, const gm_mesh *mesh, const side_lines *found,
+                            int index, gmi_interval listed) {
+    if (!ends->is_tilted) {
+        return listed;
+    }
+    const double pitch = mesh->pair->transverse_base_pitch;
+    gmi_line_part tilted;
+    if (!gmi_tilt_cut_line(&ends->cuts, found->lines.origin + (double)index * pitch, &tilted)) {
+        const gmi_interval none = {0.0, 0.0};
+        return none;
+    }
+    gmi_interval part = {tilted.from, tilted.to};
+    if (mesh->has_corners) {
+        gmi_line_ends reached = ends->path; /* as far as corners touch, whatever the faces */
+        reached.face_from = -HUGE_VAL;
+        reached.face_to = HUGE_VAL;
+        const gmi_interval edges = gmi_line_clip(&reached, index);
+        part.from = fmax(part.from, edges.from);
+        part.to = fmin(part.to, edges.to);
+    }
+    return part;
+}
+
 /* All lines of one side, and what that side carries as a whole. */
 static int walk_side(walk *w, int side, const gm_position *position, gm_workspace *workspace) {
     const gm_mesh *mesh = w->mesh;
@@ -421,13 +575,17 @@ static int walk_side(walk *w, int side, const gm_position *position, gm_workspac
     }
 
     /* Line by line, within the face and the path. */
+    side_ends ends;
+    find_ends(mesh, &found, &ends);
     found.teeth = gmi_lines_teeth(pair, side, &lines_at, &found.lines);
-    const gmi_line_ends ends = gmi_line_ends_find(pair, at, &found.lines);
     for (int k = found.lines.first; k <= found.lines.last && status == GM_OK; ++k) {
-        const gmi_interval part = gmi_line_clip(&ends, k);
+        const gmi_interval none = {0.0, 0.0};
+        const int is_listed = k >= ends.first && k <= ends.last;
+        const gmi_interval listed = is_listed ? gmi_line_clip(&ends.path, k) : none;
+        const gmi_interval part = part_of(&ends, mesh, &found, k, listed);
         const int row = found.work != NULL ? row_of(found.work, k) : 0;
-        if (part.from < part.to && row >= 0) {
-            status = walk_line(w, &found, k, row, part);
+        if ((listed.from < listed.to || part.from < part.to) && row >= 0) {
+            status = walk_line(w, &found, k, row, listed, part);
         }
     }
     return status;

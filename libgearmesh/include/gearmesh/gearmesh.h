@@ -1331,8 +1331,11 @@ enum gm_load_warning {
 
 /** How a mesh is loaded at one position; NaN where nothing touches. */
 typedef struct gm_line_loads {
-    double largest_line_load; /**< of all points and ends of lines (N/m) */
-    double largest_pressure;  /**< likewise, where it is known (N/m2) */
+    /** of all lines (N/m). With constant stiffness the largest there is, mostly between stations, exactly but for 1e-3 of
+     * it beyond a tip; of elastic teeth the largest at stations, ends of lines and the edges of tips */
+    double largest_line_load;
+
+    double largest_pressure; /**< at the same places, where it is known (N/m2) */
 
     /** largest line load over the mean one along the lines that touch: of a single spur pair max(q) b / F */
     double face_load_factor;
