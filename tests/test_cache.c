@@ -568,6 +568,9 @@ static void pairs_and_wrenches_are_exact_on_request(void) {
         GM_ASSERT_REL(energy.energy, exact.energy, 0.0);
         GM_ASSERT_REL(counted.force, held.force, 0.0);
         GM_ASSERT_INT(counted.contact.drive_pairs, exact.contact.drive_pairs);
+        int pairs[2];
+        GM_ASSERT_INT(gm_mesh_pairs_at(f.mesh, &position, NULL, pairs), GM_OK);
+        GM_ASSERT_INT(pairs[GM_DRIVE], exact.contact.drive_pairs);
         GM_ASSERT(memcmp(&wrench.wrench, &exact.wrench, sizeof exact.wrench) == 0);
         GM_ASSERT_REL(wrench.force, exact.force, 0.0);
     }

@@ -412,6 +412,64 @@ static void what_is_wanted_does_not_change_the_rest(void) {
     GM_ASSERT(resting > 50);
 }
 
+/*
+ * Pairs counted alone are those of the whole evaluation, for all kinds of flanks and whatever of a line touches: most depths
+ * are a small part of the deviations, where many lines touch in a short part or not at all.
+ */
+static void pairs_alone_are_those_of_an_evaluation(void) {
+    uint64_t seed = UINT64_C(93);
+    int count[4] = {0, 0, 0, 0};
+    for (int i = 0; i < 600; ++i) {
+        random_case c;
+        gm_test_context("case %d, seed %llx", i, (unsigned long long)seed);
+        GM_ASSERT_INT(random_mixed_case_make(&c, &seed, i), GM_OK);
+        gm_mesh_params params = good_params(i % 11 == 7 ? GM_MODEL_SIMPLE : GM_MODEL_3D);
+        params.friction_coefficient = i % 4 == 1 ? 0.06 : 0.0;
+        params.pose.axial_shift = i % 9 == 2 ? 1e-3 * c.pair.face_width : 0.0;
+        plain_mesh room;
+        const gm_mesh *mesh = make_mesh(&room, &params, &c.pair, c.use[0], c.use[1]);
+        for (int k = 0; k < 12; ++k) {
+            const int side = k % 2;
+            const double deep = gm_test_uniform(&seed, 0.0, k % 3 == 0 ? 6.0 : 1.5) * c.amplitude;
+            const double offset = gm_mesh_clearance(mesh, side) + deep;
+            gm_position position;
+            gm_mesh_result r;
+            int pairs[2] = {-1, -1};
+            GM_ASSERT_INT(gm_position_from_pinion_angle(&c.pair, gm_test_uniform(&seed, 0.0, 7.0),
+                                                        side == GM_DRIVE ? offset : -offset, 0.0,
+                                                        &position),
+                          GM_OK);
+            GM_ASSERT_INT(gm_mesh_evaluate_at(mesh, &position, GM_WANT_FORCE, NULL, &r), GM_OK);
+            GM_ASSERT_INT(gm_mesh_pairs_at(mesh, &position, NULL, pairs), GM_OK);
+            GM_ASSERT_INT(pairs[GM_DRIVE], r.contact.drive_pairs);
+            GM_ASSERT_INT(pairs[GM_COAST], r.contact.coast_pairs);
+            const int touching = pairs[GM_DRIVE] + pairs[GM_COAST];
+            ++count[touching < 3 ? touching : 3];
+        }
+        random_case_free(&c);
+    }
+    gm_test_context("all cases");
+    for (int touching = 0; touching < 4; ++touching) {
+        GM_ASSERT(count[touching] > 100);
+    }
+}
+
+static void pairs_of_no_position_are_refused(void) {
+    const gm_pair pair = reference_pair(REFERENCE_FACE_WIDTH);
+    const gm_mesh_params params = good_params(GM_MODEL_3D);
+    plain_mesh room;
+    const gm_mesh *mesh = make_mesh(&room, &params, &pair, NULL, NULL);
+    const gm_position good = {.phase = 1e-3, .offset = 55e-6}, bad = {.phase = (double)NAN};
+    int pairs[2] = {7, 7};
+    GM_ASSERT_INT(gm_mesh_pairs_at(mesh, &good, NULL, NULL), GM_ERR_NULL);
+    GM_ASSERT_INT(gm_mesh_pairs_at(NULL, &good, NULL, pairs), GM_ERR_NULL);
+    GM_ASSERT_INT(pairs[GM_DRIVE] + pairs[GM_COAST], 0);
+    GM_ASSERT_INT(gm_mesh_pairs_at(mesh, NULL, NULL, pairs), GM_ERR_NULL);
+    pairs[GM_DRIVE] = 7;
+    GM_ASSERT_INT(gm_mesh_pairs_at(mesh, &bad, NULL, pairs), GM_STATE_NOT_FINITE);
+    GM_ASSERT_INT(pairs[GM_DRIVE], 0);
+}
+
 static void state_and_position_give_the_same_bits(void) {
     uint64_t seed = UINT64_C(92);
     for (int i = 0; i < 100; ++i) {
@@ -768,6 +826,8 @@ int main(int argc, char **argv) {
         GM_TEST(null_pointers_are_refused),
         GM_TEST(only_what_is_known_can_be_wanted),
         GM_TEST(what_is_wanted_does_not_change_the_rest),
+        GM_TEST(pairs_alone_are_those_of_an_evaluation),
+        GM_TEST(pairs_of_no_position_are_refused),
         GM_TEST(state_and_position_give_the_same_bits),
         GM_TEST(states_out_of_range_leave_nan),
         GM_TEST(clearance_ends_where_flanks_touch),

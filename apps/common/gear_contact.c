@@ -19,6 +19,14 @@ int gear_contact_evaluate(const gear_mesh *mesh, const gm_position *position, in
                                          floating->each, result);
 }
 
+int gear_contact_pairs(const gear_mesh *mesh, const gm_position *position, int *pairs) {
+    int of_side[2];
+    const int status = gm_mesh_pairs_at(mesh->prepared[0], position, mesh->workspace[0], of_side);
+
+    *pairs = of_side[GM_DRIVE] + of_side[GM_COAST];
+    return status;
+}
+
 int gear_contact_equilibrium(const gear_mesh *mesh, double pinion_angle, double pinion_speed,
                              double wheel_torque, double guess, double *offset,
                              gm_mesh_result *result) {

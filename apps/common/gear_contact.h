@@ -14,6 +14,8 @@
  * found the float. Return a library status. */
 int gear_contact_evaluate(const gear_mesh *mesh, const gm_position *position, int wanted,
                           gm_mesh_result *result);
+/* As gm_mesh_pairs_at(), both sides together; of a pair of one half. */
+int gear_contact_pairs(const gear_mesh *mesh, const gm_position *position, int *pairs);
 int gear_contact_equilibrium(const gear_mesh *mesh, double pinion_angle, double pinion_speed,
                              double wheel_torque, double guess, double *offset,
                              gm_mesh_result *result);

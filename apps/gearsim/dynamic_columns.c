@@ -72,7 +72,7 @@ static double mean_load(const dynamic_sample *sample) {
 }
 
 static double pairs_in_contact(const dynamic_sample *sample) {
-    return sample->mesh.contact.drive_pairs + sample->mesh.contact.coast_pairs;
+    return sample->pairs;
 }
 
 static double apex(const dynamic_sample *sample) {

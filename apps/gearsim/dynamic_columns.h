@@ -16,6 +16,7 @@ typedef struct dynamic_sample {
     double time; /* s */
     gear_motion motion;
     gm_mesh_result mesh;     /* only where some column asked for needs it */
+    int pairs;               /* likewise, that touch */
     double apex;             /* likewise, float of a double-helical pinion (m) */
     double mean_force;       /* about the time, only where samples are filtered (N) */
     double mean_load;        /* likewise (N m) */
@@ -27,9 +28,9 @@ typedef struct dynamic_sample {
 enum column_need {
     NEEDS_TIME,   /* alone */
     NEEDS_MOTION, /* angles, speeds and x at the time */
+    NEEDS_PAIRS,  /* and how many pairs touch */
     NEEDS_FORCE,  /* that of the mesh */
     NEEDS_MESH,   /* and the penetration */
-    NEEDS_PAIRS,  /* and the pairs that touch, which a cache has to count */
     NEEDS_WRENCH, /* and where they touch */
     NEEDS_ENERGY  /* and what is stored there */
 };

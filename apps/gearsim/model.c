@@ -312,6 +312,14 @@ int model_evaluate(const gear_model *model, const gear_motion *motion, int wante
                            : gear_contact_evaluate(model->gears, &position, wanted, result);
 }
 
+int model_count_pairs(const gear_model *model, const gear_motion *motion, int *pairs) {
+    gm_position position;
+    const int status = gm_position_from_pinion_angle(&model->gears->pair, motion->pinion_angle,
+                                                     motion->offset, 0.0, &position);
+
+    return status != GM_OK ? status : gear_contact_pairs(model->gears, &position, pairs);
+}
+
 /* From x' = r_bp phi_p' - r_bw phi_w'. */
 double model_wheel_speed(const gear_model *model, const gear_motion *motion) {
     const gm_pair *pair = &model->gears->pair;

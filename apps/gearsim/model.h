@@ -112,6 +112,9 @@ void model_edges(const gear_model *model, int count, const double times[],
 int model_evaluate(const gear_model *model, const gear_motion *motion, int wanted,
                    gm_mesh_result *result);
 
+/* Pairs that touch; of a pair of one half. Returns a library status. */
+int model_count_pairs(const gear_model *model, const gear_motion *motion, int *pairs);
+
 /* Speed of the wheel in a motion (rad/s). */
 double model_wheel_speed(const gear_model *model, const gear_motion *motion);
 

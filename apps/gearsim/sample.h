@@ -51,7 +51,8 @@ typedef struct sampling {
 
     /* What they need. */
     enum column_need row_need;    /* the most at the time of a row, */
-    enum column_need sample_need; /* and between the rows */
+    enum column_need sample_need; /* and between the rows; */
+    int counts_pairs;             /* and the pairs that touch at the time of a row */
     enum sample_kind mean_kind;   /* of the columns that show means, SAMPLE_PLAIN: none does */
     int shows_means;              /* of force or load, */
     int shows_load;               /* and of the load */
@@ -85,7 +86,9 @@ static inline double sample_time(const sampling *s, double row, double sample) {
 int sample_points(sampling *s, int count, const double times[], integrator_point points[]);
 int sample_motion(sampling *s, double time, gear_motion *motion);
 
-/* The mesh at the time and motion of the sample. Returns 0, or EXIT_RUN_FAILED with the reason in `why`. */
+/* The mesh at the time and motion of the sample; of one that is a row's, what rows need. Both return 0, or EXIT_RUN_FAILED
+ * with the reason in `why`. */
 int sample_mesh(sampling *s, enum column_need need);
+int sample_row(sampling *s);
 
 #endif

@@ -65,12 +65,21 @@ static enum column_need larger(enum column_need a, enum column_need b) {
     return a > b ? a : b;
 }
 
+/* Elastic teeth and both halves of a double-helical pair tell how many pairs touch with their force alone. */
+static enum column_need need_of(const sampling *s, const dynamic_column *column) {
+    const int needs_force = s->conf->law == LAW_ELASTIC || s->model->gears->halves == 2;
+
+    return column->need == NEEDS_PAIRS && needs_force ? NEEDS_FORCE : column->need;
+}
+
 /* What the columns show, and what they need for that. Sets what the filter gets of each. */
 static void set_columns(sampling *s, const int columns[], enum sample_kind kinds[]) {
     for (int k = 0; k < s->column_count; ++k) {
         const dynamic_column *column = &dynamic_columns[columns[k]];
+        const enum column_need need = need_of(s, column);
 
         kinds[k] = kind_of(s, column);
+        s->counts_pairs |= column->need == NEEDS_PAIRS;
         s->show[k] = takes_mean(s, column) ? column->mean : column->value;
         s->shown[k] = kinds[k] == SAMPLE_BEHIND ? &s->behind : &s->sample;
         switch (kinds[k]) {
@@ -90,7 +99,7 @@ static void set_columns(sampling *s, const int columns[], enum sample_kind kinds
             s->row_need = larger(s->row_need, column->need);
             break;
         default:
-            s->row_need = larger(s->row_need, column->need);
+            s->row_need = larger(s->row_need, need);
             break;
         }
     }
@@ -209,7 +218,9 @@ static int take_sample(sampling *s, double row, int i) {
     if (!failed) {
         failed = see_sample_motion(s, need);
     }
-    if (!failed && need >= NEEDS_FORCE) {
+    if (!failed && of_row) {
+        failed = sample_row(s);
+    } else if (!failed && need >= NEEDS_FORCE) {
         failed = sample_mesh(s, need);
     }
     if (!failed) {
@@ -327,8 +338,8 @@ static int take_block(sampling *s, double row) {
     /* The row's own sample, with the mesh if a column needs to know. */
     s->sample.time = block.centre[last];
     s->sample.motion = block.of_row;
-    if (!failed && s->row_need >= NEEDS_FORCE) {
-        failed = sample_mesh(s, s->row_need);
+    if (!failed) {
+        failed = sample_row(s);
     }
     if (!failed && s->is_force_alone) {
         set_forces(s, &block);

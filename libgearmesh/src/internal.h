@@ -586,6 +586,10 @@ void gmi_line_integrate_depths(const gmi_line *line, const gmi_grid *pinion, con
 void gmi_line_integrate_squares(const gmi_line *line, const gmi_grid *pinion, const gmi_grid *wheel,
                                 gmi_line_sum *result);
 
+/* f at one place of a line without ramps and tilt (m). */
+double gmi_line_value(const gmi_line *line, const gmi_grid *pinion, const gmi_grid *wheel,
+                      double t1);
+
 /* wanted: none of GMI_TANGENT, GMI_DEPTHS and GMI_SQUARES. */
 void gmi_line_integrate(const gmi_line *line, const gmi_grid *pinion, const gmi_grid *wheel,
                         int wanted, gmi_line_sum *result);
@@ -737,6 +741,11 @@ void gmi_side_sum_depths(const gm_pair *pair, const gmi_engagement *at, const gm
 
 void gmi_side_sum_tables(const gm_pair *pair, const gmi_engagement *at, const gmi_side *prepared,
                          int side, const gm_position *position, int wanted, gmi_side_sum *total);
+
+/* gmi_side_sum.pairs of such a side alone. */
+int gmi_side_count_pairs(const gm_pair *pair, const gmi_engagement *at, const gmi_side *prepared,
+                         int side, const gm_position *position);
+
 void gmi_side_sum_simple(const gm_pair *pair, const gmi_engagement *at, int side, double offset,
                          gmi_side_sum *total);
 

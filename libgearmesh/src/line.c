@@ -1184,6 +1184,24 @@ void gmi_line_integrate_depths(const gmi_line *line, const gmi_grid *pinion, con
     }
 }
 
+/* w of the cell that holds the place, bilinear. */
+static double deviation_at(const gmi_grid *grid, const double *table, double profile, double t1) {
+    const table_point at = point_at(grid, table, profile, t1);
+    return at.node[0] + (at.across - at.mixed * at.q) * at.p + at.along * at.q;
+}
+
+double gmi_line_value(const gmi_line *line, const gmi_grid *pinion, const gmi_grid *wheel,
+                      double t1) {
+    double value = line->overlap;
+    if (line->pinion != NULL) {
+        value += deviation_at(pinion, line->pinion, line->pinion_profile, t1);
+    }
+    if (line->wheel != NULL) {
+        value += deviation_at(wheel, line->wheel, line->wheel_profile, t1);
+    }
+    return value;
+}
+
 void gmi_line_integrate(const gmi_line *line, const gmi_grid *pinion, const gmi_grid *wheel,
                         int wanted, gmi_line_sum *result) {
     result->sum = result->contact = result->pinion = result->wheel = 0.0;

@@ -1105,6 +1105,42 @@ int gm_mesh_evaluate(const gm_mesh *mesh, const gm_state *state, int wanted,
 }
 
 /* ---------------------------------------------------------------------------------------------
+ * Numbers of pairs
+ * ------------------------------------------------------------------------------------------- */
+
+/* Whether lines can be told to touch without their sum: tables in the pose of the drawing, without corners. */
+static int counts_alone(const gm_mesh *mesh) {
+    const gmi_side *drive = &mesh->side[GM_DRIVE];
+    const int has_tables = drive->pinion != NULL || drive->wheel != NULL;
+    return mesh->model == GM_MODEL_3D && has_tables && mesh->elastic == NULL &&
+           !mesh->has_corners && !mesh->is_posed && !mesh->engagement.is_tilted &&
+           drive->ramps == 0 && mesh->side[GM_COAST].ramps == 0;
+}
+
+int gm_mesh_pairs_at(const gm_mesh *mesh, const gm_position *position, gm_workspace *workspace,
+                     int pairs[2]) {
+    if (pairs == NULL) {
+        return GM_ERR_NULL;
+    }
+    pairs[GM_DRIVE] = pairs[GM_COAST] = 0;
+    int status = check_evaluation(mesh, position, GM_WANT_PAIRS, workspace);
+    if (status == GM_OK && counts_alone(mesh)) {
+        for (int side = GM_DRIVE; side <= GM_COAST; ++side) {
+            pairs[side] = gmi_side_count_pairs(mesh->pair, &mesh->engagement, &mesh->side[side],
+                                               side, position);
+        }
+    } else if (status == GM_OK) {
+        /* Any evaluation counts them, but that of a cache. */
+        const int wanted = mesh->cache != NULL ? GM_WANT_PAIRS : GM_WANT_FORCE;
+        gm_mesh_result result;
+        status = gm_mesh_evaluate_at(mesh, position, wanted, workspace, &result);
+        pairs[GM_DRIVE] = result.contact.drive_pairs;
+        pairs[GM_COAST] = result.contact.coast_pairs;
+    }
+    return status;
+}
+
+/* ---------------------------------------------------------------------------------------------
  * In a pose of its own at every call
  * ------------------------------------------------------------------------------------------- */
 

@@ -795,6 +795,54 @@ void gmi_side_sum_sliding(const gm_mesh *mesh, int side, const gm_position *posi
     gmi_rubbing_finish(sliding, &load, NULL, rubbing, NULL);
 }
 
+/*
+ * Whether a line without ramps and tilt touches. Most of those that do are found out by a look at some places, all others by
+ * the walk of a sum; `surely` is far beyond the rounding by which both may differ.
+ */
+static int touches(const gmi_side *prepared, const gmi_line *line) {
+    static const double shares[] = {0.5, 0.25, 0.75, 0.05, 0.95};
+    static const double surely = 1e-15; /* m */
+    const gmi_grid *pinion = &prepared->pinion_grid, *wheel = &prepared->wheel_grid;
+    for (int i = 0; i < (int)(sizeof shares / sizeof shares[0]); ++i) {
+        const double t1 = line->from + shares[i] * (line->to - line->from);
+        if (gmi_line_value(line, pinion, wheel, t1) > surely) {
+            return 1;
+        }
+    }
+    gmi_line_sum sum;
+    gmi_line_integrate(line, pinion, wheel, GMI_SUM, &sum);
+    return sum.contact > 0.0;
+}
+
+int gmi_side_count_pairs(const gm_pair *pair, const gmi_engagement *at, const gmi_side *prepared,
+                         int side, const gm_position *position) {
+    if (gmi_side_is_clear(at, prepared, side, position->offset)) {
+        return 0;
+    }
+    gmi_lines lines;
+    gmi_lines_find(pair, at, side, position, &lines);
+    const gmi_line_ends ends = gmi_line_ends_find(pair, at, &lines);
+    const double wheel_reach = at->line_of_action + lines.delta - at->wheel_profile_start;
+
+    /* Line by line, as in follow_lines(). */
+    int pairs = 0;
+    gmi_teeth teeth = gmi_lines_teeth(pair, side, position, &lines);
+    for (int k = lines.first; k <= lines.last; ++k) {
+        const gmi_flank pinion = gmi_flank_of(prepared->pinion, teeth.pinion);
+        const gmi_flank wheel = gmi_flank_of(prepared->wheel, teeth.wheel);
+        const gmi_interval part = gmi_line_clip(&ends, k);
+        if (part.from < part.to && lines.delta + pinion.peak + wheel.peak > 0.0) {
+            const double rho_origin = lines.origin + (double)k * pair->transverse_base_pitch;
+            const gmi_line line = line_between(pair, prepared, lines.delta, wheel_reach, &pinion,
+                                               &wheel, rho_origin, part);
+            pairs += touches(prepared, &line);
+        }
+        teeth.pinion = gmi_next_tooth(teeth.pinion, teeth.step, pair->pinion.teeth);
+        teeth.wheel = gmi_next_tooth(teeth.wheel, teeth.step, pair->wheel.teeth);
+    }
+    return pairs;
+}
+
 /* Apart from sums, as they take more stack. */
 static OWN_STACK void follow_tangent(const gm_mesh *mesh, int side, const gm_position *position,
                                      gmi_side_sum *total, gmi_side_tangent *tangent) {

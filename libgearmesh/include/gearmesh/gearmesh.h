@@ -1061,6 +1061,22 @@ GM_API int gm_mesh_evaluate(const gm_mesh *mesh, const gm_state *state, int want
 GM_API int gm_mesh_evaluate_at(const gm_mesh *mesh, const gm_position *position, int wanted,
                                gm_workspace *workspace, gm_mesh_result *result);
 
+/**
+ * How many pairs of teeth touch at a reduced position, and nothing else: gm_penetration.drive_pairs and coast_pairs of
+ * gm_mesh_evaluate_at(), exactly, also where the mesh has a cache.
+ *
+ * @param[in]     mesh       the mesh
+ * @param[in]     position   where the gears are; speeds do not matter
+ * @param[in,out] workspace  as gm_mesh_evaluate()
+ * @param[out]    pairs      of GM_DRIVE and GM_COAST; 0 on an error
+ * @return as gm_mesh_evaluate_at()
+ *
+ * Cost: with tables less than half an evaluation, as a line that carries is known to touch from one of its points and only
+ * others are followed; elastic teeth, linear reliefs, corner contact and a pose take a whole one. docs/performance.md.
+ */
+GM_API int gm_mesh_pairs_at(const gm_mesh *mesh, const gm_position *position,
+                            gm_workspace *workspace, int pairs[2]);
+
 /* ---------------------------------------------------------------------------------------------
  * Gears that move: a pose of its own at every call, and bodies of a multibody code
  * ------------------------------------------------------------------------------------------- */
