@@ -2,11 +2,13 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 
 /*
- * A planetary set: sun, three planets, a ring that stands still, and a carrier that is free to turn, by CVODE. Each of the
- * six meshes sees two bodies; that planets mesh at different phases follows from where they stand. The pin of planet 0 is
- * off its place by 5 um along its way, so that it carries more or less than a third of the load: by how much is known.
+ * A planetary set: sun, planets, a ring that stands still, and a carrier that is free to turn, by CVODE. Each mesh sees two
+ * bodies; that planets mesh at different phases follows from where they stand. The pin of planet 0 is off its place by 5 um
+ * along its way, so that it carries more or less than its part of the load: by how much is known.
  *
- *     planetary [FILE]    the force of each planet on the carrier over time, for planetary.gp
+ *     planetary [FILE|- [PLANETS [SUN PLANET]]]    3 planets, sun of 28 and planets of 35 teeth
+ *
+ * FILE gets the force of each planet on the carrier over time, for planetary.gp.
  */
 #include <cvode/cvode.h>
 #include <gearmesh/gearmesh.h>
@@ -18,22 +20,33 @@
 #include <sunlinsol/sunlinsol_dense.h>
 #include <sunmatrix/sunmatrix_dense.h>
 
-enum { SUN = 28, PLANET = 35, RING = 98, PLANETS = 3, TURNS = 2 + PLANETS };
-enum { IN = 2 * TURNS, OUT, LOSS, STATES }; /* behind angles and speeds: energies */
+enum { PLANETS_MAX = 12, TURNS_MAX = 2 + PLANETS_MAX };
+enum {
+    IN,
+    OUT,
+    LOSS,
+    ANGLES,
+    STATES_MAX = ANGLES + 2 * TURNS_MAX
+}; /* energies; angles and speeds */
 
 static const double pi = 3.14159265358979323846;
 static const double stiffness = 3e8, damping = 3e3, sun_torque = 300.0, speed = 60.0;
-static const double inertia[TURNS] = {1e-3, 2e-2, 2e-3, 2e-3,
-                                      2e-3}; /* sun, carrier with planets, planets */
-static const double displaced = 5e-6;        /* planet 0, along its way (m) */
+static const double sun_inertia = 1e-3, carrier_inertia = 2e-2, planet_inertia = 2e-3;
+static const double displaced = 5e-6; /* planet 0, along its way (m) */
 
 typedef struct gearbox {
+    int planets, turns;    /* how many planets; and they, sun and carrier */
+    int sun, planet, ring; /* numbers of teeth */
     gm_mesh *at_sun, *at_ring;
-    double arm;           /* of the carrier (m) */
-    double ring_angle;    /* where the ring is fixed */
-    double push[PLANETS]; /* tangential force on the carrier (N) */
-    double stored;        /* in all meshes (J) */
+    double arm;               /* of the carrier (m) */
+    double ring_angle;        /* where the ring is fixed */
+    double push[PLANETS_MAX]; /* tangential force on the carrier (N) */
+    double stored;            /* in all meshes (J) */
 } gearbox;
+
+static double inertia_of(int turn) {
+    return turn == 0 ? sun_inertia : turn == 1 ? carrier_inertia : planet_inertia;
+}
 
 static gm_mesh *mesh_of(int pinion, int wheel, double helix_angle, double *distance) {
     gm_pair_params params;
@@ -79,35 +92,37 @@ static double loss_of(const gm_penetration *c) {
                                   : 0.0;
 }
 
-static double place_of(int planet, const double *y) {
-    return y[1] + 2.0 * pi * planet / PLANETS;
-}
-
-static gm_body planet_of(const gearbox *box, int planet, const double *y) {
+/* Angles of sun, carrier and planets, and behind them their speeds. */
+static gm_body planet_of(const gearbox *box, int planet, const double *angles) {
+    const double *speeds = angles + box->turns;
     const double along = planet == 0 ? displaced / box->arm : 0.0;
-    return body_at(box->arm, place_of(planet, y) + along, y[TURNS + 1], y[2 + planet],
-                   y[TURNS + 2 + planet]);
+    const double place = angles[1] + 2.0 * pi * planet / box->planets + along;
+    return body_at(box->arm, place, speeds[1], angles[2 + planet], speeds[2 + planet]);
 }
 
-/* y: angles of sun, carrier and planets, their speeds, energies. */
+/* Of the carrier, as the sun turns: from the numbers of teeth. */
+static double carrier_speed(const gearbox *box) {
+    return speed * box->sun / (box->sun + box->ring);
+}
+
 static int derivatives(sunrealtype t, N_Vector state, N_Vector rates, void *data) {
     gearbox *box = (gearbox *)data;
-    const double *y = N_VGetArrayPointer(state);
+    const double *angles = N_VGetArrayPointer(state) + ANGLES, *speeds = angles + box->turns;
     double *rate = N_VGetArrayPointer(rates);
 
     /* Sun and ring turn about the middle; the load of the carrier grows with its speed. */
-    const gm_body sun = body_at(0.0, 0.0, 0.0, y[0], y[TURNS]);
+    const gm_body sun = body_at(0.0, 0.0, 0.0, angles[0], speeds[0]);
     const gm_body ring = body_at(0.0, 0.0, 0.0, box->ring_angle, 0.0);
     const double load =
-        sun_torque * (1.0 + (double)RING / SUN) * y[TURNS + 1] / (speed * SUN / (SUN + RING));
-    double torque[TURNS] = {sun_torque, -load};
+        sun_torque * (1.0 + (double)box->ring / box->sun) * speeds[1] / carrier_speed(box);
+    double torque[TURNS_MAX] = {sun_torque, -load};
     (void)t;
 
     /* Each planet turns by both moments and pushes its pin by both forces. */
     double loss = 0.0;
     box->stored = 0.0;
-    for (int k = 0; k < PLANETS; ++k) {
-        const gm_body planet = planet_of(box, k, y);
+    for (int k = 0; k < box->planets; ++k) {
+        const gm_body planet = planet_of(box, k, angles);
         gm_mesh_result inner, outer;
         gm_load on_sun, from_sun, from_ring, on_ring;
         int status = gm_mesh_evaluate_bodies(box->at_sun, &sun, &planet, GM_WANT_ENERGY, NULL,
@@ -133,32 +148,32 @@ static int derivatives(sunrealtype t, N_Vector state, N_Vector rates, void *data
     }
 
     /* Angles, speeds, and what is summed over time. */
-    for (int k = 0; k < TURNS; ++k) {
-        rate[k] = y[TURNS + k];
-        rate[TURNS + k] = torque[k] / inertia[k];
+    for (int k = 0; k < box->turns; ++k) {
+        rate[ANGLES + k] = speeds[k];
+        rate[ANGLES + box->turns + k] = torque[k] / inertia_of(k);
     }
-    rate[IN] = sun_torque * y[TURNS];
-    rate[OUT] = load * y[TURNS + 1];
+    rate[IN] = sun_torque * speeds[0];
+    rate[OUT] = load * speeds[1];
     rate[LOSS] = loss;
     return 0;
 }
 
 /* Turns each planet until it stands in the middle of the sun's backlash, and the ring for planet 0; the other planets
  * then fit, as z_s + z_r is divisible by their number. */
-static int assemble(gearbox *box, double *y) {
-    for (int k = 0; k < PLANETS; ++k) {
+static int assemble(gearbox *box, double *angles) {
+    for (int k = 0; k < box->planets; ++k) {
         /* Turn the planet by its distance from the middle of the sun's backlash. */
         gm_motion motion;
         const gm_body sun = body_at(0.0, 0.0, 0.0, 0.0, 0.0);
         const gm_body ring = body_at(0.0, 0.0, 0.0, box->ring_angle, 0.0);
-        gm_body planet = planet_of(box, k, y);
+        gm_body planet = planet_of(box, k, angles);
         if (gm_motion_of_bodies(box->at_sun, &sun, &planet, &motion, NULL) != GM_OK) {
             return 0;
         }
-        y[2 + k] -= motion.position.offset / gm_mesh_pair(box->at_sun)->wheel.base_radius;
+        angles[2 + k] -= motion.position.offset / gm_mesh_pair(box->at_sun)->wheel.base_radius;
 
         /* Then the first planet's ring; the others have to fit into it by themselves. */
-        planet = planet_of(box, k, y);
+        planet = planet_of(box, k, angles);
         if (gm_motion_of_bodies(box->at_ring, &planet, &ring, &motion, NULL) != GM_OK) {
             return 0;
         }
@@ -172,40 +187,41 @@ static int assemble(gearbox *box, double *y) {
     return 1;
 }
 
-static double kinetic(const double *y) {
+static double kinetic(const gearbox *box, const double *y) {
+    const double *speeds = y + ANGLES + box->turns;
     double energy = 0.0;
-    for (int k = 0; k < TURNS; ++k) {
-        energy += 0.5 * inertia[k] * y[TURNS + k] * y[TURNS + k];
+    for (int k = 0; k < box->turns; ++k) {
+        energy += 0.5 * inertia_of(k) * speeds[k] * speeds[k];
     }
     return energy;
 }
 
-/* Steady speeds of the set, from its numbers of teeth. */
-static void set_speeds(double *y) {
-    const double carrier = speed * SUN / (SUN + RING);
-    y[TURNS] = speed;
-    y[TURNS + 1] = carrier;
-    for (int k = 0; k < PLANETS; ++k) {
-        y[TURNS + 2 + k] = carrier * (1.0 - (double)RING / PLANET);
+/* Steady speeds of the set. */
+static void set_speeds(const gearbox *box, double *speeds) {
+    const double carrier = carrier_speed(box);
+    speeds[0] = speed;
+    speeds[1] = carrier;
+    for (int k = 0; k < box->planets; ++k) {
+        speeds[2 + k] = carrier * (1.0 - (double)box->ring / box->planet);
     }
 }
 
 /*
- * Share of the load that planet 0 carries: springs of both meshes in a row; 5 um along the way are 5 um cos(alpha_wt)
+ * Share of the load that planet 0 carries, if it carries any: springs of both meshes in a row; 5 um along the way are 5 um cos(alpha_wt)
  * along each line of action.
  */
 static double share_by_springs(const gearbox *box) {
     const gm_pair *sun = gm_mesh_pair(box->at_sun), *ring = gm_mesh_pair(box->at_ring);
     const double spring =
         stiffness / (1.0 / sun->transverse_contact_ratio + 1.0 / ring->transverse_contact_ratio);
-    const double force = sun_torque / (PLANETS * sun->pinion.base_radius);
+    const double force = sun_torque / (box->planets * sun->pinion.base_radius);
     const double less = spring * 2.0 * displaced * cos(sun->working_pressure_angle) / force;
-    return (1.0 - less * (PLANETS - 1) / PLANETS) / PLANETS;
+    return fmax(0.0, (1.0 - less * (box->planets - 1) / box->planets) / box->planets);
 }
 
 /* What the run has found: means of what pushes the carrier, and energies since the start had settled (J). */
 typedef struct findings {
-    double push[PLANETS];
+    double push[PLANETS_MAX];
     double in, out, loss, stored;
 } findings;
 
@@ -216,7 +232,7 @@ static const double settled = 0.02, end = 0.05;
 static int observe(void *cvode, gearbox *box, N_Vector state, N_Vector rates, FILE *file,
                    findings *found) {
     const double *y = N_VGetArrayPointer(state);
-    double before[STATES], energy = 0.0;
+    double before[ANGLES], energy = 0.0;
     sunrealtype time = 0.0;
     for (int row = 0; row <= ROWS; ++row) {
         const double to = settled + (end - settled) * row / ROWS;
@@ -226,20 +242,23 @@ static int observe(void *cvode, gearbox *box, N_Vector state, N_Vector rates, FI
         }
         if (row == 0) {
             memcpy(before, y, sizeof before);
-            energy = kinetic(y) + box->stored;
-        }
-        for (int k = 0; k < PLANETS; ++k) {
-            found->push[k] += box->push[k] / (ROWS + 1);
+            energy = kinetic(box, y) + box->stored;
         }
         if (file != NULL) {
-            fprintf(file, "%.6f %.3f %.3f %.3f\n", time, box->push[0], box->push[1], box->push[2]);
+            fprintf(file, "%.6f", time);
+        }
+        for (int k = 0; k < box->planets; ++k) {
+            found->push[k] += box->push[k] / (ROWS + 1);
+            if (file != NULL) {
+                fprintf(file, k + 1 < box->planets ? " %.3f" : " %.3f\n", box->push[k]);
+            }
         }
     }
 
     found->in = y[IN] - before[IN];
     found->out = y[OUT] - before[OUT];
     found->loss = y[LOSS] - before[LOSS];
-    found->stored = kinetic(y) + box->stored - energy;
+    found->stored = kinetic(box, y) + box->stored - energy;
     return 0;
 }
 
@@ -251,10 +270,11 @@ static int run(gearbox *box, double *y, FILE *file, findings *found) {
 #else
     SUNContext_Create(SUN_COMM_NULL, &context);
 #endif
-    double rate[STATES];
-    N_Vector state = N_VMake_Serial(STATES, y, context);
-    N_Vector rates = N_VMake_Serial(STATES, rate, context);
-    SUNMatrix matrix = SUNDenseMatrix(STATES, STATES, context);
+    const int states = ANGLES + 2 * box->turns;
+    double rate[STATES_MAX];
+    N_Vector state = N_VMake_Serial(states, y, context);
+    N_Vector rates = N_VMake_Serial(states, rate, context);
+    SUNMatrix matrix = SUNDenseMatrix(states, states, context);
     SUNLinearSolver solver = SUNLinSol_Dense(state, matrix, context);
     void *cvode = CVodeCreate(CV_BDF, context);
     const int failed = CVodeInit(cvode, derivatives, 0.0, state) ||
@@ -272,35 +292,83 @@ static int run(gearbox *box, double *y, FILE *file, findings *found) {
     return failed;
 }
 
+/*
+ * Planets at equal steps mesh with sun and ring only where z_s + z_r is divisible by their number; and next to each other
+ * only where their tips do not meet.
+ */
+static int is_possible(const gearbox *box) {
+    if (box->planets < 1 || box->planets > PLANETS_MAX || box->sun < 10 || box->planet < 10) {
+        fprintf(stderr, "planetary: 1 to %d planets, and teeth from 10 on\n", PLANETS_MAX);
+        return 0;
+    }
+    if ((box->sun + box->ring) % box->planets != 0) {
+        fprintf(stderr, "planetary: %d planets do not fit: (%d + %d) / %d is no whole number\n",
+                box->planets, box->sun, box->ring, box->planets);
+        return 0;
+    }
+    if (box->at_sun == NULL || box->at_ring == NULL) {
+        fprintf(stderr, "planetary: no gears with these teeth\n");
+        return 0;
+    }
+    const double apart = 2.0 * box->arm * sin(pi / box->planets);
+    if (box->planets > 1 && apart < 2.0 * gm_mesh_pair(box->at_sun)->wheel.tip_radius) {
+        fprintf(stderr, "planetary: %d planets do not fit: their tips meet\n", box->planets);
+        return 0;
+    }
+    return 1;
+}
+
+/* Share of each planet, and of the first one what is known; whether both agree. */
+static int print_shares(const gearbox *box, const findings *found) {
+    double all = 0.0;
+    for (int k = 0; k < box->planets; ++k) {
+        all += found->push[k];
+    }
+    const double expected = share_by_springs(box), share = found->push[0] / all;
+    printf("planet 0 carries %.1f %% of the load, by springs %.1f %%", 100.0 * share,
+           100.0 * expected);
+    for (int k = 1; k < box->planets; ++k) {
+        printf("%s %.1f %%", k == 1 ? "; the others" : ",", 100.0 * found->push[k] / all);
+    }
+    printf("\n");
+    return fabs(share - expected) < 0.01;
+}
+
 int main(int argc, char **argv) {
+    gearbox box = {.planets = argc > 2 ? atoi(argv[2]) : 3,
+                   .sun = argc > 4 ? atoi(argv[3]) : 28,
+                   .planet = argc > 4 ? atoi(argv[4]) : 35};
+    box.turns = 2 + box.planets;
+    box.ring = box.sun + 2 * box.planet;
+
     /* Two meshes, which all planets share, and the gears put together at their steady speeds. */
-    double distance, y[STATES] = {0.0};
-    gearbox box = {.arm = 0.0};
-    box.at_sun = mesh_of(SUN, PLANET, pi / 18.0, &box.arm);
-    box.at_ring = mesh_of(PLANET, -RING, -pi / 18.0, &distance);
-    if (box.at_sun == NULL || box.at_ring == NULL || !assemble(&box, y)) {
+    double distance, y[STATES_MAX] = {0.0};
+    box.at_sun = mesh_of(box.sun, box.planet, pi / 18.0, &box.arm);
+    box.at_ring = mesh_of(box.planet, -box.ring, -pi / 18.0, &distance);
+    if (!is_possible(&box)) {
+        return 2;
+    }
+    if (!assemble(&box, y + ANGLES)) {
+        fprintf(stderr, "planetary: the planets do not fit into the ring\n");
         return 1;
     }
-    set_speeds(y);
+    set_speeds(&box, y + ANGLES + box.turns);
 
-    FILE *file = argc > 1 ? fopen(argv[1], "w") : NULL;
+    const int to_file = argc > 1 && strcmp(argv[1], "-") != 0;
+    FILE *file = to_file ? fopen(argv[1], "w") : NULL;
     findings found = {{0.0}, 0.0, 0.0, 0.0, 0.0};
     const int failed = run(&box, y, file, &found);
     if (file != NULL) {
         fclose(file);
     }
 
-    /* What was found, beside what is known. */
-    const double expected = share_by_springs(&box);
-    const double share = found.push[0] / (found.push[0] + found.push[1] + found.push[2]);
-    printf("planet 0 carries %.1f %% of the load, by springs %.1f %%\n", 100.0 * share,
-           100.0 * expected);
-
-    /* Open are the accuracy of the solver, and flanks that leave at a tip with some overlap. */
+    /* What was found, beside what is known. Open are the accuracy of the solver, and flanks that leave at a tip with some
+     * overlap. */
+    const int is_shared = print_shares(&box, &found);
     const double open = found.in - found.out - found.loss - found.stored;
     printf("energy: %.3f J in, %.3f J out, %.2g J lost, %.2g %% open\n", found.in, found.out,
            found.loss, 100.0 * open / found.in);
     free(box.at_sun);
     free(box.at_ring);
-    return failed || fabs(open) > 1e-3 * found.in || fabs(share - expected) > 0.01;
+    return failed || (to_file && file == NULL) || fabs(open) > 1e-3 * found.in || !is_shared;
 }

@@ -7,6 +7,7 @@ set terminal pngcairo size 1200,600
 set output picture
 set xlabel "time (s)"
 set ylabel "force on the carrier (N)"
-set key bottom right
+set key below
 set yrange [0:*]
-plot for [k=0:2] data using 1:2+k with lines title sprintf("planet %d%s", k, k == 0 ? ", 5 um off its place" : "")
+stats data using 1 nooutput
+plot for [k=0:STATS_columns-2] data using 1:2+k with lines title sprintf("planet %d%s", k, k == 0 ? ", 5 um off its place" : "")
