@@ -5,7 +5,9 @@
  * A gearbox of two stages by CVODE: an intermediate shaft that twists carries the wheel of the first and the pinion of the
  * second. Where their teeth stand on the shaft, and where the shafts stand, says how the stages mesh: there are no phases to
  * give. Both gears of the shaft have the same hand, so that their axial forces are against each other: what is left of them
- * is known from torque and helix.
+ * is known from torque and helix. So are the frequencies at which the teeth of both stages mesh.
+ *
+ *     two_stage [FILE]    energies and forces of both stages over time, and the spectra of the forces, for two_stage.gp
  */
 #include <cvode/cvode.h>
 #include <gearmesh/gearmesh.h>
@@ -13,6 +15,7 @@
 #include <nvector/nvector_serial.h>
 #include <stdio.h>
 #include <stdlib.h>
+#include <string.h>
 #include <sunlinsol/sunlinsol_dense.h>
 #include <sunmatrix/sunmatrix_dense.h>
 
@@ -37,8 +40,9 @@ static const double bend = 0.7; /* between both lines of centres (rad) */
 typedef struct gearbox {
     gm_mesh *mesh[STAGES];
     double place[GEARS][3];
-    double zero[GEARS]; /* angles in which they were assembled */
-    double stored;
+    double zero[GEARS];   /* angles in which they were assembled */
+    double stored;        /* in both meshes and the shaft (J) */
+    double force[STAGES]; /* along the line of action (N) */
 } gearbox;
 
 static gm_mesh *mesh_of(int pinion, int wheel, double module, double helix_angle) {
@@ -59,6 +63,8 @@ static gm_mesh *mesh_of(int pinion, int wheel, double module, double helix_angle
     gm_mesh_params_default(&law);
     law.stiffness = stiffness;
     law.damping = damping;
+    law.corner_contact =
+        GM_CORNER_ON; /* no line ends with an overlap, whose energy would be open */
     if (gm_pair_init(&pair, &params) == GM_OK) {
         const size_t size = gm_mesh_size(&law, &pair);
         (void)gm_mesh_init(&mesh, &law, &pair, NULL, NULL, malloc(size), size);
@@ -116,6 +122,7 @@ static int derivatives(sunrealtype t, N_Vector state, N_Vector rates, void *data
         moment[driven] += on[1].moment[2];
         axial += on[1 - stage].force[2];
         box->stored += result.energy;
+        box->force[stage] = result.force;
         loss += loss_of(&result.contact);
     }
 
@@ -167,9 +174,126 @@ static double kinetic(const double *y) {
     return energy;
 }
 
-int main(void) {
-    const double settled = 0.3, end = 0.4, first_helix = pi / 9.0, second_helix = -pi / 18.0;
-    double y[STATES] = {0.0}, rates[STATES], before[STATES] = {0.0};
+/* What the run has found since the start had settled: energies (J), the mean axial force (N), and forces at all steps. */
+enum { ROWS = 4000, LINES = 250 };
+static const double settled = 0.3, end = 0.4;
+
+typedef struct findings {
+    double in, out, loss, stored, axial;
+    double force[STAGES][ROWS];
+    double line[STAGES][LINES]; /* amplitudes of the forces, each 1 / (end - settled) further (N) */
+} findings;
+
+/* Behind the start: a row of the file at each step. */
+static int observe(void *cvode, gearbox *box, N_Vector state, N_Vector rates, FILE *file,
+                   findings *found) {
+    const double *y = N_VGetArrayPointer(state);
+    double before[STATES], energy = 0.0;
+    sunrealtype time = 0.0;
+    for (int row = 0; row <= ROWS; ++row) {
+        const double to = settled + (end - settled) * row / ROWS;
+        if (CVode(cvode, to, state, &time, CV_NORMAL) < 0 ||
+            derivatives(time, state, rates, box) != 0) {
+            return 1;
+        }
+        if (row == 0) {
+            memcpy(before, y, sizeof before);
+            energy = kinetic(y) + box->stored;
+        }
+        for (int stage = 0; stage < STAGES && row < ROWS; ++stage) {
+            found->force[stage][row] = box->force[stage];
+        }
+        found->in = y[IN] - before[IN];
+        found->out = y[OUT] - before[OUT];
+        found->loss = y[LOSS] - before[LOSS];
+        found->stored = kinetic(y) + box->stored - energy;
+        if (file != NULL) {
+            fprintf(file, "%.6f %.3f %.3f %.9g %.9g %.9g\n", time, box->force[0], box->force[1],
+                    found->in - found->out, found->loss, found->stored);
+        }
+    }
+    found->axial = (y[AXIAL] - before[AXIAL]) / (end - settled);
+    return 0;
+}
+
+/* Fourier's sum under a window that begins and ends with 0, so that lines between two others do not smear. */
+static double amplitude_of(const double force[ROWS], int line) {
+    double mean = 0.0, re = 0.0, im = 0.0;
+    for (int row = 0; row < ROWS; ++row) {
+        mean += force[row] / ROWS;
+    }
+    for (int row = 0; row < ROWS; ++row) {
+        const double turn = 2.0 * pi * row / ROWS;
+        const double part = (1.0 - cos(turn)) * (force[row] - mean);
+        re += part * cos(line * turn);
+        im += part * sin(line * turn);
+    }
+    return 2.0 * hypot(re, im) / ROWS;
+}
+
+static double frequency_of(int line) {
+    return line / (end - settled);
+}
+
+static double mesh_frequency(int stage) {
+    const double first = speed * teeth[INPUT] / (2.0 * pi);
+    return stage == 0 ? first : first / teeth[LARGE] * teeth[SMALL];
+}
+
+/* The spectra, to the file too; whether the strongest line of each stage is that of its teeth. */
+static int find_lines(findings *found, FILE *file) {
+    int is_right = 1;
+    for (int stage = 0; stage < STAGES; ++stage) {
+        int strongest = 1;
+        for (int line = 1; line < LINES; ++line) {
+            found->line[stage][line] = amplitude_of(found->force[stage], line);
+            strongest = found->line[stage][line] > found->line[stage][strongest] ? line : strongest;
+        }
+        printf("stage %d: strongest line at %.0f Hz, by teeth and speed %.1f Hz\n", stage + 1,
+               frequency_of(strongest), mesh_frequency(stage));
+        is_right =
+            is_right && fabs(frequency_of(strongest) - mesh_frequency(stage)) < frequency_of(1);
+    }
+    for (int line = 1; line < LINES && file != NULL; ++line) {
+        fprintf(file, line == 1 ? "\n\n%.6g %.6g %.6g\n" : "%.6g %.6g %.6g\n", frequency_of(line),
+                found->line[0][line], found->line[1][line]);
+    }
+    return is_right;
+}
+
+/* The solver: implicit, as meshes are stiff. */
+static int run(gearbox *box, double *y, FILE *file, findings *found) {
+    SUNContext context;
+#if SUNDIALS_VERSION_MAJOR < 7
+    SUNContext_Create(NULL, &context);
+#else
+    SUNContext_Create(SUN_COMM_NULL, &context);
+#endif
+    double rate[STATES];
+    N_Vector state = N_VMake_Serial(STATES, y, context);
+    N_Vector rates = N_VMake_Serial(STATES, rate, context);
+    SUNMatrix matrix = SUNDenseMatrix(STATES, STATES, context);
+    SUNLinearSolver solver = SUNLinSol_Dense(state, matrix, context);
+    void *cvode = CVodeCreate(CV_BDF, context);
+    const int failed = CVodeInit(cvode, derivatives, 0.0, state) ||
+                       CVodeSStolerances(cvode, 1e-9, 1e-10) || CVodeSetUserData(cvode, box) ||
+                       CVodeSetMaxNumSteps(cvode, 1000000) ||
+                       CVodeSetLinearSolver(cvode, solver, matrix) ||
+                       observe(cvode, box, state, rates, file, found);
+
+    CVodeFree(&cvode);
+    SUNLinSolFree(solver);
+    SUNMatDestroy(matrix);
+    N_VDestroy(rates);
+    N_VDestroy(state);
+    SUNContext_Free(&context);
+    return failed;
+}
+
+int main(int argc, char **argv) {
+    static findings found;
+    const double first_helix = pi / 9.0, second_helix = -pi / 18.0;
+    double y[STATES] = {0.0};
     gearbox box = {.mesh = {mesh_of(teeth[INPUT], teeth[LARGE], 2e-3, first_helix),
                             mesh_of(teeth[SMALL], teeth[OUTPUT], 3e-3, second_helix)}};
     if (box.mesh[0] == NULL || box.mesh[1] == NULL || !assemble(&box)) {
@@ -180,33 +304,12 @@ int main(void) {
     y[GEARS + INPUT] = speed;
     y[GEARS + LARGE] = y[GEARS + SMALL] = -speed * teeth[INPUT] / teeth[LARGE];
     y[GEARS + OUTPUT] = -y[GEARS + SMALL] * teeth[SMALL] / teeth[OUTPUT];
-
-    /* The solver: implicit, as meshes are stiff. */
-    SUNContext context;
-#if SUNDIALS_VERSION_MAJOR < 7
-    SUNContext_Create(NULL, &context);
-#else
-    SUNContext_Create(SUN_COMM_NULL, &context);
-#endif
-    N_Vector state = N_VMake_Serial(STATES, y, context),
-             unused = N_VMake_Serial(STATES, rates, context);
-    SUNMatrix matrix = SUNDenseMatrix(STATES, STATES, context);
-    SUNLinearSolver solver = SUNLinSol_Dense(state, matrix, context);
-    void *cvode = CVodeCreate(CV_BDF, context);
-    sunrealtype time = 0.0;
-    int failed = CVodeInit(cvode, derivatives, 0.0, state) ||
-                 CVodeSStolerances(cvode, 1e-9, 1e-10) || CVodeSetUserData(cvode, &box) ||
-                 CVodeSetMaxNumSteps(cvode, 1000000) || CVodeSetLinearSolver(cvode, solver, matrix);
-
-    /* Behind the start the means are taken and the energies counted. */
-    failed = failed || CVode(cvode, settled, state, &time, CV_NORMAL) < 0 ||
-             derivatives(time, state, unused, &box);
-    for (int k = 0; k < STATES; ++k) {
-        before[k] = y[k];
+    FILE *file = argc > 1 ? fopen(argv[1], "w") : NULL;
+    const int failed = run(&box, y, file, &found) || (argc > 1 && file == NULL);
+    const int is_right = find_lines(&found, file);
+    if (file != NULL) {
+        fclose(file);
     }
-    const double energy = kinetic(y) + box.stored;
-    failed = failed || CVode(cvode, end, state, &time, CV_NORMAL) < 0 ||
-             derivatives(time, state, unused, &box);
 
     /* A right-handed pinion that drives counter-clockwise is pushed along +z, its wheel the other way; the small gear is
      * left-handed and turns clockwise. */
@@ -215,22 +318,15 @@ int main(void) {
     const double second_force = torque * teeth[LARGE] / teeth[INPUT] / second->pinion.base_radius;
     const double known =
         -first_force * tan(first->base_helix_angle) - second_force * tan(second->base_helix_angle);
-    const double axial = (y[AXIAL] - before[AXIAL]) / (end - settled);
-    printf("axial force of the shaft: %.1f N, by both helices %.1f N\n", axial, known);
+    printf("axial force of the shaft: %.1f N, by both helices %.1f N\n", found.axial, known);
 
-    /* What came in has gone out, been lost or been stored. */
-    const double in = y[IN] - before[IN], out = y[OUT] - before[OUT], loss = y[LOSS] - before[LOSS];
-    const double open = in - out - loss - (kinetic(y) + box.stored - energy);
-    printf("energy: %.3f J in, %.3f J out, %.2g J lost, %.2g %% open\n", in, out, loss,
-           100.0 * open / in);
-
-    CVodeFree(&cvode);
-    SUNLinSolFree(solver);
-    SUNMatDestroy(matrix);
-    N_VDestroy(state);
-    N_VDestroy(unused);
-    SUNContext_Free(&context);
+    /* What came in has gone out, been lost or been stored. Open are the accuracy of the solver, and what dampers do beyond
+     * the path: they act by dx/dt, while edges approach the flank by more. */
+    const double open = found.in - found.out - found.loss - found.stored;
+    printf("energy: %.3f J in, %.3f J out, %.2g J lost, %.2g %% open\n", found.in, found.out,
+           found.loss, 100.0 * open / found.in);
     free(box.mesh[0]);
     free(box.mesh[1]);
-    return failed || fabs(open) > 1e-3 * in || fabs(axial - known) > 1e-3 * fabs(second_force);
+    return failed || !is_right || fabs(open) > 1e-3 * found.in ||
+           fabs(found.axial - known) > 1e-3 * fabs(second_force);
 }
