@@ -254,7 +254,11 @@ typedef struct gmi_elastic_line {
 /* Elements first .. last have the same lines, all of which go through them; or one element. */
 typedef struct gmi_elastic_run {
     int first, last;
-    int kind; /* what they do there, see elastic_front.c */
+    int kind; /* what the lines do there, see elastic_front.c */
+    int low;  /* first row: those of an element follow one another */
+    int ending, through, beginning,
+        alone;  /* how many lines do what there, in this order but for `alone` */
+    int record; /* where the records of the elimination begin */
 } gmi_elastic_run;
 
 /* Memory of the solver. Points into the memory of the caller; one for each flank side and thread. */
@@ -342,12 +346,10 @@ typedef struct gmi_elastic_work {
     double *front;        /* ... and for unusual numbers of lines */
     double *factor;       /* its records */
     double *end_record;   /* those of the ends of each line, [lines_max][2][4] */
-    int *factor_at;       /* [stations] where the records of each run begin */
-    int *low, *high;      /* [stations] rows of the lines in each element; none if low > high */
-    int *traffic;         /* [stations] what they do there, see elastic_front.c */
     int begin, end;       /* elements in which any line touches: begin .. end - 1 */
     gmi_elastic_run *run; /* [stations] elements that are alike, of begin .. end - 1 ... */
     int runs;             /* ... how many */
+    int last_record;      /* that of the last station */
 } gmi_elastic_work;
 
 /* Bytes of memory for one flank side; 0 if the sizes are out of range. */
@@ -503,9 +505,6 @@ void gmi_elastic_gather(gmi_elastic_work *work, const double *force, double *row
 /* work->matrix from the stiffness at the points. */
 void gmi_elastic_stiffen(gmi_elastic_work *work);
 
-/* Adds what gmi_elastic_gather() does for work->stiffness as forces: the sums of the tooth's and the rim's rows by the rim. */
-void gmi_elastic_gather_stiffness(gmi_elastic_work *work, double *rows);
-
 /* What is left of a functional's factor after the adjoint: work->pull, work->tooth_adjoint. factor NULL: 1. */
 void gmi_elastic_pull(gmi_elastic_work *work, const double *factor, const double *rows);
 
@@ -515,7 +514,7 @@ void gmi_elastic_pull(gmi_elastic_work *work, const double *factor, const double
  */
 double gmi_elastic_factor(const gmi_elastic *law, gmi_elastic_work *work, double *rows);
 
-/* Finds the runs of elements that are alike, which both go through. */
+/* Finds begin, end and the runs of elements that are alike, which all of that go through. */
 void gmi_elastic_find_runs(gmi_elastic_work *work);
 
 /* Solves for another one. */

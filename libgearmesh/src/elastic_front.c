@@ -240,54 +240,50 @@ typedef struct front_state {
 #endif
 
 /* From element to element of a run. Fronts of usual size are on the stack. */
-#define ALONE(e, g, b) ((g) == 0 ? work->high[first] + 1 - work->low[first] - (e) - (b) : 0)
+#define ALONE(g) ((g) == 0 ? run->alone : 0)
 #define SPECIAL_FUNCTIONS(e, g, b)                                                                 \
-    SPECIAL void step_##e##g##b(front_state *f, int first, int last) {                             \
-        const gmi_elastic_work *work = f->work;                                                    \
-        const traffic t = {e, g, b, ALONE(e, g, b)};                                               \
+    SPECIAL void step_##e##g##b(front_state *f, gmi_elastic_run *run) {                            \
+        const traffic t = {e, g, b, ALONE(g)};                                                     \
         double front[((e) + (g) + 1) * ((e) + (g) + 1) +                                           \
                      ((e) + 2 * (g) + (b) + 2) * (((g) + (b) + 1 + LANES) & -LANES)];              \
-        usual_step(t, f, first, last, front);                                                      \
+        usual_step(t, f, run, front);                                                              \
     }                                                                                              \
-    SPECIAL void forward_##e##g##b(const gmi_elastic_work *work, int first, int last,              \
+    SPECIAL void forward_##e##g##b(const gmi_elastic_work *work, const gmi_elastic_run *run,       \
                                    double *rows) {                                                 \
-        const traffic t = {e, g, b, ALONE(e, g, b)};                                               \
-        usual_forward(t, work, first, last, rows);                                                 \
+        const traffic t = {e, g, b, ALONE(g)};                                                     \
+        usual_forward(t, work, run, rows);                                                         \
     }                                                                                              \
-    SPECIAL void back_##e##g##b(const gmi_elastic_work *work, int first, int last, double *rows) { \
-        const traffic t = {e, g, b, ALONE(e, g, b)};                                               \
-        usual_back(t, work, first, last, rows);                                                    \
+    SPECIAL void back_##e##g##b(const gmi_elastic_work *work, const gmi_elastic_run *run,          \
+                                double *rows) {                                                    \
+        const traffic t = {e, g, b, ALONE(g)};                                                     \
+        usual_back(t, work, run, rows);                                                            \
     }
 USUAL_TRAFFIC(SPECIAL_FUNCTIONS)
 
-/* work->traffic: 256, 16, 1 for each line that ends, goes through, begins. */
-static traffic traffic_of(const gmi_elastic_work *work, int element) {
-    const int code = work->traffic[element];
-    traffic t = {code >> 8, (code >> 4) & 15, code & 15, 0};
-    t.alone = work->high[element] + 1 - work->low[element] - t.ending - t.through - t.beginning;
+static traffic traffic_of(const gmi_elastic_run *run) {
+    const traffic t = {run->ending, run->through, run->beginning, run->alone};
     return t;
 }
 
 /* The same as a small number for what may be usual. */
 #define KIND(e, g, b) (16 * (e) + 4 * (g) + (b))
 
-static int kind_of(const gmi_elastic_work *work, int element) {
-    const traffic t = traffic_of(work, element);
-    const int is_small = t.ending < 4 && t.through < 4 && t.beginning < 4;
-    const int is_usual = is_small && (t.alone == 0 || t.through == 0);
-    return is_usual ? KIND(t.ending, t.through, t.beginning) : -1;
+static int kind_of(const gmi_elastic_run *run) {
+    const int is_small = run->ending < 4 && run->through < 4 && run->beginning < 4;
+    const int is_usual = is_small && (run->alone == 0 || run->through == 0);
+    return is_usual ? KIND(run->ending, run->through, run->beginning) : -1;
 }
 
-static void step_run(front_state *f, const gmi_elastic_run *run) {
+static void step_run(front_state *f, gmi_elastic_run *run) {
     switch (run->kind) {
 #define CASE(e, g, b)                                                                              \
     case KIND(e, g, b):                                                                            \
-        step_##e##g##b(f, run->first, run->last);                                                  \
+        step_##e##g##b(f, run);                                                                    \
         return;
         USUAL_TRAFFIC(CASE)
 #undef CASE
     default:
-        any_step(traffic_of(f->work, run->first), f, run->first, run->last, f->work->front);
+        any_step(traffic_of(run), f, run, f->work->front);
     }
 }
 
@@ -295,12 +291,12 @@ static void forward_run(const gmi_elastic_work *work, const gmi_elastic_run *run
     switch (run->kind) {
 #define CASE(e, g, b)                                                                              \
     case KIND(e, g, b):                                                                            \
-        forward_##e##g##b(work, run->first, run->last, rows);                                      \
+        forward_##e##g##b(work, run, rows);                                                        \
         return;
         USUAL_TRAFFIC(CASE)
 #undef CASE
     default:
-        any_forward(traffic_of(work, run->first), work, run->first, run->last, rows);
+        any_forward(traffic_of(run), work, run, rows);
     }
 }
 
@@ -308,12 +304,12 @@ static void back_run(const gmi_elastic_work *work, const gmi_elastic_run *run, d
     switch (run->kind) {
 #define CASE(e, g, b)                                                                              \
     case KIND(e, g, b):                                                                            \
-        back_##e##g##b(work, run->first, run->last, rows);                                         \
+        back_##e##g##b(work, run, rows);                                                           \
         return;
         USUAL_TRAFFIC(CASE)
 #undef CASE
     default:
-        any_back(traffic_of(work, run->first), work, run->first, run->last, rows);
+        any_back(traffic_of(run), work, run, rows);
     }
 }
 
@@ -321,24 +317,52 @@ static void back_run(const gmi_elastic_work *work, const gmi_elastic_run *run, d
  * The whole face
  * ------------------------------------------------------------------------------------------- */
 
-/* Whether two elements have the same lines, all of which go through them. */
-static int are_alike(const gmi_elastic_work *work, int element, int other) {
-    const int code = work->traffic[element];
-    return work->traffic[other] == code && (code & ~0xF0) == 0 &&
-           work->low[other] == work->low[element] && work->high[other] == work->high[element];
+/* One behind the last element of a line. */
+static int end_of(const gmi_elastic_line *line) {
+    return line->element + line->elements;
+}
+
+/* How many of the rows low .. high - 1 have ended before element e. They are sorted by begin as by end. */
+static int ended(const gmi_elastic_line *line, int low, int high, int e) {
+    int row = low;
+    while (row < high && end_of(&line[row]) <= e) {
+        ++row;
+    }
+    return row - low;
 }
 
 void gmi_elastic_find_runs(gmi_elastic_work *work) {
-    work->runs = 0;
-    for (int first = work->begin; first < work->end;) {
-        int last = first;
-        while (last + 1 < work->end && are_alike(work, last, last + 1)) {
-            ++last;
+    const gmi_elastic_line *line = work->line;
+    const int count = work->count;
+    gmi_elastic_run *run = work->run;
+    work->begin = count > 0 ? line[0].element : 0;
+    work->end = count > 0 ? end_of(&line[count - 1]) : 0;
+    int low = 0, high = 0;
+    for (int e = work->begin; e < work->end; e = run++->last + 1) {
+        /* Those that began before, and those that begin here. */
+        const int before = high;
+        while (high < count && line[high].element == e) {
+            ++high;
         }
-        const gmi_elastic_run run = {first, last, kind_of(work, first)};
-        work->run[work->runs++] = run;
-        first = last + 1;
+        const int ending = ended(line, low, before, e + 1);
+        const int alone = ended(line, before, high, e + 1);
+        run->first = run->last = e;
+        run->low = low;
+        run->ending = ending;
+        run->through = before - low - ending;
+        run->beginning = high - before - alone;
+        run->alone = alone;
+        run->kind = kind_of(run);
+        low += ending + alone;
+
+        /* The same up to where the next one begins, or the first one ends. */
+        if (ending == 0 && high == before) {
+            const int next = high < count ? line[high].element : work->end;
+            const int last = low < high ? end_of(&line[low]) - 1 : next;
+            run->last = (next < last ? next : last) - 1;
+        }
     }
+    work->runs = (int)(run - work->run);
 }
 
 static void back_all(const gmi_elastic_work *work, double *rows) {
@@ -357,7 +381,7 @@ double gmi_elastic_factor(const gmi_elastic *law, gmi_elastic_work *work, double
     }
 
     /* The last station has the rim alone. */
-    work->factor_at[work->end] = (int)(f.record - work->factor);
+    work->last_record = (int)(f.record - work->factor);
     f.record[0] = 1.0 / work->carry[0];
     rim[work->end] = work->carry[1] * f.record[0];
     f.fall += work->carry[1] * rim[work->end];
@@ -369,6 +393,6 @@ void gmi_elastic_substitute(const gmi_elastic_work *work, double *rows) {
     for (int k = 0; k < work->runs; ++k) {
         forward_run(work, &work->run[k], rows);
     }
-    rows[work->lines_max * work->stations + work->end] *= work->factor[work->factor_at[work->end]];
+    gmi_elastic_rim(work, rows)[work->end] *= work->factor[work->last_record];
     back_all(work, rows);
 }

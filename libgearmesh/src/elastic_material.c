@@ -17,30 +17,44 @@ static int is_drawn(const gm_mesh *mesh, int side) {
     return prepared->pinion == NULL && prepared->wheel == NULL && !prepared->is_tilted;
 }
 
-/* Arrays for the tables of a gear, in what is free before the balance is sought: matrices and forces of the points. */
-static gmi_surface_cells cells_in(const gmi_elastic_work *work, int role) {
-    const int count = 2 * work->slots;
-    double *free = work->table[2 * role];
-    const gmi_surface_cells cells = {free,
-                                     free + count,
-                                     role == GM_PINION ? work->force : work->stiffness,
-                                     work->table[2 * role + 1],
-                                     work->table[2 * role + 1] + count,
-                                     role == GM_PINION ? work->load : work->slope,
-                                     role == GM_PINION ? work->approach_at : work->deflection};
-    return cells;
+/* Where each point finds the table of its tooth. */
+APART void set_points(int count, double pitch, double pinion, double wheel,
+                      double *restrict deviation, double *restrict pinion_table,
+                      double *restrict wheel_table) {
+    for (int k = 0; k < count; ++k) {
+        deviation[k] = pitch;
+        pinion_table[k] = pinion;
+        wheel_table[k] = wheel;
+    }
+}
+
+/* Adds the tables of a gear; a tooth without one has what the drawing says. */
+static void add_tables(const gmi_surface_points *points, const gmi_surface_gear *gear,
+                       const gmi_surface_tables *in, int has_all, gmi_elastic_work *work) {
+    if (has_all) {
+        gmi_surface_add_tables(points, gear, in, 0, points->count);
+        return;
+    }
+    memset(in->mixed, 0, sizeof(double) * (size_t)points->count);
+    for (int k = 0; k < 2 * work->count; ++k) {
+        const gmi_elastic_line *line = &work->line[k / 2];
+        const int from = line->slot + k % 2 * work->slots;
+        if (in->table[from] >= 0.0) {
+            gmi_surface_add_tables(points, gear, in, from, from + line->slots);
+        }
+    }
 }
 
 /* Beyond the path the flanks end: on from there as the slope says, for a while. */
 static void hold_flanks(const gmi_surface_points *points, const gmi_surface_gear gear[2],
-                        const gmi_surface_cells cells[2], gmi_elastic_work *work) {
+                        const gmi_surface_tables in[2], gmi_elastic_work *work) {
     for (int p = 0; p < 2 * work->slots; ++p) {
         if (work->beyond[p] != 0.0) {
             const gmi_elastic_hold hold = gmi_elastic_hold_at(&work->at, work->beyond[p]);
             for (int role = GM_PINION; role <= GM_WHEEL; ++role) {
                 if (gear[role].tables != NULL) {
                     work->deviation_by_z[p] +=
-                        hold.moved * gmi_surface_twist_at(points, &gear[role], &cells[role], p);
+                        hold.moved * gmi_surface_twist(points, &gear[role], in[role].mixed[p]);
                 }
             }
             work->deviation[p] += hold.moved * work->deviation_by_roll[p];
@@ -62,55 +76,44 @@ void gmi_elastic_set_material(const gm_mesh *mesh, int side, const gmi_lines *li
                                        .by_place = work->deviation_by_z,
                                        .by_roll = work->deviation_by_roll};
     const size_t bytes = sizeof(double) * (size_t)points.count;
-    memset(work->deviation, 0, bytes);
     memset(work->deviation_by_roll, 0, bytes);
     memset(work->deviation_by_z, 0, bytes);
     if (is_drawn(mesh, side)) {
+        memset(work->deviation, 0, bytes);
         return;
     }
 
-    /* Where all points are in the tables of both gears. */
+    /* Line by line the teeth that meet on it, for both points of each part. */
     const gmi_surface_gear gear[2] = {
         gmi_surface_gear_of(mesh, side, GM_PINION, at->line_of_action),
         gmi_surface_gear_of(mesh, side, GM_WHEEL, at->line_of_action)};
-    gmi_surface_cells cells[2];
-    for (int role = GM_PINION; role <= GM_WHEEL; ++role) {
-        cells[role] = cells_in(work, role);
-        if (gear[role].tables != NULL) {
-            gmi_surface_find(&points, &gear[role], &cells[role]);
-        }
-    }
-
-    /* Line by line, each with the teeth that meet on it; both points of each part. */
+    double *first = work->table[0], *second = work->table[1];
+    const gmi_surface_tables in[2] = {{first, work->table[2]}, {second, work->table[3]}};
+    int has_all[2] = {1, 1};
     for (int row = 0; row < work->count; ++row) {
         const gmi_elastic_line *line = &work->line[row];
         const gmi_line_flanks flanks = gmi_line_flanks_of(mesh, side, lines, teeth, line->index);
         const double pitch = flanks.pinion.pitch + flanks.wheel.pitch;
+        const double pinion = gmi_surface_table(&gear[GM_PINION], &flanks.pinion);
+        const double wheel = gmi_surface_table(&gear[GM_WHEEL], &flanks.wheel);
+        has_all[GM_PINION] = has_all[GM_PINION] && pinion >= 0.0;
+        has_all[GM_WHEEL] = has_all[GM_WHEEL] && wheel >= 0.0;
         for (int half = 0; half < 2; ++half) {
-            const int from = line->slot + half * work->slots, to = from + line->slots;
-            for (int p = from; p < to && pitch != 0.0; ++p) {
-                work->deviation[p] = pitch;
-            }
-            if (gear[GM_PINION].tables != NULL) {
-                gmi_surface_gather(&cells[GM_PINION], &gear[GM_PINION], flanks.pinion.values, from,
-                                   to);
-            }
-            if (gear[GM_WHEEL].tables != NULL) {
-                gmi_surface_gather(&cells[GM_WHEEL], &gear[GM_WHEEL], flanks.wheel.values, from,
-                                   to);
-            }
+            const int p = line->slot + half * work->slots;
+            set_points(line->slots, pitch, pinion, wheel, work->deviation + p, first + p,
+                       second + p);
         }
     }
 
     /* What all of them have there. */
     for (int role = GM_PINION; role <= GM_WHEEL; ++role) {
         if (gear[role].tables != NULL) {
-            gmi_surface_add_cells(&points, &gear[role], &cells[role]);
+            add_tables(&points, &gear[role], &in[role], has_all[role], work);
             gmi_surface_add_ramps(&points, &gear[role]);
         }
     }
     if (work->at.goes_on) {
-        hold_flanks(&points, gear, cells, work);
+        hold_flanks(&points, gear, in, work);
     }
 
     /* And what the tilt of the axes makes of it, which goes on with the lines. */

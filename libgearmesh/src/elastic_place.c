@@ -86,7 +86,7 @@ static inline void shorten_slot(const gmi_elastic *law, gmi_elastic_work *work, 
     }
 }
 
-/* That which the ends of a line shorten. */
+/* That which an end of a line shortens, or both. */
 static void cut_slot(const gmi_elastic *law, gmi_elastic_work *work, int slot, int element,
                      const span *part) {
     const double begin = (double)element * law->spacing;
@@ -124,42 +124,14 @@ static void place_slots(const gmi_elastic *law, gmi_elastic_work *work, const sp
     for (int row = 0; row < work->count && !work->at.goes_on; ++row) {
         const gmi_elastic_line *line = &work->line[row];
         const int last = line->elements - 1;
-        cut_slot(law, work, line->slot, line->element, &parts[row]);
-        cut_slot(law, work, line->slot + last, line->element + last, &parts[row]);
+        if (line->limited[0] != 0) {
+            cut_slot(law, work, line->slot, line->element, &parts[row]);
+        }
+        if (line->limited[1] != 0) {
+            cut_slot(law, work, line->slot + last, line->element + last, &parts[row]);
+        }
     }
     part_slots(law, work);
-}
-
-/* Which rows each element has, and what they do there: those of an element follow one another. */
-static void count_lines(gmi_elastic_work *work) {
-    for (int e = 0; e < work->stations; ++e) {
-        work->low[e] = 0;
-        work->high[e] = -1;
-        work->traffic[e] = 0;
-    }
-
-    /* Each line through all of its elements; where it begins or ends it counts as that. */
-    work->begin = work->stations;
-    work->end = 0;
-    for (int row = 0; row < work->count; ++row) {
-        const gmi_elastic_line *line = &work->line[row];
-        const int begin = line->element, end = begin + line->elements;
-        for (int e = begin; e < end; ++e) {
-            work->low[e] = work->high[e] < 0 ? row : work->low[e];
-            work->high[e] = row;
-            work->traffic[e] += 16;
-        }
-
-        if (line->elements > 1) {
-            work->traffic[begin] += 1 - 16;
-            work->traffic[end - 1] += 256 - 16;
-        } else {
-            work->traffic[begin] -= 16;
-        }
-
-        work->begin = begin < work->begin ? begin : work->begin;
-        work->end = end > work->end ? end : work->end;
-    }
 }
 
 /* ---------------------------------------------------------------------------------------------
@@ -248,17 +220,12 @@ static inline void read_four(const pair_table *table, const double *roll, int p,
     const __m256d u = _mm256_add_pd(_mm256_set1_pd(table->first),
                                     _mm256_mul_pd(_mm256_loadu_pd(roll + p), per_cell));
 
-    /* gmi_cell_of() */
-    const __m256d middle = _mm256_sub_pd(u, _mm256_set1_pd(0.5)), rounding = _mm256_set1_pd(0x1p52);
-    const __m256d within =
-        _mm256_min_pd(_mm256_max_pd(middle, _mm256_setzero_pd()), _mm256_set1_pd(table->last));
-    const __m256d number = _mm256_sub_pd(_mm256_add_pd(within, rounding), rounding);
+    GMI_CELLS_OF_FOUR(u, table->last, number);
     const __m256d t = _mm256_sub_pd(u, number);
-    int cell[4];
-    _mm_storeu_si128((__m128i *)(void *)cell, _mm256_cvttpd_epi32(number));
+    GMI_PLACES_OF_FOUR(number, (double)(sizeof(gmi_elastic_cell) / sizeof(double)), place);
     const double *row[4];
     for (int k = 0; k < 4; ++k) {
-        row[k] = &table->cells[cell[k]].value[0][0];
+        row[k] = &table->cells[0].value[0][0] + place[k];
     }
     GMI_TWO_OF_FOUR(row, 0, tooth, rate);
     GMI_TWO_OF_FOUR(row, 2, tooth_first, rate_first);
@@ -598,7 +565,6 @@ int gmi_elastic_place(const gmi_elastic *law, const gmi_elastic_lines_at *at,
     }
 
     /* For the elimination, and where each line's last solution lies. */
-    count_lines(work);
     gmi_elastic_find_runs(work);
     follow_teeth(work);
     return good ? GM_OK : GM_ERR_PARAMETER;

@@ -62,6 +62,12 @@ void gmi_elastic_approach(gmi_elastic_work *work, double x) {
     }
 }
 
+/* Arrays of gmi_elastic_load(). */
+typedef struct load_arrays {
+    const double *approach, *rate, *weight, *expected;
+    double *slope, *load, *force, *stiffness, *excess;
+} load_arrays;
+
 /* Line loads, forces and stiffnesses from y of the contact law, which becomes B dq/d gamma. */
 APART void load_points(int count, double per_compliance, const double *restrict approach,
                        const double *restrict weight, const double *restrict expected,
@@ -83,33 +89,53 @@ APART void load_points(int count, double per_compliance, const double *restrict 
     }
 }
 
+/* From point `from` on. */
+static void load_from(int from, int count, double per_compliance, const load_arrays *at) {
+    for (int k = from; k < count; ++k) {
+        at->slope[k] = gmi_hertz_reciprocal(at->approach[k] * at->rate[k]);
+    }
+    load_points(count - from, per_compliance, at->approach + from, at->weight + from,
+                at->expected + from, at->slope + from, at->load + from, at->force + from,
+                at->stiffness + from, at->excess + from);
+}
+
 #ifdef GMI_IN_WIDE
 /* gmi_hertz_reciprocal() of four numbers. */
-static inline void reciprocals_of_four(const double *approach, const double *rate, double *y) {
-    const __m256d eta = _mm256_mul_pd(_mm256_loadu_pd(approach), _mm256_loadu_pd(rate));
-    const __m256d least = _mm256_set1_pd(GMI_HERTZ_FROM);
-    const __m256d is_known =
-        _mm256_and_pd(_mm256_cmp_pd(eta, least, _CMP_GE_OQ),
+static inline __m256d reciprocals_of_four(__m256d eta) {
+    __m256i bits = _mm256_castpd_si256(eta);
+    __m256d is_known = _mm256_castsi256_pd(_mm256_set1_epi64x(-1));
+    const __m256d is_usual =
+        _mm256_and_pd(_mm256_cmp_pd(eta, _mm256_set1_pd(GMI_HERTZ_FROM), _CMP_GE_OQ),
                       _mm256_cmp_pd(eta, _mm256_set1_pd(GMI_HERTZ_TO), _CMP_LT_OQ));
-    const __m256d is_touching = _mm256_cmp_pd(eta, _mm256_setzero_pd(), _CMP_NLE_UQ);
-    if (_mm256_movemask_pd(_mm256_andnot_pd(is_known, is_touching)) != 0) {
-        for (int k = 0; k < 4; ++k) {
-            y[k] = gmi_hertz_reciprocal(approach[k] * rate[k]);
+
+    /* Not touching: 0, with any row of the table; not in it: each for itself. */
+    if (_mm256_movemask_pd(is_usual) != 15) {
+        const __m256d is_touching = _mm256_cmp_pd(eta, _mm256_setzero_pd(), _CMP_NLE_UQ);
+        if (_mm256_movemask_pd(_mm256_andnot_pd(is_usual, is_touching)) != 0) {
+            double y[4];
+            _mm256_storeu_pd(y, eta);
+            for (int k = 0; k < 4; ++k) {
+                y[k] = gmi_hertz_reciprocal(y[k]);
+            }
+            return _mm256_loadu_pd(y);
         }
-        return;
+        is_known = is_usual;
+        bits = _mm256_castpd_si256(_mm256_blendv_pd(_mm256_set1_pd(GMI_HERTZ_FROM), eta, is_usual));
     }
 
-    /* Rows and places from the bits, as there. */
-    const __m256i bits = _mm256_castpd_si256(_mm256_blendv_pd(least, eta, is_known));
+    /* Rows and places from the bits, as there: a row has 4 + 2 numbers. */
     const __m256i place =
         _mm256_or_si256(_mm256_and_si256(bits, _mm256_set1_epi64x(INT64_C(0x0001FFFFFFFFFFFF))),
                         _mm256_set1_epi64x(INT64_C(0x3FF0000000000000)));
     const __m256d t = _mm256_sub_pd(_mm256_castsi256_pd(place), _mm256_set1_pd(1.0625));
-    int64_t segment[4];
-    _mm256_storeu_si256((__m256i *)(void *)segment, _mm256_srli_epi64(bits, 49));
+    const __m256i number =
+        _mm256_sub_epi64(_mm256_srli_epi64(bits, 49), _mm256_set1_epi64x(GMI_HERTZ_FIRST_ROW));
+    int64_t at[4];
+    _mm256_storeu_si256((__m256i *)(void *)at, _mm256_add_epi64(_mm256_slli_epi64(number, 2),
+                                                                _mm256_slli_epi64(number, 1)));
     const double *row[4];
     for (int k = 0; k < 4; ++k) {
-        row[k] = gmi_hertz_table[segment[k] - GMI_HERTZ_FIRST_ROW];
+        row[k] = &gmi_hertz_table[0][0] + at[k];
     }
 
     /* The polynomial. */
@@ -121,28 +147,41 @@ static inline void reciprocals_of_four(const double *approach, const double *rat
     sum = _mm256_add_pd(c2, _mm256_mul_pd(t, sum));
     sum = _mm256_add_pd(c1, _mm256_mul_pd(t, sum));
     sum = _mm256_add_pd(c0, _mm256_mul_pd(t, sum));
-    _mm256_storeu_pd(y, _mm256_and_pd(sum, is_known));
+    return _mm256_and_pd(sum, is_known);
 }
-#endif
 
-/* y of the contact law. */
-static void find_reciprocals(int count, const double *approach, const double *rate, double *y) {
-    int k = 0;
-#ifdef GMI_IN_WIDE
-    for (; k + 4 <= count; k += 4) {
-        reciprocals_of_four(approach + k, rate + k, y + k);
-    }
-#endif
-    for (; k < count; ++k) {
-        y[k] = gmi_hertz_reciprocal(approach[k] * rate[k]);
-    }
+/* Four points from k on: the same operations. */
+static inline void load_four(double per_compliance, const load_arrays *at, int k) {
+    const __m256d approach = _mm256_loadu_pd(at->approach + k);
+    const __m256d y = reciprocals_of_four(_mm256_mul_pd(approach, _mm256_loadu_pd(at->rate + k)));
+    const __m256d one = _mm256_set1_pd(1.0), per = _mm256_set1_pd(per_compliance);
+    const __m256d p = _mm256_min_pd(_mm256_div_pd(y, _mm256_sub_pd(one, y)), one);
+    const __m256d scaled = _mm256_mul_pd(_mm256_loadu_pd(at->weight + k), per);
+    const __m256d q = _mm256_mul_pd(approach, y);
+    const __m256d pushed = _mm256_mul_pd(q, scaled);
+    _mm256_storeu_pd(at->slope + k, p);
+    _mm256_storeu_pd(at->load + k, _mm256_mul_pd(q, per));
+    _mm256_storeu_pd(at->force + k, pushed);
+    _mm256_storeu_pd(at->stiffness + k, _mm256_mul_pd(p, scaled));
+    _mm256_storeu_pd(at->excess + k, _mm256_sub_pd(pushed, _mm256_loadu_pd(at->expected + k)));
 }
+#endif
 
 void gmi_elastic_load(const gmi_elastic *law, gmi_elastic_work *work) {
     const int count = 2 * work->slots;
-    find_reciprocals(count, work->approach_at, work->rate, work->slope);
-    load_points(count, 1.0 / law->hertz_compliance, work->approach_at, work->weight, work->expected,
-                work->slope, work->load, work->force, work->stiffness, work->scratch);
+    const double per_compliance = 1.0 / law->hertz_compliance;
+    const load_arrays at = {work->approach_at, work->rate,      work->weight,
+                            work->expected,    work->slope,     work->load,
+                            work->force,       work->stiffness, work->scratch};
+    int k = 0;
+#ifdef GMI_IN_WIDE
+    for (; k + 4 <= count; k += 4) {
+        load_four(per_compliance, &at, k);
+    }
+#endif
+    if (k < count) {
+        load_from(k, count, per_compliance, &at);
+    }
 }
 
 APART void follow_line(int count, int other, const double *restrict place,
@@ -302,29 +341,6 @@ void gmi_elastic_gather(gmi_elastic_work *work, const double *force, double *row
         row[1] += work->parts[1][cut->after];
         rim[cut->element] += work->parts[2][cut->after];
         rim[cut->element + 1] += work->parts[3][cut->after];
-    }
-}
-
-/* Sums of the rows of a matrix, from those of its elements: a force of all points is divided by shares whose sum is 1. */
-APART void add_sums(int count, const double *restrict left, const double *restrict cross,
-                    const double *restrict right, double *restrict row) {
-    row[0] += left[0] + cross[0];
-    for (int k = 1; k < count; ++k) {
-        row[k] += (cross[k - 1] + right[k - 1]) + (left[k] + cross[k]);
-    }
-    row[count] += cross[count - 1] + right[count - 1];
-}
-
-void gmi_elastic_gather_stiffness(gmi_elastic_work *work, double *rows) {
-    const int slots = work->slots;
-    double *rim = rows + work->lines_max * work->stations;
-    for (int k = 0; k < work->count; ++k) {
-        const gmi_elastic_line *line = &work->line[k];
-        const double *matrix = work->matrix + line->slot;
-        add_sums(line->elements, matrix + GMI_MIXED_LEFT * slots, matrix + GMI_MIXED_CROSS * slots,
-                 matrix + GMI_MIXED_RIGHT * slots, rows + k * work->stations + line->element);
-        add_sums(line->elements, matrix + GMI_RIM_LEFT * slots, matrix + GMI_RIM_CROSS * slots,
-                 matrix + GMI_RIM_RIGHT * slots, rim + line->element);
     }
 }
 

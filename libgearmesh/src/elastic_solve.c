@@ -22,6 +22,7 @@
 #include "internal.h"
 
 #include <math.h>
+#include <stdint.h>
 #include <string.h>
 
 /*
@@ -61,8 +62,16 @@ static const gmi_elastic_layer *layer_of(const gmi_elastic *law, const gmi_elast
     return row == work->count ? &law->rim : &law->tooth;
 }
 
+/* Of all lines, and of the rim. */
+static void clear_rows(const gmi_elastic_work *work, double *rows) {
+    const size_t row = sizeof(double) * (size_t)work->stations;
+    memset(rows, 0, (size_t)work->count * row);
+    memset(gmi_elastic_rim(work, rows), 0, row);
+}
+
 /* Points and residual at the state of the workspace. Returns whether anything touches. */
 static int begin_at_state(const gmi_elastic *law, gmi_elastic_work *work, double x) {
+    clear_rows(work, work->change);
     for (int row = 0; row <= work->count; ++row) {
         const gmi_elastic_span span = gmi_elastic_span_of(work, row);
         balance_layer(layer_of(law, work, row), span.begin, span.end, work->state + span.at,
@@ -105,16 +114,27 @@ static double energy_at(const gmi_elastic *law, gmi_elastic_work *work, double x
  * Steps
  * ------------------------------------------------------------------------------------------- */
 
+/* to += part * from */
+APART void add_scaled(int count, double part, const double *restrict from, double *restrict to) {
+    for (int k = 0; k < count; ++k) {
+        to[k] += part * from[k];
+    }
+}
+
+/* The state moves by part of a step, which is 0 where nothing touches: all rows at once, and the rim. */
+static void move_state(gmi_elastic_work *work, double part, const double *step) {
+    const int n = work->stations, rim = work->lines_max * n;
+    add_scaled(work->count * n, part, step, work->state);
+    add_scaled(n, part, step + rim, work->state + rim);
+}
+
 /* rows += part * other, over the stations that lines touch. */
 static void add_multiple(const gmi_elastic_work *work, double part, const double *other,
                          double *rows) {
     for (int row = 0; row <= work->count; ++row) {
         const gmi_elastic_span span = gmi_elastic_span_of(work, row);
-        const double *restrict from = other + span.at;
-        double *restrict to = rows + span.at;
-        for (int k = span.begin; k < span.end; ++k) {
-            to[k] += part * from[k];
-        }
+        add_scaled(span.end - span.begin, part, other + span.at + span.begin,
+                   rows + span.at + span.begin);
     }
 }
 
@@ -132,30 +152,36 @@ static void add_two(const gmi_elastic_work *work, double part, const double *oth
     }
 }
 
-static void clear_rows(const gmi_elastic_work *work, double *rows) {
-    for (int row = 0; row <= work->count; ++row) {
-        const gmi_elastic_span span = gmi_elastic_span_of(work, row);
-        memset(rows + span.at + span.begin, 0, sizeof(double) * (size_t)(span.end - span.begin));
-    }
-}
-
 /* The step for the residual of work->change. Returns their product. */
 static double find_step(const gmi_elastic *law, gmi_elastic_work *work) {
     gmi_elastic_stiffen(work);
     return gmi_elastic_factor(law, work, work->change);
 }
 
-/* The adjoint of the force. */
-static void find_adjoint(gmi_elastic_work *work) {
+/*
+ * The adjoint of the force: K lambda = J' W q' 1. A rim that moves by 1 as a whole moves each point by 1, so that this is K of
+ * that movement less what the rim's own layer A_r takes: lambda = 1 of the rim - K^-1 A_r 1.
+ */
+static void find_adjoint(const gmi_elastic *law, gmi_elastic_work *work) {
+    const gmi_elastic_layer *layer = &law->rim;
+    const int begin = work->begin, end = work->end;
+    double *restrict rim = gmi_elastic_rim(work, work->adjoint);
     clear_rows(work, work->adjoint);
-    gmi_elastic_gather_stiffness(work, work->adjoint);
+    rim[begin] = -(layer->left[begin] + layer->beside[begin]);
+    for (int k = begin + 1; k < end; ++k) {
+        rim[k] = -(layer->beside[k - 1] + layer->diagonal[k] + layer->beside[k]);
+    }
+    rim[end] = -(layer->beside[end - 1] + layer->right[end]);
     gmi_elastic_substitute(work, work->adjoint);
+    for (int k = begin; k <= end; ++k) {
+        rim[k] += 1.0;
+    }
 }
 
 /* The step was too long: goes back, and halves it until the energy falls as it should. `fall`: what it promised. */
 static void shorten(const gmi_elastic *law, gmi_elastic_work *work, double x, double fall) {
     const double after = energy_at(law, work, x);
-    add_multiple(work, -1.0, work->last_step, work->state);
+    move_state(work, -1.0, work->last_step);
     const double before = energy_at(law, work, x);
     double part = 1.0;
     for (int k = 0; k < HALVINGS_MAX; ++k) {
@@ -163,14 +189,14 @@ static void shorten(const gmi_elastic *law, gmi_elastic_work *work, double x, do
             break;
         }
         part *= 0.5;
-        add_multiple(work, part, work->last_step, work->state);
+        move_state(work, part, work->last_step);
         const double now = energy_at(law, work, x);
-        add_multiple(work, -part, work->last_step, work->state);
+        move_state(work, -part, work->last_step);
         if (now <= before - ARMIJO * part * fall) {
             break;
         }
     }
-    add_multiple(work, part, work->last_step, work->state);
+    move_state(work, part, work->last_step);
 }
 
 /* ---------------------------------------------------------------------------------------------
@@ -288,13 +314,20 @@ APART void finish_points(int count, double per_compliance, double x, const doubl
     }
 }
 
-/* On the straight part of the contact law: what the energy above lacks. */
-static double straight_energy(const gmi_elastic *law, gmi_elastic_work *work) {
+/* Whether a point is on the straight part of the contact law. */
+APART int is_straight(int count, const double *slope) {
+    int64_t any = 0;
+    for (int p = 0; p < count; ++p) {
+        any |= slope[p] >= 1.0;
+    }
+    return any != 0;
+}
+
+/* What the energy above lacks there. */
+static double straight_energy(const gmi_elastic *law, const gmi_elastic_work *work) {
     double sum = 0.0;
-    work->straight = 0;
     for (int p = 0; p < 2 * work->slots; ++p) {
         if (work->slope[p] >= 1.0) {
-            work->straight = 1;
             const double excess =
                 work->load[p] - 0.5 * gmi_hertz_largest / (law->hertz_compliance * work->rate[p]);
             sum += 0.25 * law->hertz_compliance * work->weight[p] * excess * excess;
@@ -316,13 +349,18 @@ static void finish(const gmi_elastic *law, gmi_elastic_work *work, double x,
                                 gmi_elastic_sum(line->slots, work->force + slots + line->slot);
         result->force += result->line_force[k];
     }
-    result->energy = gmi_elastic_sum(2 * slots, work->scratch) + straight_energy(law, work);
+    result->energy = gmi_elastic_sum(2 * slots, work->scratch);
+    work->straight = is_straight(2 * slots, work->slope);
+    if (work->straight) {
+        result->energy += straight_energy(law, work);
+    }
 }
 
 /* dF/dx, as a whole and by points. */
-static void find_stiffness(gmi_elastic_work *work, gmi_elastic_result *result) {
+static void find_stiffness(const gmi_elastic *law, gmi_elastic_work *work,
+                           gmi_elastic_result *result) {
     const int slots = work->slots;
-    find_adjoint(work);
+    find_adjoint(law, work);
     gmi_elastic_pull(work, NULL, work->adjoint);
     for (int p = 0; p < 2 * slots; ++p) {
         work->by_deviation[p] = work->stiffness[p] * work->pull[p];
@@ -359,13 +397,13 @@ int gmi_elastic_solve(const gmi_elastic *law, gmi_elastic_work *work, double app
             continue;
         }
         gmi_elastic_follow(work);
-        add_multiple(work, 1.0, work->change, work->state);
+        move_state(work, 1.0, work->change);
         if (fall <= root * root * scale) {
             finish(law, work, approach, result);
             scale = result->energy;
             if (fall <= root * root * scale) {
                 result->iterations = iteration;
-                find_stiffness(work, result);
+                find_stiffness(law, work, result);
                 keep(law, work, approach, result->energy);
                 return GM_OK;
             }

@@ -34,7 +34,8 @@ SPECIALIZED void ELASTIC_NAME(take_row)(double *row, double factor, const double
  * [left + 1][row size]: the upper half of what the stations before leave, with the right-hand side behind; afterwards the
  * same one station further. front: work->front, or as large as these elements need.
  */
-SPECIALIZED void ELASTIC_NAME(step)(traffic t, front_state *f, int from, int to, double *front) {
+SPECIALIZED void ELASTIC_NAME(step)(traffic t, front_state *f, gmi_elastic_run *run,
+                                    double *front) {
     const gmi_elastic_work *work = f->work;
     const gmi_elastic_layer *tooth = &f->law->tooth, *rim_layer = &f->law->rim;
     double *record = f->record, *carry = work->carry;
@@ -47,7 +48,7 @@ SPECIALIZED void ELASTIC_NAME(step)(traffic t, front_state *f, int from, int to,
 
     /* Where the numbers of each line are, by element or station: lines that end, go through, begin. */
     const ptrdiff_t n = work->stations, slots_size = work->slots;
-    const int low = work->low[from], begin = low + left + t.alone;
+    const int low = run->low, begin = low + left + t.alone;
     const double none = work->none;
     const double *slots[2 * UNKNOWNS_MAX] = {NULL};
     double *sides[2 * UNKNOWNS_MAX] = {NULL};
@@ -60,9 +61,10 @@ SPECIALIZED void ELASTIC_NAME(step)(traffic t, front_state *f, int from, int to,
         sides[left + i] = f->rows + (begin + i) * n;
     }
     double *rim_side = f->rows + work->lines_max * n;
-    work->factor_at[from] = (int)(record - work->factor);
+    run->record = (int)(record - work->factor);
 
-    for (ptrdiff_t e = from; e <= to; ++e) {
+    const ptrdiff_t last_element = run->last;
+    for (ptrdiff_t e = run->first; e <= last_element; ++e) {
         /* What is left of the stations before. */
         double held[UNKNOWNS_MAX], of_rim[ROW_MAX];
         UNROLLED for (int k = 0; k < size; ++k) {
@@ -173,29 +175,30 @@ SPECIALIZED void ELASTIC_NAME(step)(traffic t, front_state *f, int from, int to,
 }
 
 /* Where the rows of the lines of an element are: those of its left station, then those that begin. */
-SPECIALIZED void ELASTIC_NAME(find_rows)(traffic t, const gmi_elastic_work *work, int element,
+SPECIALIZED void ELASTIC_NAME(find_rows)(traffic t, const gmi_elastic_work *work, int low,
                                          double *rows, double **row) {
     const ptrdiff_t n = work->stations;
     const int left = left_lines(t);
     UNROLLED for (int i = 0; i < left; ++i) {
-        row[i] = rows + (work->low[element] + i) * n;
+        row[i] = rows + (low + i) * n;
     }
     UNROLLED for (int i = 0; i < t.beginning; ++i) {
-        row[left + i] = rows + (work->low[element] + left + t.alone + i) * n;
+        row[left + i] = rows + (low + left + t.alone + i) * n;
     }
 }
 
 /* One more right-hand side from the left station to the right one, as in step(). */
-SPECIALIZED void ELASTIC_NAME(forward)(traffic t, const gmi_elastic_work *work, int from, int to,
-                                       double *rows) {
+SPECIALIZED void ELASTIC_NAME(forward)(traffic t, const gmi_elastic_work *work,
+                                       const gmi_elastic_run *run, double *rows) {
     const int left = left_lines(t), first = left + 1, all = left + right_lines(t) + 2;
     const int size = row_size(right_lines(t) + 1);
-    const int low = work->low[from], begin = low + left + t.alone;
+    const int low = run->low, begin = low + left + t.alone;
     double *rim = rows + work->lines_max * work->stations;
     double *row[2 * UNKNOWNS_MAX] = {NULL}, values[2 * UNKNOWNS_MAX];
-    ELASTIC_NAME(find_rows)(t, work, from, rows, row);
-    const double *record = work->factor + work->factor_at[from];
-    for (ptrdiff_t e = from; e <= to; ++e) {
+    ELASTIC_NAME(find_rows)(t, work, low, rows, row);
+    const double *record = work->factor + run->record;
+    const ptrdiff_t last_element = run->last;
+    for (ptrdiff_t e = run->first; e <= last_element; ++e) {
         UNROLLED for (int i = 0; i < t.ending; ++i) {
             forward_end(end_row_of(work, low + i), &row[i][e + 1], &row[i][e], rim + e, rim + e);
         }
@@ -242,17 +245,18 @@ SPECIALIZED void ELASTIC_NAME(forward)(traffic t, const gmi_elastic_work *work, 
 }
 
 /* The left station from the right one, which is solved. */
-SPECIALIZED void ELASTIC_NAME(back)(traffic t, const gmi_elastic_work *work, int from, int to,
-                                    double *rows) {
+SPECIALIZED void ELASTIC_NAME(back)(traffic t, const gmi_elastic_work *work,
+                                    const gmi_elastic_run *run, double *rows) {
     const int left = left_lines(t), first = left + 1, all = left + right_lines(t) + 2;
     const int size = row_size(right_lines(t) + 1);
-    const int low = work->low[from], begin = low + left + t.alone;
+    const int low = run->low, begin = low + left + t.alone;
     double *rim = rows + work->lines_max * work->stations;
     double *row[2 * UNKNOWNS_MAX] = {NULL}, values[2 * UNKNOWNS_MAX];
-    ELASTIC_NAME(find_rows)(t, work, from, rows, row);
+    ELASTIC_NAME(find_rows)(t, work, low, rows, row);
     const int record_size = first * size + first * (first + 1) / 2;
-    const double *record = work->factor + work->factor_at[from] + (to - from + 1) * record_size;
-    for (ptrdiff_t e = to; e >= from; --e) {
+    const double *record = work->factor + run->record + (run->last - run->first + 1) * record_size;
+    const ptrdiff_t first_element = run->first;
+    for (ptrdiff_t e = run->last; e >= first_element; --e) {
         UNROLLED for (int i = 0; i < left; ++i) {
             values[i] = row[i][e];
         }

@@ -28,7 +28,7 @@ static work_sizes find_sizes(int stations, int lines) {
     return sizes;
 }
 
-enum { POINT_ARRAYS = 28, TABLE_ARRAYS = 4, PART_ARRAYS = 4, NODE_ARRAYS = 7, INDEX_ARRAYS = 4 };
+enum { POINT_ARRAYS = 28, TABLE_ARRAYS = 4, PART_ARRAYS = 4, NODE_ARRAYS = 7 };
 
 static int sizes_fit(int stations, int lines) {
     return stations >= 2 && stations <= GMI_ELASTIC_STATIONS_MAX && lines >= 1 &&
@@ -46,7 +46,7 @@ size_t gmi_elastic_work_size(int stations, int lines) {
                            sizes.carry;
 
     /* Whole doubles, so that what comes behind is aligned as well. */
-    const size_t bytes = (sizeof(int) * INDEX_ARRAYS + sizeof(gmi_elastic_run)) * (size_t)stations;
+    const size_t bytes = sizeof(gmi_elastic_run) * (size_t)stations;
     return sizeof(double) * (doubles + (bytes + sizeof(double) - 1) / sizeof(double));
 }
 
@@ -115,12 +115,7 @@ void gmi_elastic_work_init(gmi_elastic_work *work, int stations, int lines, void
     work->end_record = take(&next, sizes.ends);
 
     /* Behind the doubles, so that all are aligned. */
-    int *indices = (int *)(void *)next;
-    work->factor_at = indices;
-    work->low = indices + stations;
-    work->high = work->low + stations;
-    work->traffic = work->high + stations;
-    work->run = (gmi_elastic_run *)(void *)(work->traffic + stations);
+    work->run = (gmi_elastic_run *)(void *)next;
 }
 
 void gmi_elastic_work_reset(gmi_elastic_work *work) {

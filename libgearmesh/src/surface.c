@@ -2,33 +2,50 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 
 /*
- * Deviations at points of lines of contact. All points of a side go through each step together, so that a compiler does
- * two at once; only the nodes of a table are fetched one by one.
+ * Deviations at points of lines of contact, all points of a side one after the other, or four at once.
  */
 #include "surface.h"
 
 #include "internal.h"
+#include "wide.h"
 
-/* v1 = face_from + per_place place across the face of a table, v2 = profile_from + per_roll rho_p along its profile. */
+#include <stdint.h>
+
+/*
+ * What the points need to know of the tables of a gear: v1 = face_from + per_place place across the face, v2 = profile_from +
+ * per_roll rho_p along the profile; last cells, and numbers in a row of nodes along the profile.
+ */
 typedef struct surface_map {
     double face_from, per_place, profile_from, per_roll;
+    double last_face, last_profile, row;
+    const double *values;
+    ptrdiff_t next_face;
 } surface_map;
 
 static surface_map map_of(const gmi_surface_points *at, const gmi_surface_gear *gear) {
     const gmi_grid *grid = gear->grid;
     const surface_map map = {grid->face_base + grid->face_rate * at->t1_from,
-                             grid->face_rate * at->per_place, gear->roll_from * grid->per_rho,
-                             gear->per_roll * grid->per_rho};
+                             grid->face_rate * at->per_place,
+                             gear->roll_from * grid->per_rho,
+                             gear->per_roll * grid->per_rho,
+                             (double)grid->last_face,
+                             (double)grid->last_profile,
+                             (double)grid->row,
+                             gear->tables->values,
+                             grid->row};
     return map;
 }
 
-APART void find_nodes(int count, const surface_map *map, const gmi_grid *grid,
-                      const double *restrict place, const double *restrict roll,
+/* Points that go through each step together, so that a compiler does two at once; only nodes are fetched one by one. */
+enum { BLOCK = 16 };
+
+/* Where they are: first node of the cell, and place within it. */
+APART void find_nodes(int count, const surface_map *map, const double *restrict place,
+                      const double *restrict roll, const double *restrict table,
                       double *restrict node, double *restrict face, double *restrict profile) {
     const double face_from = map->face_from, per_place = map->per_place;
     const double profile_from = map->profile_from, per_roll = map->per_roll;
-    const double last_face = (double)grid->last_face, last_profile = (double)grid->last_profile;
-    const double row = (double)grid->row;
+    const double last_face = map->last_face, last_profile = map->last_profile, row = map->row;
     for (int k = 0; k < count; ++k) {
         const double v1 = face_from + per_place * place[k];
         const double v2 = profile_from + per_roll * roll[k];
@@ -36,22 +53,17 @@ APART void find_nodes(int count, const surface_map *map, const gmi_grid *grid,
         const double profile_cell = gmi_cell_of(v2, last_profile);
         face[k] = v1 - face_cell;
         profile[k] = v2 - profile_cell;
-        node[k] = face_cell * row + profile_cell * (double)GMI_NODE_DOUBLES;
+        node[k] = table[k] + (face_cell * row + profile_cell * (double)GMI_NODE_DOUBLES);
     }
 }
 
-void gmi_surface_find(const gmi_surface_points *at, const gmi_surface_gear *gear,
-                      const gmi_surface_cells *cells) {
-    const surface_map map = map_of(at, gear);
-    find_nodes(at->count, &map, gear->grid, at->place, at->roll, cells->node, cells->face,
-               cells->profile);
-}
-
-APART void gather(int count, const double *table, ptrdiff_t row, const double *restrict node,
+/* The four nodes around each. */
+APART void gather(int count, const surface_map *map, const double *restrict node,
                   double *restrict near, double *restrict near_next, double *restrict far,
                   double *restrict far_next) {
+    const ptrdiff_t row = map->next_face;
     for (int k = 0; k < count; ++k) {
-        const double *at = table + (ptrdiff_t)node[k];
+        const double *at = map->values + (ptrdiff_t)node[k];
         near[k] = at[0];
         near_next[k] = at[GMI_NODE_DOUBLES];
         far[k] = at[row];
@@ -59,40 +71,94 @@ APART void gather(int count, const double *table, ptrdiff_t row, const double *r
     }
 }
 
-void gmi_surface_gather(const gmi_surface_cells *cells, const gmi_surface_gear *gear,
-                        const double *table, int from, int to) {
-    if (table != NULL) {
-        gather(to - from, table, gear->grid->row, cells->node + from, cells->near + from,
-               cells->near_next + from, cells->far + from, cells->far_next + from);
-        return;
-    }
-    for (int k = from; k < to; ++k) {
-        cells->near[k] = cells->near_next[k] = cells->far[k] = cells->far_next[k] = 0.0;
-    }
-}
-
 /* Within a cell: corner + along_face p + (along_profile + mixed p) q. */
-APART void add_cells(int count, double per_place, double per_roll, const double *restrict face,
+APART void add_cells(int count, const surface_map *map, const double *restrict face,
                      const double *restrict profile, const double *restrict near,
                      const double *restrict near_next, const double *restrict far,
                      const double *restrict far_next, double *restrict value,
-                     double *restrict by_place, double *restrict by_roll) {
+                     double *restrict by_place, double *restrict by_roll, double *restrict mixed) {
+    const double per_place = map->per_place, per_roll = map->per_roll;
     for (int k = 0; k < count; ++k) {
         const double along_profile = near_next[k] - near[k];
         const double along_face = far[k] - near[k];
-        const double mixed = far_next[k] - far[k] - along_profile;
-        const double slope = along_profile + mixed * face[k];
+        const double twist = far_next[k] - far[k] - along_profile;
+        const double slope = along_profile + twist * face[k];
         value[k] += near[k] + along_face * face[k] + slope * profile[k];
-        by_place[k] += (along_face + mixed * profile[k]) * per_place;
+        by_place[k] += (along_face + twist * profile[k]) * per_place;
         by_roll[k] += slope * per_roll;
+        mixed[k] = twist;
     }
 }
 
-void gmi_surface_add_cells(const gmi_surface_points *at, const gmi_surface_gear *gear,
-                           const gmi_surface_cells *cells) {
+static void add_block(int count, const surface_map *map, const gmi_surface_points *at,
+                      const gmi_surface_tables *in, int k) {
+    double node[BLOCK], face[BLOCK], profile[BLOCK];
+    double near[BLOCK], near_next[BLOCK], far[BLOCK], far_next[BLOCK];
+    find_nodes(count, map, at->place + k, at->roll + k, in->table + k, node, face, profile);
+    gather(count, map, node, near, near_next, far, far_next);
+    add_cells(count, map, face, profile, near, near_next, far, far_next, at->value + k,
+              at->by_place + k, at->by_roll + k, in->mixed + k);
+}
+
+#ifdef GMI_IN_WIDE
+/* The same numbers of four nodes. */
+static inline __m256d of_nodes(const double *const node[4], ptrdiff_t at) {
+    return _mm256_set_pd(node[3][at], node[2][at], node[1][at], node[0][at]);
+}
+
+static inline void add_to_four(double *values, __m256d more) {
+    _mm256_storeu_pd(values, _mm256_add_pd(_mm256_loadu_pd(values), more));
+}
+
+/* Four points from k on: the same operations. */
+static inline void add_four(const surface_map *map, const gmi_surface_points *at,
+                            const gmi_surface_tables *in, int k) {
+    const __m256d per_place = _mm256_set1_pd(map->per_place);
+    const __m256d per_roll = _mm256_set1_pd(map->per_roll);
+    const __m256d v1 = _mm256_add_pd(_mm256_set1_pd(map->face_from),
+                                     _mm256_mul_pd(per_place, _mm256_loadu_pd(at->place + k)));
+    const __m256d v2 = _mm256_add_pd(_mm256_set1_pd(map->profile_from),
+                                     _mm256_mul_pd(per_roll, _mm256_loadu_pd(at->roll + k)));
+    GMI_CELLS_OF_FOUR(v1, map->last_face, face_cell);
+    GMI_CELLS_OF_FOUR(v2, map->last_profile, profile_cell);
+    const __m256d face = _mm256_sub_pd(v1, face_cell), profile = _mm256_sub_pd(v2, profile_cell);
+    const __m256d first =
+        _mm256_add_pd(_mm256_mul_pd(face_cell, _mm256_set1_pd(map->row)),
+                      _mm256_mul_pd(profile_cell, _mm256_set1_pd((double)GMI_NODE_DOUBLES)));
+
+    GMI_PLACES_OF_FOUR(_mm256_add_pd(_mm256_loadu_pd(in->table + k), first), 1.0, place);
+    const double *const node[4] = {map->values + place[0], map->values + place[1],
+                                   map->values + place[2], map->values + place[3]};
+
+    /* The nodes around them. */
+    const __m256d near = of_nodes(node, 0), near_next = of_nodes(node, GMI_NODE_DOUBLES);
+    const __m256d far = of_nodes(node, map->next_face);
+    const __m256d far_next = of_nodes(node, map->next_face + GMI_NODE_DOUBLES);
+    const __m256d along_profile = _mm256_sub_pd(near_next, near);
+    const __m256d along_face = _mm256_sub_pd(far, near);
+    const __m256d mixed = _mm256_sub_pd(_mm256_sub_pd(far_next, far), along_profile);
+    const __m256d slope = _mm256_add_pd(along_profile, _mm256_mul_pd(mixed, face));
+    add_to_four(at->value + k, _mm256_add_pd(_mm256_add_pd(near, _mm256_mul_pd(along_face, face)),
+                                             _mm256_mul_pd(slope, profile)));
+    add_to_four(at->by_place + k,
+                _mm256_mul_pd(_mm256_add_pd(along_face, _mm256_mul_pd(mixed, profile)), per_place));
+    add_to_four(at->by_roll + k, _mm256_mul_pd(slope, per_roll));
+    _mm256_storeu_pd(in->mixed + k, mixed);
+}
+#endif
+
+void gmi_surface_add_tables(const gmi_surface_points *at, const gmi_surface_gear *gear,
+                            const gmi_surface_tables *in, int from, int to) {
     const surface_map map = map_of(at, gear);
-    add_cells(at->count, map.per_place, map.per_roll, cells->face, cells->profile, cells->near,
-              cells->near_next, cells->far, cells->far_next, at->value, at->by_place, at->by_roll);
+    int k = from;
+#ifdef GMI_IN_WIDE
+    for (; k + 4 <= to; k += 4) {
+        add_four(&map, at, in, k);
+    }
+#endif
+    for (; k < to; k += BLOCK) {
+        add_block(to - k < BLOCK ? to - k : BLOCK, &map, at, in, k);
+    }
 }
 
 /* Each takes off what it exceeds zero by. */
@@ -142,17 +208,16 @@ double gmi_line_flanks_at(const gmi_line_flanks *line, int side, double t1, doub
     const gmi_surface_points at = {1, 0.0, 1.0, &t1, &roll, &value, &by_t1, by_roll};
     *by_roll = 0.0;
 
-    /* The table of each gear: its cell, its four nodes, and what they come to at the point. */
-    double nodes[7];
-    const gmi_surface_cells cells = {&nodes[0], &nodes[1], &nodes[2], &nodes[3],
-                                     &nodes[4], &nodes[5], &nodes[6]};
+    /* The table of each gear, if the tooth has one. */
+    double table = 0.0, mixed;
+    const gmi_surface_tables in = {&table, &mixed};
     for (int role = GM_PINION; role <= GM_WHEEL; ++role) {
         const gmi_surface_gear gear = gmi_surface_gear_of(line->mesh, side, role, reach);
         if (gear.tables != NULL) {
-            gmi_surface_find(&at, &gear, &cells);
-            gmi_surface_gather(&cells, &gear,
-                               role == GM_PINION ? line->pinion.values : line->wheel.values, 0, 1);
-            gmi_surface_add_cells(&at, &gear, &cells);
+            table = gmi_surface_table(&gear, role == GM_PINION ? &line->pinion : &line->wheel);
+            if (table >= 0.0) {
+                gmi_surface_add_tables(&at, &gear, &in, 0, 1);
+            }
             gmi_surface_add_ramps(&at, &gear);
         }
     }

@@ -24,11 +24,14 @@ typedef struct gmi_surface_points {
     double *by_roll; /* (1) */
 } gmi_surface_points;
 
-/* Where points are in a table: first node of the cell, place within the cell, values of its four nodes. */
-typedef struct gmi_surface_cells {
-    double *node, *face, *profile;
-    double *near, *near_next, *far, *far_next;
-} gmi_surface_cells;
+/*
+ * For the points of a gear: where the table of the tooth begins among its tables, as a number, < 0 = none; and, found there,
+ * how the slope along the profile grows across a cell of the face.
+ */
+typedef struct gmi_surface_tables {
+    const double *table;
+    double *mixed;
+} gmi_surface_tables;
 
 /* The flanks that meet on one line of a side. */
 typedef struct gmi_line_flanks {
@@ -87,20 +90,18 @@ static inline gmi_surface_gear gmi_surface_gear_of(const gm_mesh *mesh, int side
     return role == GM_PINION ? pinion : wheel;
 }
 
-/* The cells of all points; the values of points from .. to - 1 in the table of their tooth, NULL = none; and adds them. */
-void gmi_surface_find(const gmi_surface_points *at, const gmi_surface_gear *gear,
-                      const gmi_surface_cells *cells);
-void gmi_surface_gather(const gmi_surface_cells *cells, const gmi_surface_gear *gear,
-                        const double *table, int from, int to);
-void gmi_surface_add_cells(const gmi_surface_points *at, const gmi_surface_gear *gear,
-                           const gmi_surface_cells *cells);
+/* Where the table of a tooth begins, see gmi_surface_tables. */
+static inline double gmi_surface_table(const gmi_surface_gear *gear, const gmi_flank *flank) {
+    return flank->values == NULL ? -1.0 : (double)(flank->values - gear->tables->values);
+}
 
-/* How the slope along rho_p of a table changes along the place, in the cell of point p (1 per place). */
-static inline double gmi_surface_twist_at(const gmi_surface_points *at,
-                                          const gmi_surface_gear *gear,
-                                          const gmi_surface_cells *cells, int p) {
-    const double mixed =
-        (cells->far_next[p] - cells->far[p]) - (cells->near_next[p] - cells->near[p]);
+/* Adds the tables of a gear at points from .. to - 1, all of which have one. */
+void gmi_surface_add_tables(const gmi_surface_points *at, const gmi_surface_gear *gear,
+                            const gmi_surface_tables *in, int from, int to);
+
+/* How the slope along rho_p of a table changes along the place, in the cell of a point (1 per place). */
+static inline double gmi_surface_twist(const gmi_surface_points *at, const gmi_surface_gear *gear,
+                                       double mixed) {
     return mixed * (gear->grid->face_rate * at->per_place) * (gear->per_roll * gear->grid->per_rho);
 }
 

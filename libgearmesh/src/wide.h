@@ -48,6 +48,23 @@
         _mm256_castpd128_pd256(_mm_loadu_pd((row)[1] + (k))), _mm_loadu_pd((row)[3] + (k)), 1);    \
     const __m256d first = _mm256_unpacklo_pd(first##_even, first##_odd);                           \
     const __m256d second = _mm256_unpackhi_pd(first##_even, first##_odd)
+
+/* Four whole numbers below 2^51, times `size`: above 2^52 the last bits of a double are its last digits. */
+#define GMI_PLACES_OF_FOUR(number, size, place)                                                    \
+    int64_t place[4];                                                                              \
+    _mm256_storeu_si256((__m256i *)(void *)place,                                                  \
+                        _mm256_sub_epi64(_mm256_castpd_si256(_mm256_add_pd(                        \
+                                             _mm256_mul_pd(number, _mm256_set1_pd(size)),          \
+                                             _mm256_set1_pd(0x1p52))),                             \
+                                         _mm256_castpd_si256(_mm256_set1_pd(0x1p52))))
+
+/* gmi_cell_of() of four numbers. */
+#define GMI_CELLS_OF_FOUR(v, last, cell)                                                           \
+    const __m256d cell##_middle = _mm256_sub_pd(v, _mm256_set1_pd(0.5));                           \
+    const __m256d cell##_within =                                                                  \
+        _mm256_min_pd(_mm256_max_pd(cell##_middle, _mm256_setzero_pd()), _mm256_set1_pd(last));    \
+    const __m256d cell = _mm256_sub_pd(_mm256_add_pd(cell##_within, _mm256_set1_pd(0x1p52)),       \
+                                       _mm256_set1_pd(0x1p52))
 #endif
 
 /* Whether processor and system have AVX2: bits of CPUID, and that the system keeps the registers of each process. */
