@@ -223,6 +223,7 @@ typedef struct gmi_elastic_cut {
     double z;    /* moves with the line (m) */
     int row;     /* of the line */
     int element; /* that is cut */
+    int whole;   /* slot of that element */
     int before;  /* slot up to the cut ... */
     int after;   /* ... and from there on */
     int is_last; /* of its element: none follows in it */

@@ -492,7 +492,8 @@ static void add_cut(const gmi_elastic *law, double z, int limit, int row, gmi_el
     cut->z = z;
     cut->row = row;
     cut->element = element;
-    cut->before = shares ? cut[-1].after : line->slot + number;
+    cut->whole = line->slot + number;
+    cut->before = shares ? cut[-1].after : cut->whole;
     cut->after = line->slot + line->slots++;
     cut->is_last = 1;
     cut->limit = limit;

@@ -13,7 +13,20 @@
 
 #include <string.h>
 
-/* Between the two stations of the element of a cut. */
+/* Rows of an array over stations that the points of a cut take from: of its tooth, and of the rim. */
+typedef struct cut_rows {
+    const double *tooth, *rim;
+} cut_rows;
+
+static inline cut_rows rows_of_cut(const gmi_elastic_work *work, const double *rows,
+                                   const gmi_elastic_cut *cut) {
+    const ptrdiff_t n = work->stations;
+    const cut_rows at = {rows + cut->row * n + cut->element,
+                         rows + work->lines_max * n + cut->element};
+    return at;
+}
+
+/* Between the two stations of an element. */
 static inline double between(const double *row, double place) {
     return row[0] + place * (row[1] - row[0]);
 }
@@ -51,14 +64,15 @@ void gmi_elastic_approach(gmi_elastic_work *work, double x) {
     }
 
     /* What follows the cuts. */
-    for (int k = 0; k < 2 * work->cuts; ++k) {
-        const gmi_elastic_cut *cut = &work->cut[k / 2];
-        const int p = cut->after + k % 2 * work->slots;
-        const double *row = work->state + cut->row * work->stations + cut->element;
-        const double phi = between(row, work->place[p]);
-        const double psi = between(rim + cut->element, work->place[p]);
-        work->deflection[p] = phi;
-        work->approach_at[p] = (x + work->deviation[p]) - work->tooth[p] * phi - psi;
+    const double *place = work->place, *tooth = work->tooth, *deviation = work->deviation;
+    double *deflection = work->deflection, *approach = work->approach_at;
+    for (const gmi_elastic_cut *cut = work->cut, *end = cut + work->cuts; cut < end; ++cut) {
+        const cut_rows at = rows_of_cut(work, work->state, cut);
+        for (int half = 0, p = cut->after; half < 2; ++half, p += work->slots) {
+            const double phi = between(at.tooth, place[p]), psi = between(at.rim, place[p]);
+            deflection[p] = phi;
+            approach[p] = (x + deviation[p]) - tooth[p] * phi - psi;
+        }
     }
 }
 
@@ -226,16 +240,20 @@ void gmi_elastic_follow(gmi_elastic_work *work) {
     }
 
     /* What follows the cuts. */
-    for (int k = 0; k < 2 * work->cuts; ++k) {
-        const gmi_elastic_cut *cut = &work->cut[k / 2];
-        const int p = cut->after + k % 2 * work->slots;
-        const double *row = work->change + cut->row * work->stations + cut->element;
-        const double phi = between(row, work->place[p]);
-        const double moved = work->tooth[p] * phi + between(rim + cut->element, work->place[p]);
-        work->deflection[p] += phi;
-        work->approach_at[p] -= moved;
-        work->change_at[p] = -moved;
-        work->expected[p] = work->force[p] - work->stiffness[p] * moved;
+    const double *place = work->place, *tooth = work->tooth;
+    const double *force = work->force, *stiffness = work->stiffness;
+    double *deflection = work->deflection, *approach = work->approach_at;
+    double *change = work->change_at, *expected = work->expected;
+    for (const gmi_elastic_cut *cut = work->cut, *end = cut + work->cuts; cut < end; ++cut) {
+        const cut_rows at = rows_of_cut(work, work->change, cut);
+        for (int half = 0, p = cut->after; half < 2; ++half, p += work->slots) {
+            const double phi = between(at.tooth, place[p]);
+            const double moved = tooth[p] * phi + between(at.rim, place[p]);
+            deflection[p] += phi;
+            approach[p] -= moved;
+            change[p] = -moved;
+            expected[p] = force[p] - stiffness[p] * moved;
+        }
     }
 }
 
@@ -276,13 +294,15 @@ void gmi_elastic_pull(gmi_elastic_work *work, const double *factor, const double
     }
 
     /* What follows the cuts. */
-    for (int k = 0; k < 2 * work->cuts; ++k) {
-        const gmi_elastic_cut *cut = &work->cut[k / 2];
-        const int p = cut->after + k % 2 * work->slots;
-        const double *row = rows + cut->row * work->stations + cut->element;
-        const double phi = between(row, work->place[p]);
-        work->tooth_adjoint[p] = phi;
-        work->pull[p] -= work->tooth[p] * phi + between(rim + cut->element, work->place[p]);
+    const double *place = work->place, *tooth = work->tooth;
+    double *pull = work->pull, *tooth_adjoint = work->tooth_adjoint;
+    for (const gmi_elastic_cut *cut = work->cut, *end = cut + work->cuts; cut < end; ++cut) {
+        const cut_rows at = rows_of_cut(work, rows, cut);
+        for (int half = 0, p = cut->after; half < 2; ++half, p += work->slots) {
+            const double phi = between(at.tooth, place[p]);
+            tooth_adjoint[p] = phi;
+            pull[p] -= tooth[p] * phi + between(at.rim, place[p]);
+        }
     }
 }
 
@@ -334,13 +354,13 @@ void gmi_elastic_gather(gmi_elastic_work *work, const double *force, double *row
     }
 
     /* What follows the cuts. */
-    for (int k = 0; k < work->cuts; ++k) {
-        const gmi_elastic_cut *cut = &work->cut[k];
+    const double *const part[4] = {work->parts[0], work->parts[1], work->parts[2], work->parts[3]};
+    for (const gmi_elastic_cut *cut = work->cut, *end = cut + work->cuts; cut < end; ++cut) {
         double *row = rows + cut->row * work->stations + cut->element;
-        row[0] += work->parts[0][cut->after];
-        row[1] += work->parts[1][cut->after];
-        rim[cut->element] += work->parts[2][cut->after];
-        rim[cut->element + 1] += work->parts[3][cut->after];
+        row[0] += part[0][cut->after];
+        row[1] += part[1][cut->after];
+        rim[cut->element] += part[2][cut->after];
+        rim[cut->element + 1] += part[3][cut->after];
     }
 }
 
@@ -388,13 +408,11 @@ void gmi_elastic_stiffen(gmi_elastic_work *work) {
             work->matrix + GMI_MIXED_LEFT * slots, work->matrix + GMI_RIM_LEFT * slots);
 
     /* What follows a cut is stiffness of the same element. */
-    for (int k = 0; k < work->cuts; ++k) {
-        const gmi_elastic_cut *cut = &work->cut[k];
-        const gmi_elastic_line *line = &work->line[cut->row];
-        double *whole = work->matrix + line->slot + cut->element - line->element;
+    for (const gmi_elastic_cut *cut = work->cut, *end = cut + work->cuts; cut < end; ++cut) {
+        double *whole = work->matrix + cut->whole;
         const double *behind = work->matrix + cut->after;
-        for (int m = 0; m < GMI_ELASTIC_MATRICES * slots; m += slots) {
-            whole[m] += behind[m];
+        for (int m = 0; m < GMI_ELASTIC_MATRICES; ++m, whole += slots, behind += slots) {
+            *whole += *behind;
         }
     }
 }
