@@ -28,7 +28,7 @@
 #include <math.h>
 
 /* Angles at most 0.5: sine to 2e-17. */
-static double sine_of_small(double x) {
+static inline double sine_of_small(double x) {
     const double y = x * x;
     const double series =
         -1.0 / 6.0 +
@@ -39,17 +39,18 @@ static double sine_of_small(double x) {
 }
 
 /* Arc tangent to 2e-17 up to 0.26. */
-static double arc_of_small(double x) {
+static inline double arc_of_small(double x) {
     const double y = x * x;
-    double series = 1.0 / 25.0;
-    for (int odd = 23; odd >= 3; odd -= 2) {
-        series = 1.0 / (double)odd - y * series;
-    }
+    double series = 1.0 / 23.0 - y * (1.0 / 25.0);
+    series = 1.0 / 17.0 - y * (1.0 / 19.0 - y * (1.0 / 21.0 - y * series));
+    series = 1.0 / 11.0 - y * (1.0 / 13.0 - y * (1.0 / 15.0 - y * series));
+    series = 1.0 / 5.0 - y * (1.0 / 7.0 - y * (1.0 / 9.0 - y * series));
+    series = 1.0 / 3.0 - y * series;
     return x - x * y * series;
 }
 
 /* The angle with this sine and cosine, both halves of a quarter turn: four times the arc of its quarter. */
-static double angle_of(double sine, double cosine) {
+static inline double angle_of(double sine, double cosine) {
     const double half = sine / (1.0 + cosine);
     return 4.0 * arc_of_small(half / (1.0 + sqrt(1.0 + half * half)));
 }
@@ -59,12 +60,78 @@ typedef struct turned {
     double versine, sine;
 } turned;
 
-static turned turn_of(const gmi_corner *corner, double roll) {
+static inline turned turn_of(const gmi_corner *corner, double roll) {
     const double half = sine_of_small(0.5 * roll / corner->tip_base);
     const turned result = {2.0 * half * half, 2.0 * half * sqrt(1.0 - half * half)};
     return result;
 }
 
+/* Where the corner is after a roll, the turn of the normal there, and the gap. */
+typedef struct way {
+    turned by;                          /* of the tip */
+    double rho, longer;                 /* roll length there, and by how much it is longer */
+    double n, e;                        /* n_C, e_C - rho_A */
+    double sine, cosine, versine, turn; /* of the normal */
+    double rho_by_roll, turn_by_roll;
+    double gap, by_roll, by_roll_twice;
+} way;
+
+static inline way way_of(const gmi_corner *corner, double roll) {
+    const double r_g = corner->tip_base, r_m = corner->mate_base;
+    const double start = corner->mate_roll, direction = start < 0.0 ? -1.0 : 1.0;
+    const turned by = turn_of(corner, roll);
+
+    /* The roll length there, which has the sign of that at the end of the path. */
+    const double change = 2.0 * (corner->along * by.versine + corner->across * by.sine);
+    const double whole = start * start + change;
+    const double squared = 0.5 * (whole + fabs(whole)); /* 0 if that is below: without a branch */
+    const double rho = direction * sqrt(squared);
+    const double longer = change / (rho + start);
+
+    /* And the turn of the normal. */
+    const double n_way = r_g * by.versine + corner->tip_roll * by.sine;
+    const double e_way = corner->tip_roll * by.versine - r_g * by.sine;
+    const double per_square = 1.0 / (r_m * r_m + squared);
+    const double sine = (r_m * (longer - e_way) + rho * n_way) * per_square;
+    const double cosine = (r_m * (r_m + n_way) + rho * (start + e_way)) * per_square;
+    const double versine = sine * sine / (1.0 + cosine);
+    const double turn = angle_of(sine, cosine);
+
+    /* The gap by the roll, and gap'' from how the normal turns. */
+    const double per_base = 1.0 / r_g;
+    const double base_sum = r_m + r_g;
+    const double by_roll = (base_sum * versine + corner->line_of_action * sine) * per_base;
+    const double rho_by_roll =
+        (corner->along * by.sine + corner->across * (1.0 - by.versine)) * per_base / rho;
+    const double turn_by_roll = (rho_by_roll + 1.0 - by_roll) / r_m;
+    const double by_roll_twice =
+        (base_sum * sine + corner->line_of_action * cosine) * turn_by_roll * per_base;
+    const way found = {by,      rho,          longer,       n_way,
+                       e_way,   sine,         cosine,       versine,
+                       turn,    rho_by_roll,  turn_by_roll, (longer + roll) - r_m * turn,
+                       by_roll, by_roll_twice};
+    return found;
+}
+
+APART void find_gaps(int count, const gmi_corner *of, const double *restrict roll,
+                     double *restrict gap, double *restrict by_roll,
+                     double *restrict by_roll_twice) {
+    const gmi_corner corner = *of;
+    for (int k = 0; k < count; ++k) {
+        const way found = way_of(&corner, roll[k]);
+        gap[k] = found.gap;
+        by_roll[k] = found.by_roll;
+        by_roll_twice[k] = found.by_roll_twice;
+    }
+}
+
+void gmi_corner_gaps(const gmi_corner *corner, int count, const double *roll, double *gap,
+                     double *by_roll, double *by_roll_twice) {
+    find_gaps(count, corner, roll, gap, by_roll, by_roll_twice);
+}
+
+/* One corner at a time is no work for vectors. */
+#ifndef GMI_IN_WIDE
 /*
  * The roll at which rho_C^2 has changed by `change`, at most that of a radian: with z = tan(v / 2) it is
  * (4 C - change) z^2 + 4 S z - change = 0.
@@ -122,54 +189,32 @@ int gmi_corner_init(const gm_pair *pair, const gmi_engagement *at, int role, gmi
 }
 
 void gmi_corner_at(const gmi_corner *corner, double roll, gmi_corner_place *place) {
-    const double r_g = corner->tip_base, r_m = corner->mate_base;
-    const double start = corner->mate_roll;
-    const turned by = turn_of(corner, roll);
-
-    /* The roll length there, which has the sign of that at the end of the path. */
-    const double squared =
-        fmax(0.0, start * start + 2.0 * (corner->along * by.versine + corner->across * by.sine));
-    const double rho = start < 0.0 ? -sqrt(squared) : sqrt(squared);
-    const double longer =
-        2.0 * (corner->along * by.versine + corner->across * by.sine) / (rho + start);
-
-    /* And the turn of the normal. */
-    const double n_way = r_g * by.versine + corner->tip_roll * by.sine;
-    const double e_way = corner->tip_roll * by.versine - r_g * by.sine;
-    const double per_square = 1.0 / (r_m * r_m + squared);
-    const double sine = (r_m * (longer - e_way) + rho * n_way) * per_square;
-    const double cosine = (r_m * (r_m + n_way) + rho * (start + e_way)) * per_square;
-    const double versine = sine * sine / (1.0 + cosine);
-    place->mate_roll = rho;
-    place->across = n_way;
-    place->along = e_way + roll;
+    const double r_g = corner->tip_base;
+    const way found = way_of(corner, roll);
+    const turned by = found.by;
+    place->mate_roll = found.rho;
+    place->across = found.n;
+    place->along = found.e + roll;
     place->across_by_roll = by.sine + corner->tip_roll / r_g * (1.0 - by.versine);
     place->along_by_roll = by.versine + corner->tip_roll / r_g * by.sine;
-    place->versine = versine;
-    place->turn = angle_of(sine, cosine);
-    place->gain = longer + roll;
+    place->versine = found.versine;
+    place->turn = found.turn;
+    place->gain = found.longer + roll;
 
     /* The gap: by the roll, and by T, which moves the corner along e and the end of the path with it. */
-    const double per_base = 1.0 / r_g;
-    const double base_sum = r_m + r_g;
-    place->gap = (longer + roll) - r_m * place->turn;
-    place->by_roll = (base_sum * versine + corner->line_of_action * sine) * per_base;
-    place->by_length = -versine;
+    place->gap = found.gap;
+    place->by_roll = found.by_roll;
+    place->by_roll_twice = found.by_roll_twice;
+    place->by_length = -found.versine;
     place->tip_arm = r_g * (1.0 - place->by_roll);
-
-    /* gap'' from how the normal turns. */
-    const double rho_by_roll =
-        (corner->along * by.sine + corner->across * (1.0 - by.versine)) * per_base / rho;
-    const double turn_by_roll = (rho_by_roll + 1.0 - place->by_roll) / r_m;
-    place->by_roll_twice =
-        (base_sum * sine + corner->line_of_action * cosine) * turn_by_roll * per_base;
-    place->versine_by_roll = sine * turn_by_roll;
-    place->gain_by_roll = rho_by_roll + 1.0;
-    place->gain_by_length = (start + e_way) / rho - 1.0;
+    place->versine_by_roll = found.sine * found.turn_by_roll;
+    place->gain_by_roll = found.rho_by_roll + 1.0;
+    place->gain_by_length = (corner->mate_roll + found.e) / found.rho - 1.0;
 
     /* By T the turn follows from gap' by both: that of by_length by the roll. */
-    place->versine_by_length = -sine * (r_g * place->versine_by_roll + sine) /
-                               (corner->line_of_action * cosine + base_sum * sine);
+    place->versine_by_length =
+        -found.sine * (r_g * place->versine_by_roll + found.sine) /
+        (corner->line_of_action * found.cosine + (corner->mate_base + r_g) * found.sine);
 }
 
 /* The gap is convex: from beyond, Newton's method comes closer from the same side. */
@@ -199,3 +244,4 @@ int gmi_corners_init(const gm_pair *pair, const gmi_engagement *at, gmi_corner c
     const int wheel = gmi_corner_init(pair, at, GM_WHEEL, &corners[GM_WHEEL]);
     return pinion && wheel;
 }
+#endif

@@ -45,6 +45,10 @@ int gmi_corner_init(const gm_pair *pair, const gmi_engagement *at, int role, gmi
 /* roll: of the gear whose tip it is, beyond the end of the path, 0 .. reach (m). Basic arithmetic and roots alone. */
 void gmi_corner_at(const gmi_corner *corner, double roll, gmi_corner_place *place);
 
+/* The gap after each of many rolls, with both derivatives by the roll: arrays that do not overlap. */
+void gmi_corner_gaps(const gmi_corner *corner, int count, const double *roll, double *gap,
+                     double *by_roll, double *by_roll_twice);
+
 /*
  * The force of the parts of all lines of a side that are beyond the tip of one gear, in the transverse section, with
  * weights; of the stiffness and of damping.

@@ -274,6 +274,11 @@ typedef struct gmi_elastic_work {
     int cuts; /* line by line, in the order of z */
     gmi_elastic_cut cut[GMI_ELASTIC_CUTS_MAX];
 
+    /* Points beyond the path, where lines go on: below and above it. The first list has room for all points. */
+    int *outer[2];
+    int outer_count[2];
+    int *chosen; /* the caller's, [2 slots] */
+
     /* Of the last gmi_elastic_solve(). */
     int touching;      /* whether anything does: else loads and derivatives are 0 */
     int warm;          /* solutions to begin from: 0, 1, 2 with a rate by the roll */

@@ -274,6 +274,11 @@ static int kind_of(const gmi_elastic_run *run) {
     return is_usual ? KIND(run->ending, run->through, run->beginning) : -1;
 }
 
+/* Any: apart, as it needs more of the stack than all usual ones. */
+SPECIAL void step_any(front_state *f, gmi_elastic_run *run) {
+    any_step(traffic_of(run), f, run, f->work->front);
+}
+
 static void step_run(front_state *f, gmi_elastic_run *run) {
     switch (run->kind) {
 #define CASE(e, g, b)                                                                              \
@@ -283,7 +288,7 @@ static void step_run(front_state *f, gmi_elastic_run *run) {
         USUAL_TRAFFIC(CASE)
 #undef CASE
     default:
-        any_step(traffic_of(run), f, run, f->work->front);
+        step_any(f, run);
     }
 }
 

@@ -91,12 +91,6 @@ static double slope_of(const double *row, double per_spacing) {
     return (row[1] - row[0]) * per_spacing;
 }
 
-/* Share of the movement of an end (0: begin, 1: end of the line) that a point of its part makes. */
-static double share_of_end(int end, int half) {
-    static const double gauss[2] = {0.21132486540518711775, 0.78867513459481288225};
-    return end == 0 ? 1.0 - gauss[half] : gauss[half];
-}
-
 static double optional(const double *values, int p, double otherwise) {
     return values != NULL ? values[p] : otherwise;
 }
@@ -106,14 +100,12 @@ typedef struct moving_part {
     int row, node, slot, ends, limited;
 } moving_part;
 
-/* Of the ends of a part that move: the share of it that a point makes, and how much of it both weights grow by. */
-static double share_of(int ends, int half) {
-    return (ends & 1 ? share_of_end(0, half) : 0.0) + (ends & 2 ? share_of_end(1, half) : 0.0);
-}
-
-static double growth_of(int ends) {
-    return (ends & 2 ? 0.5 : 0.0) - (ends & 1 ? 0.5 : 0.0);
-}
+/* Of the ends of a part that move, none, 1, 2 or 3: the share of it that each point makes, and how much both weights grow. */
+static const double share_of[4][2] = {{0.0, 0.0},
+                                      {0.78867513459481288225, 0.21132486540518711775},
+                                      {0.21132486540518711775, 0.78867513459481288225},
+                                      {1.0, 1.0}};
+static const double growth_of[4] = {0.0, -0.5, 0.5, 0.0};
 
 /* Slopes of both layers along z in the element of a part, of an array over stations. */
 typedef struct layer_slopes {
@@ -144,7 +136,7 @@ static double opened_at(const gmi_elastic_work *work, const layer_slopes *state,
 static double move_functional(const gmi_elastic *law, const gmi_elastic_work *work,
                               const gmi_elastic_functional *functional, const double *rows,
                               const moving_part *part) {
-    const double climb = work->at.climb, grown = growth_of(part->ends);
+    const double climb = work->at.climb, grown = growth_of[part->ends];
     const layer_slopes state = slopes_of(law, work, work->state, part);
     const layer_slopes adjoint = slopes_of(law, work, rows, part);
     double effect = 0.0;
@@ -165,7 +157,7 @@ static double move_functional(const gmi_elastic *law, const gmi_elastic_work *wo
 
         /* A weight leaves q as it is. */
         const double by_load = optional(functional->by_load, p, 0.0);
-        effect += grown * load * (pull - by_load) + share_of(part->ends, half) * along;
+        effect += grown * load * (pull - by_load) + share_of[part->ends][half] * along;
     }
     return effect;
 }
@@ -174,7 +166,7 @@ static double move_functional(const gmi_elastic *law, const gmi_elastic_work *wo
 static double move_energy(const gmi_elastic *law, const gmi_elastic_work *work,
                           const moving_part *part) {
     const double half_compliance = 0.5 * law->hertz_compliance;
-    const double climb = work->at.climb, grown = growth_of(part->ends);
+    const double climb = work->at.climb, grown = growth_of[part->ends];
     const layer_slopes state = slopes_of(law, work, work->state, part);
     double effect = 0.0;
     for (int half = 0; half < 2; ++half) {
@@ -191,7 +183,7 @@ static double move_energy(const gmi_elastic *law, const gmi_elastic_work *work,
             energy += 0.5 * lacking;
             along -= work->weight[p] * lacking * rate_by_z;
         }
-        effect += grown * energy + share_of(part->ends, half) * along;
+        effect += grown * energy + share_of[part->ends][half] * along;
     }
     return effect;
 }
@@ -212,15 +204,16 @@ static void add_end(const gmi_elastic_work *work, int limited, double effect,
 static void add_part(const gmi_elastic *law, const gmi_elastic_work *work, const moving_part *part,
                      const gmi_elastic_functional *functional, const double *rows,
                      gmi_elastic_gradient *gradient, gmi_elastic_gradient *energy) {
-    if (work->force[part->slot] == 0.0 && work->force[part->slot + work->slots] == 0.0) {
-        return;
-    }
     if (gradient != NULL) {
         add_end(work, part->limited, move_functional(law, work, functional, rows, part), gradient);
     }
     if (energy != NULL) {
         add_end(work, part->limited, move_energy(law, work, part), energy);
     }
+}
+
+static int is_loaded(const gmi_elastic_work *work, int slot) {
+    return work->force[slot] != 0.0 || work->force[slot + work->slots] != 0.0;
 }
 
 static void add_ends(const gmi_elastic *law, const gmi_elastic_work *work,
@@ -230,7 +223,7 @@ static void add_ends(const gmi_elastic *law, const gmi_elastic_work *work,
         const gmi_elastic_line *line = &work->line[row];
         for (int end = 0; end < 2; ++end) {
             const int last = end == 0 ? 0 : line->elements - 1;
-            if (line->limited[end] != 0) {
+            if (line->limited[end] != 0 && is_loaded(work, line->slot + last)) {
                 const moving_part part = {row, line->element + last, line->slot + last, 1 << end,
                                           line->limited[end]};
                 add_part(law, work, &part, functional, rows, gradient, energy);
@@ -242,11 +235,13 @@ static void add_ends(const gmi_elastic *law, const gmi_elastic_work *work,
     int is_joined = 0;
     for (int k = 0; k < work->cuts; ++k) {
         const gmi_elastic_cut *cut = &work->cut[k];
-        const moving_part before = {cut->row, cut->element, cut->before, is_joined ? 3 : 2,
-                                    cut->limit};
-        add_part(law, work, &before, functional, rows, gradient, energy);
+        if (is_loaded(work, cut->before)) {
+            const moving_part before = {cut->row, cut->element, cut->before, is_joined ? 3 : 2,
+                                        cut->limit};
+            add_part(law, work, &before, functional, rows, gradient, energy);
+        }
         is_joined = !cut->is_last && cut[1].limit == cut->limit;
-        if (!is_joined) {
+        if (!is_joined && is_loaded(work, cut->after)) {
             const moving_part after = {cut->row, cut->element, cut->after, 1, cut->limit};
             add_part(law, work, &after, functional, rows, gradient, energy);
         }
@@ -256,6 +251,22 @@ static void add_ends(const gmi_elastic *law, const gmi_elastic_work *work,
 /* ---------------------------------------------------------------------------------------------
  * Together
  * ------------------------------------------------------------------------------------------- */
+
+APART void multiply(int count, const double *restrict first, const double *restrict second,
+                    double *restrict product) {
+    for (int p = 0; p < count; ++p) {
+        product[p] = first[p] * second[p];
+    }
+}
+
+/* The factor of a functional times an array over the points. */
+static void weigh(int count, const double *factor, const double *values, double *product) {
+    if (factor == NULL) {
+        memcpy(product, values, sizeof(double) * (size_t)count);
+    } else {
+        multiply(count, factor, values, product);
+    }
+}
 
 /* work->pull and work->tooth_adjoint are those of the functional. */
 static void move_points(const gmi_elastic *law, gmi_elastic_work *work,
@@ -357,9 +368,7 @@ void gmi_elastic_differentiate_functional(const gmi_elastic *law, gmi_elastic_wo
 
     /* Its adjoint. */
     memset(work->other, 0, sizeof(double) * (size_t)(work->lines_max + 1) * (size_t)work->stations);
-    for (int p = 0; p < count; ++p) {
-        work->scratch[p] = optional(functional->factor, p, 1.0) * work->stiffness[p];
-    }
+    weigh(count, functional->factor, work->stiffness, work->scratch);
     gmi_elastic_gather(work, work->scratch, work->other);
     gmi_elastic_substitute(work, work->other);
 
@@ -372,14 +381,13 @@ void gmi_elastic_differentiate_functional(const gmi_elastic *law, gmi_elastic_wo
     move_points(law, work, gradient);
     move_action(law, work, gradient);
     add_ends(law, work, functional, work->other, gradient, NULL);
-    for (int p = 0; p < count; ++p) {
-        by_deviation[p] = work->stiffness[p] * work->pull[p];
-        work->scratch[p] = optional(functional->factor, p, 1.0) * work->force[p];
-    }
+    multiply(count, work->stiffness, work->pull, by_deviation);
+    weigh(count, functional->factor, work->force, work->scratch);
     gradient->by_approach = gmi_elastic_sum(count, by_deviation);
     gradient->value = gmi_elastic_sum(count, work->scratch);
-    for (int p = 0; p < count && functional->factor_by_roll != NULL; ++p) {
-        gradient->by_roll += functional->factor_by_roll[p] * work->force[p];
+    if (functional->factor_by_roll != NULL) {
+        multiply(count, functional->factor_by_roll, work->force, work->scratch);
+        gradient->by_roll += gmi_elastic_sum(count, work->scratch);
     }
     work->pull = pull;
     work->tooth_adjoint = tooth_adjoint;

@@ -48,8 +48,9 @@ static void add_tables(const gmi_surface_points *points, const gmi_surface_gear 
 /* Beyond the path the flanks end: on from there as the slope says, for a while. */
 static void hold_flanks(const gmi_surface_points *points, const gmi_surface_gear gear[2],
                         const gmi_surface_tables in[2], gmi_elastic_work *work) {
-    for (int p = 0; p < 2 * work->slots; ++p) {
-        if (work->beyond[p] != 0.0) {
+    for (int which = 0; which < 2; ++which) {
+        for (int k = 0; k < work->outer_count[which]; ++k) {
+            const int p = work->outer[which][k];
             const gmi_elastic_hold hold = gmi_elastic_hold_at(&work->at, work->beyond[p]);
             for (int role = GM_PINION; role <= GM_WHEEL; ++role) {
                 if (gear[role].tables != NULL) {

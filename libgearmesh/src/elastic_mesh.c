@@ -460,12 +460,24 @@ typedef struct side_force {
 
 /* Whether a wheel's edge that its gap makes slower bears load. */
 static int is_entry_loaded(const gmi_elastic_work *work) {
-    for (int p = 0; p < 2 * work->slots; ++p) {
+    for (int k = 0; k < work->outer_count[0]; ++k) {
+        const int p = work->outer[0][k];
         if (work->entry_slope[p] != 0.0 && work->load[p] > 0.0) {
             return 1;
         }
     }
     return 0;
+}
+
+/* Sum of the products of two arrays at the points that a wheel's edge may touch. */
+static double sum_entering(const gmi_elastic_work *work, const double *first,
+                           const double *second) {
+    double sum = 0.0;
+    for (int k = 0; k < work->outer_count[0]; ++k) {
+        const int p = work->outer[0][k];
+        sum += first[p] * second[p];
+    }
+    return sum;
 }
 
 /*
@@ -476,25 +488,19 @@ static int is_entry_loaded(const gmi_elastic_work *work) {
 static side_force enter(const side_view *view, gmi_elastic_work *work,
                         const gmi_elastic_result *result, const gmi_elastic_gradient *rolled) {
     /* The weights 1 - g of the force, and what the teeth's place alone moves. */
-    const int count = 2 * work->slots;
-    double *grows = work->table[0], *grows_by_roll = work->table[1];
-    double *by_deviation = work->table[2];
-    double held = 0.0, held_teeth = 0.0, sharper = 0.0;
-    for (int p = 0; p < count; ++p) {
+    double *grows = work->table[0], *by_deviation = work->table[2];
+    for (int p = 0; p < 2 * work->slots; ++p) {
         grows[p] = 1.0 - work->entry_slope[p];
-        grows_by_roll[p] = work->entry_curvature[p];
-        held_teeth += work->by_deviation[p] * work->entry_slope[p];
-        sharper += work->force[p] * work->entry_curvature[p];
     }
+    const double held_teeth = sum_entering(work, work->by_deviation, work->entry_slope);
+    const double sharper = sum_entering(work, work->force, work->entry_curvature);
 
     /* Its adjoint. */
-    const gmi_elastic_functional functional = {grows, grows_by_roll, NULL, NULL};
+    const gmi_elastic_functional functional = {grows, work->entry_curvature, NULL, NULL};
     gmi_elastic_gradient force;
     gmi_elastic_differentiate_functional(&view->elastic->law, work, &functional, by_deviation,
                                          &force);
-    for (int p = 0; p < count; ++p) {
-        held += by_deviation[p] * work->entry_slope[p];
-    }
+    const double held = sum_entering(work, by_deviation, work->entry_slope);
 
     /* The bodies' share of x. */
     const double compliance = view->elastic->body_compliance;
@@ -517,8 +523,9 @@ static int elastic_sum(const gm_mesh *mesh, int side, const gm_position *positio
     int status = place(&view, position, wanted, work);
     if (status == GM_OK) {
         gmi_elastic_set_material(mesh, side, &view.lines, &view.teeth, work);
-        work->is_entering = view.has_tips && gmi_elastic_edges_add(&view.tips, view.approach,
-                                                                   mesh->side[side].peak, work);
+        work->is_entering =
+            view.has_tips && gmi_elastic_edges_add(&view.elastic->law, &view.tips, view.approach,
+                                                   mesh->side[side].peak, work);
         status = solve(view.elastic, work, view.gain * view.approach, &result);
     }
     if (status == GM_NO_CONVERGENCE) {
@@ -623,7 +630,7 @@ static int place_ideal(const gmi_elastic_mesh *made, const gmi_elastic_lines_at 
     memset(work->deviation, 0, bytes);
     memset(work->deviation_by_roll, 0, bytes);
     memset(work->deviation_by_z, 0, bytes);
-    work->is_entering = tips != NULL && gmi_elastic_edges_add(tips, x, 0.0, work);
+    work->is_entering = tips != NULL && gmi_elastic_edges_add(law, tips, x, 0.0, work);
     return status;
 }
 

@@ -59,8 +59,12 @@ gmi_elastic_edge gmi_elastic_edge_at(const gmi_elastic_tips *tips, double approa
  * Adds the edges to deviations and rates of all points, and fills work->entry_slope and work->entry_curvature. Returns
  * whether there are wheel's edges among them. peak: as above.
  */
-int gmi_elastic_edges_add(const gmi_elastic_tips *tips, double approach, double peak,
-                          gmi_elastic_work *work);
+int gmi_elastic_edges_add(const gmi_elastic *law, const gmi_elastic_tips *tips, double approach,
+                          double peak, gmi_elastic_work *work);
+#if GMI_HAS_WIDE
+int gmi_wide_edges_add(const gmi_elastic *law, const gmi_elastic_tips *tips, double approach,
+                       double peak, gmi_elastic_work *work);
+#endif
 
 /* ---------------------------------------------------------------------------------------------
  * The law of a mesh

@@ -284,10 +284,48 @@ APART void keep_within(int count, double lower, double upper, double action, dou
     }
 }
 
+/* Lists of points, while they are filled. */
+typedef struct outer_lists {
+    const double *beyond;
+    int *next[2];
+} outer_lists;
+
+/* Adds a point to those beyond the path if it is one. */
+static inline int is_outer(outer_lists *lists, int p) {
+    if (lists->beyond[p] == 0.0) {
+        return 0;
+    }
+    *lists->next[lists->beyond[p] > 0.0]++ = p;
+    return 1;
+}
+
+/* They are at both ends of each line, and behind the cuts. */
+static void list_outer(gmi_elastic_work *work) {
+    outer_lists lists = {work->beyond, {work->outer[0], work->outer[1]}};
+    for (int k = 0; k < 2 * work->count; ++k) {
+        const gmi_elastic_line *line = &work->line[k / 2];
+        const int begin = line->slot + k % 2 * work->slots;
+        const int cut = begin + line->elements, end = begin + line->slots;
+        int first = begin, last = cut - 1;
+        while (first < cut && is_outer(&lists, first)) {
+            ++first;
+        }
+        while (last > first && is_outer(&lists, last)) {
+            --last;
+        }
+        for (int p = cut; p < end; ++p) {
+            (void)is_outer(&lists, p);
+        }
+    }
+    work->outer_count[0] = (int)(lists.next[0] - work->outer[0]);
+    work->outer_count[1] = (int)(lists.next[1] - work->outer[1]);
+}
+
 /* Their teeth: on from the end as the slope there says, for a while. */
 static void hold_teeth(gmi_elastic_work *work) {
-    for (int p = 0; p < 2 * work->slots; ++p) {
-        if (work->beyond[p] != 0.0) {
+    for (int which = 0; which < 2; ++which) {
+        for (int k = 0; k < work->outer_count[which]; ++k) {
+            const int p = work->outer[which][k];
             const gmi_elastic_hold hold = gmi_elastic_hold_at(&work->at, work->beyond[p]);
             const double growth = 1.0 + hold.moved * work->rate_by_roll[p];
             work->tooth[p] += hold.moved * work->tooth_by_roll[p];
@@ -562,6 +600,7 @@ int gmi_elastic_place(const gmi_elastic *law, const gmi_elastic_lines_at *at,
     place_slots(law, work, parts);
     const int good = place_teeth(law, work);
     if (at->goes_on) {
+        list_outer(work);
         hold_teeth(work);
     }
 

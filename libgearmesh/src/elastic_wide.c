@@ -20,12 +20,14 @@
 
 /* By these an evaluation is entered ... */
 #define gmi_elastic_place                    gmi_wide_place
+#define gmi_elastic_edges_add                gmi_wide_edges_add
 #define gmi_elastic_set_material             gmi_wide_set_material
 #define gmi_elastic_solve                    gmi_wide_solve
 #define gmi_elastic_differentiate            gmi_wide_differentiate
 #define gmi_elastic_differentiate_functional gmi_wide_differentiate_functional
 
 /* ... and these are steps of it. */
+#define gmi_corner_gaps        gmi_wide_corner_gaps
 #define gmi_elastic_approach   gmi_wide_approach
 #define gmi_elastic_factor     gmi_wide_factor
 #define gmi_elastic_find_runs  gmi_wide_find_runs
@@ -51,6 +53,8 @@
 /* From here on all is for AVX2, what headers define as well: or it is not inlined. */
 #include "internal.h"
 
+#include "corner.c"
+#include "elastic_corner.c"
 #include "elastic_gradient.c"
 #include "elastic_material.c"
 #include "elastic_points.c"

@@ -28,7 +28,7 @@ static work_sizes find_sizes(int stations, int lines) {
     return sizes;
 }
 
-enum { POINT_ARRAYS = 28, TABLE_ARRAYS = 4, PART_ARRAYS = 4, NODE_ARRAYS = 7 };
+enum { POINT_ARRAYS = 28, TABLE_ARRAYS = 4, PART_ARRAYS = 4, NODE_ARRAYS = 7, LISTS = 3 };
 
 static int sizes_fit(int stations, int lines) {
     return stations >= 2 && stations <= GMI_ELASTIC_STATIONS_MAX && lines >= 1 &&
@@ -46,7 +46,8 @@ size_t gmi_elastic_work_size(int stations, int lines) {
                            sizes.carry;
 
     /* Whole doubles, so that what comes behind is aligned as well. */
-    const size_t bytes = sizeof(gmi_elastic_run) * (size_t)stations;
+    const size_t bytes =
+        sizeof(gmi_elastic_run) * (size_t)stations + sizeof(int) * LISTS * sizes.points;
     return sizeof(double) * (doubles + (bytes + sizeof(double) - 1) / sizeof(double));
 }
 
@@ -116,6 +117,9 @@ void gmi_elastic_work_init(gmi_elastic_work *work, int stations, int lines, void
 
     /* Behind the doubles, so that all are aligned. */
     work->run = (gmi_elastic_run *)(void *)next;
+    work->outer[0] = (int *)(void *)(work->run + stations);
+    work->outer[1] = work->outer[0] + sizes.points;
+    work->chosen = work->outer[1] + sizes.points;
 }
 
 void gmi_elastic_work_reset(gmi_elastic_work *work) {

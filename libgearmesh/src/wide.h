@@ -52,7 +52,7 @@
 /* Four whole numbers below 2^51, times `size`: above 2^52 the last bits of a double are its last digits. */
 #define GMI_PLACES_OF_FOUR(number, size, place)                                                    \
     int64_t place[4];                                                                              \
-    _mm256_storeu_si256((__m256i *)(void *)place,                                                  \
+    _mm256_storeu_si256((__m256i *)(void *)(place),                                                \
                         _mm256_sub_epi64(_mm256_castpd_si256(_mm256_add_pd(                        \
                                              _mm256_mul_pd(number, _mm256_set1_pd(size)),          \
                                              _mm256_set1_pd(0x1p52))),                             \
