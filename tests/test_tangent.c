@@ -217,6 +217,103 @@ static void tangent_with_rubbing_corners_is_that_of_differences(void) {
     GM_ASSERT(compare_random_tangents(UINT64_C(336), 80, SLIDING_CORNERS) > 60);
 }
 
+/* The wrench from sums over pieces, and from the tangent; 1 where it is there and not 0. */
+static int compare_walks(const gm_mesh *mesh, const gm_motion *motion) {
+    const gm_pair *pair = gm_mesh_pair(mesh);
+    gm_mesh_result pieces, stretches;
+    if (gm_mesh_evaluate_posed(mesh, motion, GM_WANT_WRENCH, NULL, &pieces) != GM_OK ||
+        !GM_ASSERT_INT(gm_mesh_evaluate_posed(mesh, motion, GM_WANT_WRENCH | GM_WANT_DERIVATIVES,
+                                              NULL, &stretches),
+                       GM_OK)) {
+        return 0;
+    }
+    double values[2][VALUES];
+    pack(&pieces.wrench, pieces.force, values[0]);
+    pack(&stretches.wrench, stretches.force, values[1]);
+    for (int k = 0; k < VALUES; ++k) {
+        const int is_moment = k > 0 && (k - 1) / 3 % 2 == 1;
+        const double lever = is_moment ? pair->center_distance + pair->face_width : 1.0;
+        GM_ASSERT_ABS(values[1][k], values[0][k], 1e-15 * 1e8 * lever);
+    }
+    GM_ASSERT_INT(stretches.contact.drive_pairs, pieces.contact.drive_pairs);
+    GM_ASSERT_INT(stretches.contact.coast_pairs, pieces.contact.coast_pairs);
+    return pieces.force != 0.0;
+}
+
+/*
+ * With derivatives and friction forces follow from the tangent: stretches along which the nodes of the tables leave no doubt
+ * that flanks touch, or that they do not, and table by table over them. Without derivatives each piece is looked at.
+ */
+static void force_is_that_of_the_walk_piece_by_piece(void) {
+    uint64_t seed = UINT64_C(307);
+    int compared = 0;
+    for (int i = 0; i < 400; ++i) {
+        random_case c;
+        plain_mesh room;
+        gm_mesh *mesh;
+        gm_motion motion;
+        gm_test_context("case %d", i);
+        GM_ASSERT_INT(random_mixed_case_make(&c, &seed, i), GM_OK);
+        if (random_motion(&c, &seed, i, 0.02, SLIDING, &mesh, &room, &motion) == GM_OK) {
+            motion.pose_rate = (gm_pose){0.0, 0.0, 0.0, 0.0, 0.0};
+            compared += compare_walks(mesh, &motion);
+        }
+        random_case_free(&c);
+    }
+    GM_ASSERT(compared > 250);
+}
+
+/* Rough flanks that hardly touch, with many cells, some of them narrow, and face lines apart from each other. */
+static void rough_flanks_touch_where_pieces_say(void) {
+    enum { FACE = 25, PROFILE = 17, NODES = FACE * PROFILE };
+    static double memory[2][5 * NODES + 200], nodes[NODES];
+    const gm_pair pair = reference_pair(REFERENCE_FACE_WIDTH);
+    uint64_t seed = UINT64_C(308);
+    int compared = 0;
+    for (int i = 0; i < 200; ++i) {
+        gm_flanks *flanks[2];
+        for (int gear = GM_PINION; gear <= GM_WHEEL; ++gear) {
+            const int face = gm_test_integer(&seed, 2, i % 2 == 0 ? FACE : 5);
+            const int profile = gm_test_integer(&seed, 2, PROFILE);
+            const gm_flanks_params sizes = {
+                gear == GM_PINION ? pair.pinion.teeth : pair.wheel.teeth,
+                1,
+                face,
+                profile,
+                0,
+                0,
+                0};
+            for (int k = 0; k < NODES; ++k) {
+                nodes[k] = gm_test_uniform(&seed, -1e-6, 1e-6) * (k % 37 == 0 ? 12.0 : 1.0);
+            }
+            GM_ASSERT_INT(gm_flanks_init(&flanks[gear], &sizes, memory[gear], sizeof memory[gear]),
+                          GM_OK);
+            GM_ASSERT_INT(gm_flanks_set_table(flanks[gear], GM_DRIVE, GM_ALL_TEETH, nodes, 1.0),
+                          GM_OK);
+        }
+        plain_mesh room;
+        gm_mesh *mesh;
+        gm_mesh_params law;
+        gm_mesh_params_default(&law);
+        law.stiffness = 1e8;
+        law.friction_coefficient = 0.05;
+        gm_test_context("case %d", i);
+        GM_ASSERT_INT(gm_mesh_init(&mesh, &law, &pair, flanks[GM_PINION], flanks[GM_WHEEL],
+                                   room.memory, sizeof room.memory),
+                      GM_OK);
+        for (int k = 0; k < 10; ++k) {
+            gm_motion motion = {.pose = {.axial_shift = gm_test_uniform(&seed, -2e-3, 2e-3),
+                                         .skew = gm_test_uniform(&seed, -1e-4, 1e-4)}};
+            const double x = 0.5 * pair.backlash + gm_test_uniform(&seed, -4e-6, 6e-6) -
+                             pair.face_advance / pair.face_width * motion.pose.axial_shift;
+            (void)gm_position_from_pinion_angle(&pair, gm_test_uniform(&seed, 0.0, 6.0), x, 0.0,
+                                                &motion.position);
+            compared += compare_walks(mesh, &motion);
+        }
+    }
+    GM_ASSERT(compared > 1000);
+}
+
 /* The change of a cross product r x f by dr. */
 static void add_cross(const double r[3], const double f[3], double sum[3]) {
     for (int k = 0; k < 3; ++k) {
@@ -392,6 +489,8 @@ int main(int argc, char **argv) {
         GM_TEST(tangent_with_friction_is_that_of_differences),
         GM_TEST(tangent_with_corners_is_that_of_differences),
         GM_TEST(tangent_with_rubbing_corners_is_that_of_differences),
+        GM_TEST(force_is_that_of_the_walk_piece_by_piece),
+        GM_TEST(rough_flanks_touch_where_pieces_say),
         GM_TEST(forces_stay_in_balance_with_friction),
         GM_TEST(friction_ends_without_a_jump),
     };

@@ -239,8 +239,10 @@ static OWN_STACK void begin_tangent(gmi_corner_view *v, const gmi_corner_line *w
     memset(tangent, 0, sizeof *tangent);
     tangent->by[GMI_BY_DELTA][0] = 1.0;
     if (v->rates != NULL) {
-        gmi_tilt_tangent(mesh->pair, &mesh->engagement, v->side, whole->origin, v->lines.delta,
-                         v->rates, tangent);
+        gmi_tilt_motion motion;
+        gmi_tilt_motion_find(mesh->pair, &mesh->engagement, v->side, v->lines.delta, v->rates,
+                             &motion);
+        gmi_tilt_tangent(&motion, whole->origin, tangent);
         tangent->face_per_length = v->running[GM_WHEEL]->face_rate / mesh->pair->face_width;
     } else if (mesh->engagement.is_tilted) {
         tangent->by[GMI_BY_DELTA][0] = whole->gain;

@@ -213,6 +213,27 @@ static double second_difference(const double *node, size_t stride, int k, int co
     return k == 0 || k == count - 1 ? 0.0 : (node[stride] - *node) - (*node - *(node - stride));
 }
 
+/* The lowest and the highest node of the window of a node. */
+static gmi_bounds window_bounds(const gmi_tables *side, const double *node, int face, int profile) {
+    const ptrdiff_t row = (ptrdiff_t)side->profile_nodes * GMI_NODE_DOUBLES;
+    const int behind = side->profile_nodes - 1 - profile;
+    const int from = profile < GMI_WINDOW_PROFILE ? -profile : -GMI_WINDOW_PROFILE;
+    const int to = behind < GMI_WINDOW_PROFILE ? behind : GMI_WINDOW_PROFILE;
+    double lowest = *node, highest = *node;
+    for (int k = 0; k <= GMI_WINDOW_FACE && face + k < side->face_nodes; ++k) {
+        for (int l = from; l <= to; ++l) {
+            const double value = node[k * row + l * GMI_NODE_DOUBLES];
+            lowest = gmi_smaller(lowest, value);
+            highest = gmi_larger(highest, value);
+        }
+    }
+
+    /* Outwards by four units in the last place of a float, and by what is not 0. */
+    const gmi_bounds bounds = {(float)(lowest - (0x1p-22 * fabs(lowest) + 1e-30)),
+                               (float)(highest + (0x1p-22 * fabs(highest) + 1e-30))};
+    return bounds;
+}
+
 static void fill_table(const gmi_tables *side, double *table, const double *deviation,
                        double factor) {
     const size_t nodes = (size_t)side->face_nodes * (size_t)side->profile_nodes;
@@ -229,7 +250,8 @@ static void fill_table(const gmi_tables *side, double *table, const double *devi
             node[GMI_NODE_FACE] = second_difference(node, row, face, side->face_nodes);
             node[GMI_NODE_PROFILE] =
                 second_difference(node, GMI_NODE_DOUBLES, profile, side->profile_nodes);
-            node[3] = 0.0;
+            const gmi_bounds bounds = window_bounds(side, node, face, profile);
+            memcpy(node + GMI_NODE_BOUNDS, &bounds, sizeof bounds);
         }
     }
 }

@@ -237,8 +237,9 @@ enum gmi_wanted {
     GMI_ROLL = 8,                /* what a common roll of all lines does to the energy */
     GMI_CONTACT_DERIVATIVES = 4, /* of the touching part; only together with GMI_DERIVATIVES */
     GMI_TANGENT = 16,            /* all of gmi_side_tangent; only together with GMI_MOMENTS */
-    GMI_DEPTHS = 32, /* gmi_depths in place of the sums; only together with GMI_DERIVATIVES */
-    GMI_SQUARES = 64 /* the sum is that of the overlap squared (m2), and nothing else is there */
+    GMI_DEPTHS = 32,    /* gmi_depths in place of the sums; only together with GMI_DERIVATIVES */
+    GMI_SQUARES = 64,   /* the sum is that of the overlap squared (m2), and nothing else is there */
+    GMI_STRETCHES = 128 /* where the flanks touch along a line, in place of the sums */
 };
 
 /* The sums over all lines of one side. */
@@ -378,8 +379,23 @@ struct gm_flanks {
     gmi_tables side[2]; /* GM_DRIVE, GM_COAST */
 };
 
-/* Doubles per node of a table: value, second difference along t1, along t2, padding. */
-enum gmi_node { GMI_NODE_VALUE, GMI_NODE_FACE, GMI_NODE_PROFILE, GMI_NODE_DOUBLES = 4 };
+/* Doubles per node of a table: value, second difference along t1, along t2, and in place of one gmi_bounds. */
+enum gmi_node {
+    GMI_NODE_VALUE,
+    GMI_NODE_FACE,
+    GMI_NODE_PROFILE,
+    GMI_NODE_BOUNDS,
+    GMI_NODE_DOUBLES
+};
+
+/*
+ * Lowest and highest node of a window: from its own node on so many cells across the face, and so many to either side along
+ * the profile, as far as the table goes (m).
+ */
+enum { GMI_WINDOW_FACE = 2, GMI_WINDOW_PROFILE = 2 };
+typedef struct gmi_bounds {
+    float lowest, highest; /* rounded outwards by more than an evaluation rounds */
+} gmi_bounds;
 
 typedef struct gmi_flank {
     const double *values; /* [face_nodes][profile_nodes][4], NULL = no table */
@@ -477,12 +493,6 @@ typedef struct gmi_line_tangent {
     double contact_by[GMI_COORDINATES]
                      [3]; /* how the touching part moves, at the roots of f; and times t1^2 */
 
-    /* Of the part at hand. */
-    const struct gmi_line *line;
-    const gmi_grid *pinion, *wheel;
-    double t1_zero, per_place; /* t1 = t1_zero + per_place times the place in line.c */
-    double part_contact[4];
-    double part_slopes[3][2]; /* of the pinion's table by v2, the wheel's, the wheel's by v1 */
 } gmi_line_tangent;
 
 /*
@@ -563,8 +573,7 @@ typedef struct gmi_line_sum {
 
     double at_from; /* f itself at both ends (m) */
     double at_to;
-    gmi_line_tangent *tangent; /* that of the line */
-    gmi_depths *depths;        /* GMI_DEPTHS */
+    gmi_depths *depths; /* GMI_DEPTHS */
 } gmi_line_sum;
 
 /* What the tables add to d f / d coordinate, from the slopes of the pinion, of the wheel and of the wheel's face. */
@@ -698,9 +707,23 @@ static inline gmi_tilted_line gmi_tilt_of_line(const gmi_tilt *tilt, double rho_
 void gmi_tilt_line(const gm_pair *pair, const gmi_engagement *at, int side, double rho_origin,
                    gmi_tilted_line *line);
 
-/* What the polynomials of a tangent are. */
-void gmi_tilt_tangent(const gm_pair *pair, const gmi_engagement *at, int side, double rho_origin,
-                      double delta, const gmi_rates *rates, gmi_line_tangent *tangent);
+/* What the polynomials of the tangents of all lines of a side follow from. */
+typedef struct gmi_tilt_motion {
+    double tau, u,
+        u_per_t1;      /* u of the line with rho_p = 0 at t1 = 0, there and more per t1 (1, m) */
+    double per_length; /* 1 / T (1/m) */
+    double gain;       /* (1) */
+    double linear, square;                        /* of the overlap as a polynomial in u (1, 1/m) */
+    double along, across;                         /* the tilts (rad) */
+    double by_along, by_across, by_across_per_t1; /* by the tilts, what does not go with u (m) */
+    double speed, speed_by_arm;                   /* of approach (m/s, 1/s) */
+} gmi_tilt_motion;
+
+void gmi_tilt_motion_find(const gm_pair *pair, const gmi_engagement *at, int side, double delta,
+                          const gmi_rates *rates, gmi_tilt_motion *motion);
+
+/* Those of one line: by, arm and speed. */
+void gmi_tilt_tangent(const gmi_tilt_motion *motion, double rho_origin, gmi_line_tangent *tangent);
 
 /* d f / d delta of a side (1). */
 double gmi_tilt_gain(const gm_pair *pair, const gmi_engagement *at, int side);
@@ -1102,8 +1125,20 @@ void gmi_wrench_map_force(const gm_pair *pair, const gmi_engagement *at, int sid
                           gmi_wrench_map *map, gmi_wrench_map by[2]);
 void gmi_wrench_map_friction(const gm_pair *pair, const gmi_engagement *at, int side,
                              gmi_wrench_map *map, gmi_wrench_map by[2]);
-void gmi_wrench_map_add(const gmi_wrench_map *map, const double force[GMI_WEIGHTS],
-                        gm_wrench *wrench);
+static inline void gmi_wrench_map_add(const gmi_wrench_map *map, const double force[GMI_WEIGHTS],
+                                      gm_wrench *wrench) {
+    const double whole = force[GMI_WHOLE], by_t1 = force[GMI_BY_T1], by_rho = force[GMI_BY_RHO];
+    const double moved[3] = {map->by_t1[0] * by_t1 + map->by_rho[0] * by_rho,
+                             map->by_t1[1] * by_t1 + map->by_rho[1] * by_rho,
+                             map->by_rho[2] * by_rho};
+    for (int k = 0; k < 3; ++k) {
+        const double on_wheel = map->force[k] * whole;
+        wrench->wheel_force[k] += on_wheel;
+        wrench->wheel_moment[k] += map->wheel[k] * whole + moved[k];
+        wrench->pinion_force[k] -= on_wheel;
+        wrench->pinion_moment[k] -= map->pinion[k] * whole + moved[k];
+    }
+}
 
 /* From the frame in which the posed wheel's axis is on +x to that of the drawing: where that axis is there. */
 void gmi_wrench_turn(gm_wrench *wrench, const double axis[2]);

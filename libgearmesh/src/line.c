@@ -19,11 +19,12 @@
  * behind the end of the table instead of on it: that one step beyond reads zeros or the neighbouring row.
  */
 #include "internal.h"
+#include "stretch.h"
 
 #include <math.h>
+#include <string.h>
 
-#define NO_CROSSING 1e300    /* farther ahead than any place on a line */
-#define NOWHERE     (-1e300) /* place where flanks touch since, while they do not */
+#define NO_CROSSING 1e300 /* farther ahead than any place on a line */
 
 /* Spur gears: the line climbs by nothing that could be seen, and yet u follows from the crossing ahead. */
 #define LEAST_RATE     1e-30
@@ -101,15 +102,25 @@ void gmi_grid_hold(gmi_grid *grid) {
     }
 }
 
-/* Index of the cell that holds v, clamped into the table against rounding at its rim. */
-static inline int cell_of(double v, int last) {
-    const int cell = v > 0.0 ? (int)v : 0;
-    return cell < last ? cell : last;
-}
-
 static void begin_ideal(trace *path) {
     const trace ideal = {ideal_nodes, NO_CROSSING, NO_CROSSING, 0, 0.0, 0.0};
     *path = ideal;
+}
+
+/* Adds the deviation of a table to f at the place p, q of its cell. */
+SPECIALIZED void add_table(trace *path, const gmi_grid *grid, double p, double q, quadratic *f) {
+    const double *ahead = path->ahead, *behind = path->ahead - grid->step;
+
+    /* w = corner + along_face p + along_profile q + mixed p q with p, q in [0, 1] */
+    const double corner = behind[0];
+    const double along_face = behind[grid->row] - corner;
+    const double along_profile = ahead[0] - corner;
+    const double mixed = (ahead[grid->row] - behind[grid->row]) - along_profile;
+    path->slope = along_profile + mixed * p;
+    path->slope_rate = mixed * grid->face_ratio;
+    f->value += corner + along_face * p + path->slope * q;
+    f->half_slope += grid->face_kick * (along_face + mixed * q) + grid->profile_kick * path->slope;
+    f->curvature += grid->bend * mixed;
 }
 
 /*
@@ -119,22 +130,13 @@ static void begin_ideal(trace *path) {
 SPECIALIZED double begin(trace *path, const gmi_grid *grid, const double *table, double profile,
                          double t1, int face, double p, double s, quadratic *f) {
     const double u = grid->base + (grid->direction * profile + t1 * grid->climb);
-    const int cell = cell_of(u, grid->last_profile);
+    const int cell = gmi_cell_index(u, grid->last_profile);
     const double *behind = table + (face * grid->row + cell * grid->step + grid->corner);
     const double *ahead = behind + grid->step;
 
-    /* w = corner + along_face p + along_profile q + mixed p q with p, q in [0, 1] */
     const double q = u - (double)cell;
-    const double corner = behind[0];
-    const double along_face = behind[grid->row] - corner;
-    const double along_profile = ahead[0] - corner;
-    const double mixed = (ahead[grid->row] - behind[grid->row]) - along_profile;
     path->ahead = ahead;
-    path->slope = along_profile + mixed * p;
-    path->slope_rate = mixed * grid->face_ratio;
-    f->value += corner + along_face * p + path->slope * q;
-    f->half_slope += grid->face_kick * (along_face + mixed * q) + grid->profile_kick * path->slope;
-    f->curvature += grid->bend * mixed;
+    add_table(path, grid, p, q, f);
 
     /* The profile line ahead, and the place where the table ends. */
     path->next_profile = s + gmi_larger(1.0 - q, LEAST_DISTANCE) * grid->profile_spacing;
@@ -209,247 +211,17 @@ static inline void add_moments(const piece *part, double begin, double end, gmi_
     total->contact_t1 += s * length;
 }
 
-/* ---------------------------------------------------------------------------------------------
- * The tangent of a line: a walk finds stretches along which the flanks touch, and each table is followed along them
- * ------------------------------------------------------------------------------------------- */
-
-/*
- * What is found along a line with its tangent; places are counted from the first face line of the table that leads. Where a
- * piece ends the flanks touch if f is above 0 there, so that pieces along which f has one sign change nothing.
- */
-typedef struct tangent_walk {
-    double touching_from; /* where the flanks touch since, or NOWHERE */
-    double from_moves;    /* d place / d f there if that is a root of f, else 0 */
-} tangent_walk;
-
-/* Integrals over v1 of what is straight between its kinks; and times the distance from the end of the stretch. */
-typedef struct straight_sums {
-    double whole, by_distance;
-} straight_sums;
-
-/* Its integral over t1, and the first moment about t1 = 0, times a factor; to: t1 of the end. */
-static void add_over_t1(const gmi_grid *grid, double factor, double to, const straight_sums *sums,
-                        double integral[2]) {
-    const double per_rate = 1.0 / grid->face_rate;
-    const double whole = factor * per_rate * sums->whole;
-    integral[0] += whole;
-    integral[1] += to * whole - factor * per_rate * per_rate * sums->by_distance;
-}
-
-/* A point of a line in one table: its cell, the place in it, and the slopes there by u along the profile and by v1 across. */
-typedef struct table_point {
-    const double *node;
-    int face, cell;
-    double p, q;
-    double along, across, mixed; /* the last one: what both change by within the cell */
-} table_point;
-
-SPECIALIZED table_point point_at(const gmi_grid *grid, const double *table, double profile,
-                                 double t1) {
-    const double v1 = t1 * grid->face_rate + grid->face_base;
-    const double u = grid->base + (grid->direction * profile + t1 * grid->climb);
-    const ptrdiff_t row = grid->row, step = grid->step;
-    table_point at;
-    at.face = cell_of(v1, grid->last_face);
-    at.cell = cell_of(u, grid->last_profile);
-    at.node = table + (at.face * row + at.cell * step + grid->corner);
-    at.p = v1 - (double)at.face;
-    at.q = u - (double)at.cell;
-    const double across = at.node[row] - at.node[0];
-    at.mixed = (at.node[row + step] - at.node[step]) - across;
-    at.along = (at.node[step] - at.node[0]) + at.mixed * at.p;
-    at.across = across + at.mixed * at.q;
-    return at;
-}
-
-/*
- * Follows one table from t1 to t1, and its slopes by u along the profile and by v1 across the face. In a cell w is bilinear:
- * along the line both slopes are straight. At a profile line the one along has a step, at a face line the one across, and
- * at both the rate at which they change, what is mixed, has another one. A step J and a step K of the rate at the distance x
- * from the end add J x + K x^2 / 2 to the integral, and J x^2 / 2 + K x^3 / 6 to that times the distance: so does the
- * beginning. Of the second differences beside the nodes. has_face: a constant at each call.
- */
-SPECIALIZED void follow_slopes(const gmi_grid *grid, const table_point *at, double length,
-                               int has_face, straight_sums *along, straight_sums *across) {
-    const ptrdiff_t row = grid->row, step = grid->step;
-    const double rate = grid->rate, spacing = grid->profile_spacing;
-    int faces = grid->last_face - at->face, profiles = grid->last_profile - at->cell;
-
-    /* Sums of J x and J x^2 of both slopes, and of K x^2 and K x^3, which they share. */
-    double along_1 = at->along * length, along_2 = along_1 * length;
-    double across_1 = at->across * length, across_2 = across_1 * length;
-    double rates_2 = at->mixed * (length * length), rates_3 = rates_2 * length;
-
-    /* From face line to face line, and between them from profile line to profile line: how far each is from the end. */
-    const double *ahead = at->node + step;
-    double face_line = length - (1.0 - at->p);
-    double x = length - (1.0 - at->q) * spacing;
-    for (;;) {
-        const int is_last = !(face_line > 0.0) || faces <= 0;
-        const double stop = is_last ? 0.0 : face_line;
-        for (; x > stop && profiles > 0; --profiles) {
-            const double beyond = ahead[row + GMI_NODE_PROFILE];
-            const double change = beyond - ahead[GMI_NODE_PROFILE];
-            const double kink_x = (beyond - change * (x - face_line)) * x;
-            const double change_x2 = change * x * x;
-            along_1 += kink_x;
-            along_2 += kink_x * x;
-            rates_2 += change_x2;
-            rates_3 += change_x2 * x;
-            ahead += step;
-            x -= spacing;
-        }
-        if (is_last) {
-            break;
-        }
-
-        /* Across the face line, interpolated between the profile lines behind and ahead. */
-        ahead += row;
-        const double on_line = ahead[GMI_NODE_FACE];
-        const double back = ahead[GMI_NODE_FACE - step] - on_line;
-        const double back_x2 = back * face_line * face_line;
-        rates_2 -= back_x2;
-        rates_3 -= back_x2 * face_line;
-        if (has_face) {
-            const double kink_x = (on_line + (face_line - x) * rate * back) * face_line;
-            across_1 += kink_x;
-            across_2 += kink_x * face_line;
-        }
-        face_line -= 1.0;
-        faces -= 1;
-    }
-    along->whole = along_1 + 0.5 * rates_2;
-    along->by_distance = 0.5 * along_2 + (1.0 / 6.0) * rates_3;
-    across->whole = across_1 + rate * (0.5 * rates_2);
-    across->by_distance = 0.5 * across_2 + rate * ((1.0 / 6.0) * rates_3);
-}
-
-/* The polynomials with these in place of the powers of t1: only three of them are of second order. */
-static inline void sum_powers(const gmi_line_tangent *tangent, const double powers[3],
-                              double by[GMI_COORDINATES]) {
-    for (int k = 0; k < GMI_COORDINATES; ++k) {
-        by[k] = tangent->by[k][0] * powers[0] + tangent->by[k][1] * powers[1];
-    }
-    by[GMI_BY_LENGTH] += tangent->by[GMI_BY_LENGTH][2] * powers[2];
-    by[GMI_BY_ALONG] += tangent->by[GMI_BY_ALONG][2] * powers[2];
-    by[GMI_BY_ACROSS] += tangent->by[GMI_BY_ACROSS][2] * powers[2];
-}
-
-/* Where f passes zero the touching part moves by d f / |d f / d t1|; moves: d place / d f, 0 where there is no root. */
-static void add_tangent_root(double t1, double moves, const double slopes[3],
-                             gmi_line_tangent *tangent) {
-    if (!(moves > 0.0)) {
-        return;
-    }
-    moves *= tangent->per_place;
-    double by[GMI_COORDINATES];
-    const double powers_of_t1[3] = {1.0, t1, t1 * t1};
-    sum_powers(tangent, powers_of_t1, by);
-    gmi_line_add_slopes(tangent, slopes[0], slopes[1], slopes[2], by);
-    for (int k = 0; k < GMI_COORDINATES; ++k) {
-        const double moved = moves * by[k];
-        tangent->contact_by[k][0] += moved;
-        tangent->contact_by[k][1] += moved * t1;
-        tangent->contact_by[k][2] += moved * powers_of_t1[2];
-    }
-}
-
-/* A stretch of the line, from place to place, along which the flanks touch; d place / d f at roots of f, else 0. */
-static OWN_STACK void add_stretch(double from_place, double to_place, double from_moves,
-                                  double to_moves, gmi_line_tangent *tangent) {
-    const double from = tangent->t1_zero + from_place * tangent->per_place;
-    const double to = tangent->t1_zero + to_place * tangent->per_place;
-
-    /* Moments up to the third. */
-    const double length = (to_place - from_place) * tangent->per_place;
-    const double middle = tangent->t1_zero + 0.5 * (from_place + to_place) * tangent->per_place;
-    const double spread = length * length * (1.0 / 12.0);
-    tangent->part_contact[0] += length;
-    tangent->part_contact[1] += length * middle;
-    tangent->part_contact[2] += length * (middle * middle + spread);
-    tangent->part_contact[3] += length * middle * (middle * middle + 3.0 * spread);
-
-    /* The slopes of both tables, and what they are at roots. */
-    const gmi_line *line = tangent->line;
-    double at_from[3] = {0.0, 0.0, 0.0}, at_to[3] = {0.0, 0.0, 0.0};
-    straight_sums along, across;
-    if (line->pinion != NULL) {
-        const gmi_grid *grid = tangent->pinion;
-        const table_point at = point_at(grid, line->pinion, line->pinion_profile, from);
-        follow_slopes(grid, &at, length * grid->face_rate, 0, &along, &across);
-        add_over_t1(grid, grid->direction, to, &along, tangent->part_slopes[0]);
-        at_from[0] = grid->direction * at.along;
-        if (to_moves > 0.0) {
-            const table_point end = point_at(grid, line->pinion, line->pinion_profile, to);
-            at_to[0] = grid->direction * end.along;
-        }
-    }
-    if (line->wheel != NULL) {
-        const gmi_grid *grid = tangent->wheel;
-        const table_point at = point_at(grid, line->wheel, line->wheel_profile, from);
-        follow_slopes(grid, &at, length * grid->face_rate, 1, &along, &across);
-        add_over_t1(grid, grid->direction, to, &along, tangent->part_slopes[1]);
-        add_over_t1(grid, 1.0, to, &across, tangent->part_slopes[2]);
-        at_from[1] = grid->direction * at.along;
-        at_from[2] = at.across;
-        if (to_moves > 0.0) {
-            const table_point end = point_at(grid, line->wheel, line->wheel_profile, to);
-            at_to[1] = grid->direction * end.along;
-            at_to[2] = end.across;
-        }
-    }
-    add_tangent_root(from, from_moves, at_from, tangent);
-    add_tangent_root(to, to_moves, at_to, tangent);
-}
-
-static void begin_stretch(tangent_walk *walked, double place, double moves) {
-    walked->touching_from = place;
-    walked->from_moves = moves;
-}
-
-static void end_stretch(tangent_walk *walked, double place, double moves,
-                        gmi_line_tangent *tangent) {
-    if (walked->touching_from > NOWHERE) {
-        add_stretch(walked->touching_from, place, walked->from_moves, moves, tangent);
-        walked->touching_from = NOWHERE;
-    }
-}
-
 /* A part of a piece in which f > 0: it goes on with a stretch, or begins one, and may end it. */
 static void go_on_touching(const piece *part, double begin, double end, double moves,
-                           tangent_walk *walked, gmi_line_tangent *tangent) {
+                           gmi_stretches *found) {
     if (begin > 0.0) {
-        end_stretch(walked, part->s, 0.0, tangent);
-        begin_stretch(walked, part->s + begin, moves);
-    } else if (walked->touching_from == NOWHERE) {
-        begin_stretch(walked, part->s, 0.0);
+        gmi_stretches_end(found, part->s, 0.0);
+        gmi_stretches_begin(found, part->s + begin, moves);
+    } else if (found->since == GMI_NOWHERE) {
+        gmi_stretches_begin(found, part->s, 0.0);
     }
     if (end < part->length) {
-        end_stretch(walked, part->s + end, moves, tangent);
-    }
-}
-
-/* The integrals of a part become those of d f / d coordinate. */
-static void finish_tangent(gmi_line_tangent *tangent) {
-    /* Of 1 and of t1: what the polynomials give over the touching part, and the slopes of the flanks. */
-    for (int weight = 0; weight < 2; ++weight) {
-        const double *contact = &tangent->part_contact[weight];
-        double by[GMI_COORDINATES];
-        sum_powers(tangent, contact, by);
-        gmi_line_add_slopes(tangent, tangent->part_slopes[0][weight],
-                            tangent->part_slopes[1][weight], tangent->part_slopes[2][weight], by);
-        for (int k = 0; k < GMI_COORDINATES; ++k) {
-            tangent->sum_by[k][weight] += by[k];
-        }
-    }
-
-    /* The next part begins anew. */
-    for (int power = 0; power < 4; ++power) {
-        tangent->contact[power] += tangent->part_contact[power];
-        tangent->part_contact[power] = 0.0;
-    }
-    for (int k = 0; k < 3; ++k) {
-        tangent->part_slopes[k][0] = tangent->part_slopes[k][1] = 0.0;
+        gmi_stretches_end(found, part->s + end, moves);
     }
 }
 
@@ -496,8 +268,11 @@ static inline void add_root(const piece *part, double root, double per_slope, gm
     }
 }
 
-/* A piece in which f may change its sign: split at the roots of the quadratic. is_square: a constant at each call. */
-SPECIALIZED void split_piece(const piece *part, int wanted, int is_square, tangent_walk *walked,
+/*
+ * A piece in which f may change its sign: split at the roots of the quadratic. found: NULL = sums are wanted; is_square: a
+ * constant at each call.
+ */
+SPECIALIZED void split_piece(const piece *part, int wanted, int is_square, gmi_stretches *found,
                              gmi_line_sum *total) {
     const quadratic f = part->f;
     if (!(part->length > 0.0)) { /* two crossings at the same t1, up to rounding */
@@ -517,7 +292,7 @@ SPECIALIZED void split_piece(const piece *part, int wanted, int is_square, tange
         const double root_2 = gmi_smaller(gmi_larger(f.value / q, 0.0), part->length);
         cuts[1] = gmi_smaller(root_1, root_2);
         cuts[2] = gmi_larger(root_1, root_2);
-        if (wanted & GMI_CONTACT_DERIVATIVES || walked != NULL) {
+        if (wanted & GMI_CONTACT_DERIVATIVES || found != NULL) {
             per_slope = 0.5 / half_slope_at_root;
         }
         if (wanted & GMI_CONTACT_DERIVATIVES) {
@@ -533,11 +308,10 @@ SPECIALIZED void split_piece(const piece *part, int wanted, int is_square, tange
         if (cuts[k + 1] > cuts[k] && at_middle > 0.0) {
             if (is_square) {
                 add_touching_square(part, cuts[k], cuts[k + 1], total);
-                continue;
-            }
-            add_touching(part, cuts[k], cuts[k + 1], wanted, total);
-            if (walked != NULL) {
-                go_on_touching(part, cuts[k], cuts[k + 1], per_slope, walked, total->tangent);
+            } else if (found != NULL) {
+                go_on_touching(part, cuts[k], cuts[k + 1], per_slope, found);
+            } else {
+                add_touching(part, cuts[k], cuts[k + 1], wanted, total);
             }
         }
     }
@@ -551,15 +325,14 @@ static void add_split_squares(const piece *part, gmi_line_sum *total) {
     split_piece(part, GMI_SUM, 1, NULL, total);
 }
 
-/* The same with the stretches of a tangent; end_value: f at the end, where rounding may have put a root on either side. */
-static void add_split_tangent(const piece *part, double end_value, int wanted, tangent_walk *walked,
-                              gmi_line_sum *total) {
-    split_piece(part, wanted, 0, walked, total);
+/* Where the flanks touch in it; end_value: f at its end, where rounding may have put a root on either side. */
+static void find_in_piece(const piece *part, double end_value, gmi_stretches *found) {
+    split_piece(part, GMI_STRETCHES, 0, found, NULL);
     const double end = part->s + part->length;
     if (!(end_value > 0.0)) {
-        end_stretch(walked, end, 0.0, total->tangent);
-    } else if (walked->touching_from == NOWHERE) {
-        begin_stretch(walked, end, 0.0);
+        gmi_stretches_end(found, end, 0.0);
+    } else if (found->since == GMI_NOWHERE) {
+        gmi_stretches_begin(found, end, 0.0);
     }
 }
 
@@ -568,23 +341,19 @@ typedef struct walk_state {
     double s;
     quadratic f;
     trace first, second; /* through the tables of both flanks; the first one's face lines lead */
-    double faces;        /* face lines behind that one (GMI_MOMENTS without GMI_TANGENT) */
-    double three_sums;   /* three times the sum; of squares once */
+    double faces; /* face lines behind that one (GMI_MOMENTS), or the last one (GMI_STRETCHES) */
+    double three_sums; /* three times the sum; of squares once */
     double contact;
     double two_first, two_second; /* twice the sums of d deviation / d u of both flanks */
-
-    /* Sums over pieces of three_sums times both ends, and of the square of the length times the change of f (GMI_TANGENT). */
-    double six_moments, twelve_moments;
-    double two_faces; /* twice the face lines behind (GMI_TANGENT) */
 } walk_state;
 
 /* Where it is, counted from the first face line on. */
 SPECIALIZED double place_of(const walk_state *at, int wanted) {
-    return (wanted & GMI_TANGENT ? 0.5 * at->two_faces : at->faces) + at->s;
+    return (wanted & GMI_STRETCHES ? at->faces - (double)at->first.faces : at->faces) + at->s;
 }
 
 SPECIALIZED piece piece_ahead(const walk_state *at, double length, int wanted) {
-    const piece part = {wanted & GMI_MOMENTS ? place_of(at, wanted) : 0.0,
+    const piece part = {wanted & (GMI_MOMENTS | GMI_STRETCHES) ? place_of(at, wanted) : 0.0,
                         length,
                         at->f,
                         at->first.slope,
@@ -739,8 +508,8 @@ SPECIALIZED gmi_depth_end end_at(const walk_state *at, const gmi_grid *first,
     return end;
 }
 
-/* Integrates the piece up to `end` and goes there. walked: of a tangent. */
-SPECIALIZED void advance(walk_state *at, double end, int wanted, tangent_walk *walked,
+/* Integrates the piece up to `end` and goes there. found: GMI_STRETCHES. */
+SPECIALIZED void advance(walk_state *at, double end, int wanted, gmi_stretches *found,
                          gmi_line_sum *split) {
     /* A quadratic stays within the hull of its three Bezier points, and their mean is its own. */
     const double length = end - at->s;
@@ -763,28 +532,24 @@ SPECIALIZED void advance(walk_state *at, double end, int wanted, tangent_walk *w
                              {grows, 0.5 * (grows + grows_at_end), grows_at_end}};
         add_depths(&part, &points, split->depths);
     } else if (gmi_smaller(gmi_smaller(value, control), end_value) > 0.0) {
-        const double three = wanted & GMI_SQUARES
-                                 ? square_integral_of(value, control, end_value, length)
-                                 : length * (value + control + end_value);
-        at->three_sums += three;
-        if (!(wanted & GMI_TANGENT)) { /* whose stretches tell */
+        if (!(wanted & GMI_STRETCHES)) { /* which tell */
+            at->three_sums += wanted & GMI_SQUARES
+                                  ? square_integral_of(value, control, end_value, length)
+                                  : length * (value + control + end_value);
             at->contact += length;
         }
         if (wanted & GMI_DERIVATIVES) {
             at->two_first += length * (at->first.slope + first_slope);
             at->two_second += length * (at->second.slope + second_slope);
         }
-        if (wanted & GMI_TANGENT) { /* about the middle of the piece */
-            at->six_moments += three * (at->s + end + at->two_faces);
-            at->twelve_moments += length * length * (end_value - value);
-        } else if (wanted & GMI_MOMENTS) {
+        if (wanted & GMI_MOMENTS) {
             const piece part = piece_ahead(at, length, wanted);
             add_moments(&part, 0.0, length, split);
         }
     } else if (gmi_larger(gmi_larger(value, control), end_value) > 0.0) {
         const piece part = piece_ahead(at, length, wanted);
-        if (wanted & GMI_TANGENT) {
-            add_split_tangent(&part, end_value, wanted, walked, split);
+        if (wanted & GMI_STRETCHES) {
+            find_in_piece(&part, end_value, found);
         } else if (wanted & GMI_SQUARES) {
             add_split_squares(&part, split);
         } else {
@@ -807,7 +572,7 @@ SPECIALIZED void advance(walk_state *at, double end, int wanted, tangent_walk *w
  * face lines serve both. `wanted` and `same_faces` are constants at each call.
  */
 SPECIALIZED void walk_cell(walk_state *at, const gmi_grid *first, const gmi_grid *second,
-                           double end, int wanted, int same_faces, tangent_walk *walked,
+                           double end, int wanted, int same_faces, gmi_stretches *found,
                            gmi_line_sum *split) {
     for (;;) {
         const double face_line =
@@ -819,7 +584,7 @@ SPECIALIZED void walk_cell(walk_state *at, const gmi_grid *first, const gmi_grid
                 if (!(at->first.next_profile < face_line)) {
                     break;
                 }
-                advance(at, at->first.next_profile, wanted, walked, split);
+                advance(at, at->first.next_profile, wanted, found, split);
                 const trace before = at->first;
                 cross_profile(&at->first, first, at->s, wanted, &at->f);
                 if (wanted & GMI_DEPTHS) {
@@ -830,7 +595,7 @@ SPECIALIZED void walk_cell(walk_state *at, const gmi_grid *first, const gmi_grid
                 if (!(at->second.next_profile < face_line)) {
                     break;
                 }
-                advance(at, at->second.next_profile, wanted, walked, split);
+                advance(at, at->second.next_profile, wanted, found, split);
                 const double p =
                     same_faces ? at->s : 1.0 - (at->second.next_face - at->s) * second->face_ratio;
                 const trace before = at->second;
@@ -843,7 +608,7 @@ SPECIALIZED void walk_cell(walk_state *at, const gmi_grid *first, const gmi_grid
         }
 
         /* On to the face line of the second table, or to the end. */
-        advance(at, face_line, wanted, walked, split);
+        advance(at, face_line, wanted, found, split);
         if (same_faces || !(face_line < end)) {
             return;
         }
@@ -857,9 +622,7 @@ SPECIALIZED void walk_cell(walk_state *at, const gmi_grid *first, const gmi_grid
 SPECIALIZED void enter_next_cell(walk_state *at, const gmi_grid *first, const gmi_grid *second,
                                  int wanted, int same_faces) {
     at->s = 0.0;
-    if (wanted & GMI_TANGENT) {
-        at->two_faces += 2.0;
-    } else if (wanted & GMI_MOMENTS) {
+    if (wanted & GMI_MOMENTS) {
         at->faces += 1.0;
     }
 
@@ -882,18 +645,11 @@ SPECIALIZED void enter_next_cell(walk_state *at, const gmi_grid *first, const gm
  * "pinion" is the first flank.
  */
 SPECIALIZED void walk(walk_state at, const gmi_grid *first, const gmi_grid *second, double end,
-                      int wanted, int same_faces, tangent_walk *walked, gmi_line_sum *result) {
-    if (wanted & GMI_TANGENT) {
-        at.six_moments = at.twelve_moments = 0.0;
-        at.two_faces = 2.0 * at.faces;
-        if (at.f.value > 0.0) {
-            begin_stretch(walked, place_of(&at, wanted), 0.0);
-        }
-    }
+                      int wanted, int same_faces, gmi_line_sum *result) {
     const double end_in_last = end - (double)at.first.faces;
     for (;;) {
         const int is_last = at.first.faces <= 0;
-        walk_cell(&at, first, second, is_last ? end_in_last : 1.0, wanted, same_faces, walked,
+        walk_cell(&at, first, second, is_last ? end_in_last : 1.0, wanted, same_faces, NULL,
                   result);
         if (is_last) {
             break;
@@ -901,10 +657,6 @@ SPECIALIZED void walk(walk_state at, const gmi_grid *first, const gmi_grid *seco
         enter_next_cell(&at, first, second, wanted, same_faces);
     }
 
-    if (wanted & GMI_TANGENT) {
-        end_stretch(walked, place_of(&at, wanted), 0.0, result->tangent);
-        result->sum_t1 += (2.0 * at.six_moments + at.twelve_moments) * (1.0 / 12.0);
-    }
     const double per_rate = 1.0 / first->face_rate; /* from s to t1 */
     const double share = wanted & GMI_SQUARES ? 1.0 : 1.0 / 3.0;
     result->sum = per_rate * (result->sum + at.three_sums * share);
@@ -939,21 +691,12 @@ static void integrate_ideal(const gmi_line *line, int wanted, gmi_line_sum *resu
     if (line->half_slope != 0.0 || line->curvature != 0.0) {
         const quadratic f = {line->overlap, line->half_slope, line->curvature};
         const piece part = {line->from, length, f, 0.0, 0.0, 0.0, 0.0};
-        if (wanted & GMI_TANGENT) {
-            tangent_walk walked = {NOWHERE, 0.0};
-            add_split_tangent(&part, result->at_to, wanted, &walked, result);
-            end_stretch(&walked, line->to, 0.0, result->tangent);
-        } else {
-            add_split(&part, wanted, result);
-        }
+        add_split(&part, wanted, result);
     } else if (line->overlap > 0.0) {
         result->sum = line->overlap * length;
         result->contact = length;
         result->contact_t1 = 0.5 * length * (line->from + line->to);
         result->sum_t1 = line->overlap * result->contact_t1;
-        if (wanted & GMI_TANGENT) {
-            add_stretch(line->from, line->to, 0.0, 0.0, result->tangent);
-        }
     }
 }
 
@@ -961,29 +704,197 @@ static void integrate_ideal(const gmi_line *line, int wanted, gmi_line_sum *resu
 static OWN_STACK void walk_apart(walk_state at, const gmi_grid *first, const gmi_grid *second,
                                  double end, int wanted, gmi_line_sum *result) {
     if (wanted == GMI_SUM) {
-        walk(at, first, second, end, GMI_SUM, 0, NULL, result);
+        walk(at, first, second, end, GMI_SUM, 0, result);
     } else {
-        walk(at, first, second, end, wanted & ~(GMI_TANGENT | GMI_DEPTHS | GMI_SQUARES), 0, NULL,
+        walk(at, first, second, end, wanted & ~(GMI_STRETCHES | GMI_DEPTHS | GMI_SQUARES), 0,
              result);
     }
 }
 
-/* The walk of a tangent, apart from the others, which gcc then compiles as if it were not there. */
-static OWN_STACK void walk_tangent(const walk_state *at, const gmi_grid *first,
-                                   const gmi_grid *second, double end, int same_faces,
-                                   gmi_line_sum *result) {
-    enum { TANGENT = GMI_TANGENT | GMI_MOMENTS };
-    gmi_line_tangent *tangent = result->tangent;
-    tangent_walk walked = {NOWHERE, 0.0};
-    tangent->per_place = 1.0 / first->face_rate;
-    tangent->t1_zero = -first->face_base * tangent->per_place;
-    if (same_faces) {
-        walk(*at, first, second, end, TANGENT, 1, &walked, result);
-    } else {
-        walk(*at, first, second, end, TANGENT, 0, &walked, result);
+/* ---------------------------------------------------------------------------------------------
+ * Where the flanks touch
+ * ------------------------------------------------------------------------------------------- */
+
+/* How windows are used along a line. */
+typedef struct windows {
+    int most_faces, least_faces; /* still to cross: between these they are used */
+    quadratic parabola;          /* of f beside the tables, where the line begins */
+    double behind, ahead;        /* its values at both face lines (m) */
+    double rise, rise_more;      /* their next differences (m) */
+    double bow; /* by so much it leaves the straight line between them at most (m) */
+} windows;
+
+/* Places that rounding puts this far outside of a table are in it (cells). */
+#define ROUNDED_OUT 1e-12
+
+/* Face lines of the table that leads within `beyond` of its cells; 0 if that is no more than rounding. */
+static inline int faces_within(double beyond) {
+    return beyond > ROUNDED_OUT ? 1 + (int)beyond : 0;
+}
+
+/*
+ * A window holds what the line meets in one cell of the table that leads, if it climbs by no more than all columns but one.
+ * Beyond the rims of tables, where their last cells go on, no window knows. begin_out, end_out: how far the line is outside
+ * of a face (cells of the table that leads).
+ */
+SPECIALIZED windows windows_along(const walk_state *at, const gmi_grid *first,
+                                  const gmi_grid *second, double begin_out, double end_out,
+                                  const quadratic *parabola) {
+    windows used;
+    const double columns = (double)GMI_WINDOW_PROFILE + ROUNDED_OUT;
+    const double q_first = 1.0 - (at->first.next_profile - at->s) * first->rate;
+    const double q_second = 1.0 - (at->second.next_profile - at->s) * second->rate;
+    const int are_used = first->rate <= columns && second->rate <= columns &&
+                         second->face_ratio <= 1.0 + ROUNDED_OUT && q_first >= -ROUNDED_OUT &&
+                         q_second >= -ROUNDED_OUT;
+    used.most_faces = are_used ? at->first.faces - faces_within(begin_out) : -1;
+    used.least_faces = faces_within(end_out);
+    used.parabola = *parabola;
+
+    /* From the face line behind to the one ahead, and on by second differences. */
+    const double h = parabola->half_slope, c = parabola->curvature;
+    const double to_behind = -at->s, to_ahead = 1.0 - at->s;
+    used.behind = parabola->value + to_behind * (2.0 * h + to_behind * c);
+    used.ahead = parabola->value + to_ahead * (2.0 * h + to_ahead * c);
+    used.rise_more = 2.0 * c;
+    used.rise = used.ahead - used.behind + used.rise_more;
+    used.bow = 0.25 * fabs(c);
+    return used;
+}
+
+/* Lowest and highest node around the line up to the next face line of the table that leads. */
+SPECIALIZED gmi_bounds bounds_ahead(const trace *path) {
+    gmi_bounds bounds;
+    memcpy(&bounds, path->ahead + GMI_NODE_BOUNDS, sizeof bounds);
+    return bounds;
+}
+
+/* +1 or -1 where f has this sign for sure up to the next face line, else 0. */
+SPECIALIZED int sign_ahead(const walk_state *at, const windows *used) {
+    if (at->first.faces > used->most_faces || at->first.faces < used->least_faces) {
+        return 0;
     }
-    result->contact = tangent->part_contact[0];
-    result->contact_t1 = tangent->part_contact[1];
+    const gmi_bounds a = bounds_ahead(&at->first), b = bounds_ahead(&at->second);
+    const double lowest = gmi_smaller(used->behind, used->ahead) - used->bow;
+    const double highest = gmi_larger(used->behind, used->ahead) + used->bow;
+    if (lowest + (double)(a.lowest + b.lowest) > 0.0) {
+        return 1;
+    }
+    return highest + (double)(a.highest + b.highest) < 0.0 ? -1 : 0;
+}
+
+/* Leaves a cell of the table that leads out: on to its next face line. */
+SPECIALIZED void skip_profiles(trace *path, const gmi_grid *grid) {
+    if (path->next_profile < 1.0) {
+        const int lines = 1 + (int)((1.0 - path->next_profile) * grid->rate);
+        path->next_profile += (double)lines * grid->profile_spacing;
+        path->ahead += lines * grid->step;
+    }
+    path->next_profile -= 1.0;
+}
+
+SPECIALIZED void skip_cell(walk_state *at, const gmi_grid *first, const gmi_grid *second,
+                           int same_faces) {
+    skip_profiles(&at->first, first);
+    skip_profiles(&at->second, second);
+    at->s = 0.0;
+    at->first.ahead += first->row;
+    at->first.faces -= 1;
+    if (same_faces) {
+        at->second.ahead += second->row;
+        return;
+    }
+    if (at->second.faces > 0 && at->second.next_face < 1.0) {
+        at->second.ahead += second->row;
+        at->second.faces -= 1;
+        at->second.next_face += 1.0 / second->face_ratio;
+    }
+    at->second.next_face -= 1.0;
+}
+
+/* On a face line of the table that leads, behind cells left out: f there anew. */
+SPECIALIZED void enter_again(walk_state *at, const gmi_grid *first, const gmi_grid *second,
+                             double gone, const quadratic *parabola, int same_faces) {
+    const double half_slope = parabola->half_slope + gone * parabola->curvature;
+    at->f.value = parabola->value + gone * (parabola->half_slope + half_slope);
+    at->f.half_slope = half_slope;
+    at->f.curvature = parabola->curvature;
+    const double p = same_faces ? 0.0 : 1.0 - at->second.next_face * second->face_ratio;
+    add_table(&at->first, first, 0.0, 1.0 - at->first.next_profile * first->rate, &at->f);
+    add_table(&at->second, second, p, 1.0 - at->second.next_profile * second->rate, &at->f);
+}
+
+/* From here on the flanks touch, or do not. */
+static inline void settle(gmi_stretches *found, double place, int touches) {
+    if (!touches) {
+        gmi_stretches_end(found, place, 0.0);
+    } else if (found->since == GMI_NOWHERE) {
+        gmi_stretches_begin(found, place, 0.0);
+    }
+}
+
+/*
+ * Walks a line piece by piece, but for cells of the table that leads in which the nodes around it leave no doubt whether the
+ * flanks touch.
+ */
+SPECIALIZED void search(walk_state at, const gmi_grid *first, const gmi_grid *second, double end,
+                        windows used, int same_faces, gmi_stretches *found, gmi_line_sum *result) {
+    const double end_in_last = end - (double)at.first.faces;
+    const double from = place_of(&at, GMI_STRETCHES);
+    int is_entered = 1;
+    settle(found, from, at.f.value > 0.0);
+    result->at_to = 0.0;
+    for (;;) {
+        const int is_last = at.first.faces <= 0;
+        const int sign = sign_ahead(&at, &used);
+        if (sign != 0) {
+            settle(found, place_of(&at, GMI_STRETCHES), sign > 0);
+            is_entered = 0;
+            if (is_last) {
+                break;
+            }
+            skip_cell(&at, first, second, same_faces);
+        } else {
+            if (!is_entered) {
+                enter_again(&at, first, second, place_of(&at, GMI_STRETCHES) - from, &used.parabola,
+                            same_faces);
+                settle(found, place_of(&at, GMI_STRETCHES), at.f.value > 0.0);
+                is_entered = 1;
+            }
+            walk_cell(&at, first, second, is_last ? end_in_last : 1.0, GMI_STRETCHES, same_faces,
+                      found, NULL);
+            if (is_last) {
+                result->at_to = at.f.value;
+                break;
+            }
+            enter_next_cell(&at, first, second, GMI_STRETCHES, same_faces);
+        }
+        used.behind = used.ahead;
+        used.ahead += used.rise;
+        used.rise += used.rise_more;
+    }
+
+    /* To the end of the line. */
+    if (found->since > GMI_NOWHERE) {
+        const double place = at.faces + end_in_last;
+        gmi_stretches_end(found, place, 0.0);
+        if (!is_entered) {
+            result->at_to = gmi_stretches_value(found, found->t1_zero + place * found->per_place);
+        }
+    }
+}
+
+/* The walk that finds stretches, copied into what calls it: no other walk is there. */
+SPECIALIZED void search_line(const walk_state *at, const gmi_grid *first, const gmi_grid *second,
+                             double end, double begin_out, double end_out,
+                             const quadratic *parabola, int same_faces, gmi_stretches *found,
+                             gmi_line_sum *result) {
+    const windows used = windows_along(at, first, second, begin_out, end_out, parabola);
+    if (same_faces) {
+        search(*at, first, second, end, used, 1, found, result);
+    } else {
+        search(*at, first, second, end, used, 0, found, result);
+    }
 }
 
 /* The walk at all depths, apart like that of a tangent. */
@@ -992,9 +903,9 @@ static OWN_STACK void walk_depths(walk_state at, const gmi_grid *first, const gm
     enum { AT_DEPTHS = GMI_DEPTHS | GMI_DERIVATIVES };
     result->depths->from = end_at(&at, first, result->depths);
     if (same_faces) {
-        walk(at, first, second, end, AT_DEPTHS, 1, NULL, result);
+        walk(at, first, second, end, AT_DEPTHS, 1, result);
     } else {
-        walk(at, first, second, end, AT_DEPTHS, 0, NULL, result);
+        walk(at, first, second, end, AT_DEPTHS, 0, result);
     }
 }
 
@@ -1002,21 +913,22 @@ static OWN_STACK void walk_depths(walk_state at, const gmi_grid *first, const gm
 static OWN_STACK void walk_squares(walk_state at, const gmi_grid *first, const gmi_grid *second,
                                    double end, int same_faces, gmi_line_sum *result) {
     if (same_faces) {
-        walk(at, first, second, end, GMI_SQUARES, 1, NULL, result);
+        walk(at, first, second, end, GMI_SQUARES, 1, result);
     } else {
-        walk(at, first, second, end, GMI_SQUARES, 0, NULL, result);
+        walk(at, first, second, end, GMI_SQUARES, 0, result);
     }
 }
 
 /* What a walk is for, beside sums. */
-enum walk_kind { WALK_SUMS, WALK_TANGENT, WALK_DEPTHS, WALK_SQUARES };
+enum walk_kind { WALK_SUMS, WALK_STRETCHES, WALK_DEPTHS, WALK_SQUARES };
 
-/* The pinion, which leads, has a table; the wheel may have one. */
+/* The pinion, which leads, has a table; the wheel may have one. found: WALK_STRETCHES. */
 SPECIALIZED void walk_tables(const gmi_line *line, const gmi_grid *first, const gmi_grid *second,
-                             int wanted, enum walk_kind kind, gmi_line_sum *result) {
+                             int wanted, enum walk_kind kind, gmi_stretches *found,
+                             gmi_line_sum *result) {
     const double v1 = line->from * first->face_rate + first->face_base;
     const double to = line->to * first->face_rate + first->face_base;
-    const int face = cell_of(v1, first->last_face);
+    const int face = gmi_cell_index(v1, first->last_face);
     const double s = v1 - (double)face;
 
     int same_faces = 1;
@@ -1024,12 +936,14 @@ SPECIALIZED void walk_tables(const gmi_line *line, const gmi_grid *first, const 
     walk_state at; /* every field is set below; zeroing all first costs as much as ten pieces */
     at.s = s;
     at.faces = (double)face;
-    at.f = (quadratic){line->overlap, line->half_slope / first->face_rate,
-                       line->curvature / (first->face_rate * first->face_rate)};
+    const quadratic parabola = {line->overlap, line->half_slope / first->face_rate,
+                                line->curvature / (first->face_rate * first->face_rate)};
+    at.f = parabola;
+    double begin_out = -v1, end_out = to - (double)(first->last_face + 1); /* of the faces */
     at.three_sums = at.contact = at.two_first = at.two_second = 0.0;
 
     /* Into both tables. Face lines are shared, or those of the second one are counted in cells of the first. */
-    at.first.faces = cell_of(to, first->last_face) - face;
+    at.first.faces = gmi_cell_index(to, first->last_face) - face;
     double end =
         gmi_smaller(to - (double)face, begin(&at.first, first, line->pinion, line->pinion_profile,
                                              line->from, face, s, s, &at.f));
@@ -1048,14 +962,21 @@ SPECIALIZED void walk_tables(const gmi_line *line, const gmi_grid *first, const 
             second = &scaled;
         }
         const double second_v1 = line->from * second->face_rate + second->face_base;
-        const int second_face = cell_of(second_v1, second->last_face);
+        const int second_face = gmi_cell_index(second_v1, second->last_face);
         const double p = second_v1 - (double)second_face;
         at.second.faces =
-            cell_of(line->to * second->face_rate + second->face_base, second->last_face) -
+            gmi_cell_index(line->to * second->face_rate + second->face_base, second->last_face) -
             second_face;
         at.second.next_face = s + (1.0 - p) / second->face_ratio;
         end = gmi_smaller(end, begin(&at.second, second, line->wheel, line->wheel_profile,
                                      line->from, second_face, p, s, &at.f));
+        if (kind == WALK_STRETCHES) {
+            const double second_to = line->to * second->face_rate + second->face_base;
+            const double per_ratio = 1.0 / second->face_ratio;
+            begin_out = gmi_larger(begin_out, -second_v1 * per_ratio);
+            end_out =
+                gmi_larger(end_out, (second_to - (double)(second->last_face + 1)) * per_ratio);
+        }
     }
 
     result->at_from = at.f.value;
@@ -1065,8 +986,10 @@ SPECIALIZED void walk_tables(const gmi_line *line, const gmi_grid *first, const 
     if (kind != WALK_SUMS && same_faces) {
         at.second.next_face = NO_CROSSING;
     }
-    if (kind == WALK_TANGENT) {
-        walk_tangent(&at, first, second, end, same_faces, result);
+    if (kind == WALK_STRETCHES) {
+        at.faces += (double)at.first.faces;
+        search_line(&at, first, second, end, begin_out, end_out, &parabola, same_faces, found,
+                    result);
     } else if (kind == WALK_SQUARES) {
         walk_squares(at, first, second, end, same_faces, result);
     } else if (kind == WALK_DEPTHS) {
@@ -1074,15 +997,15 @@ SPECIALIZED void walk_tables(const gmi_line *line, const gmi_grid *first, const 
     } else if (!same_faces) {
         walk_apart(at, first, second, end, wanted, result);
     } else if (wanted == GMI_SUM) {
-        walk(at, first, second, end, GMI_SUM, 1, NULL, result);
+        walk(at, first, second, end, GMI_SUM, 1, result);
     } else if (wanted == GMI_DERIVATIVES) {
-        walk(at, first, second, end, GMI_DERIVATIVES, 1, NULL, result);
+        walk(at, first, second, end, GMI_DERIVATIVES, 1, result);
     } else if (wanted == DAMPED) {
-        walk(at, first, second, end, DAMPED, 1, NULL, result);
+        walk(at, first, second, end, DAMPED, 1, result);
     } else if (wanted == GMI_MOMENTS) {
-        walk(at, first, second, end, GMI_MOMENTS, 1, NULL, result);
+        walk(at, first, second, end, GMI_MOMENTS, 1, result);
     } else {
-        walk(at, first, second, end, wanted & ~(GMI_TANGENT | GMI_DEPTHS | GMI_SQUARES), 1, NULL,
+        walk(at, first, second, end, wanted & ~(GMI_STRETCHES | GMI_DEPTHS | GMI_SQUARES), 1,
              result);
     }
 }
@@ -1098,7 +1021,7 @@ static gmi_line led_by_wheel(const gmi_line *line) {
 
 static OWN_STACK void integrate_tables(const gmi_line *line, const gmi_grid *pinion,
                                        const gmi_grid *wheel, int wanted, gmi_line_sum *result) {
-    walk_tables(line, pinion, wheel, wanted, WALK_SUMS, result);
+    walk_tables(line, pinion, wheel, wanted, WALK_SUMS, NULL, result);
 }
 
 static OWN_STACK void integrate_wheel(const gmi_line *line, const gmi_grid *wheel, int wanted,
@@ -1115,26 +1038,55 @@ static OWN_STACK void integrate_wheel(const gmi_line *line, const gmi_grid *whee
     }
 }
 
+/* ---------------------------------------------------------------------------------------------
+ * Where the flanks touch
+ * ------------------------------------------------------------------------------------------- */
+
+/* No table on either flank: one piece at most. */
+static void find_ideal_stretches(const gmi_line *line, gmi_stretches *found, gmi_line_sum *result) {
+    const double length = line->to - line->from;
+    const quadratic f = {line->overlap, line->half_slope, line->curvature};
+    const piece whole = {line->from, length, f, 0.0, 0.0, 0.0, 0.0};
+    result->at_from = line->overlap;
+    result->at_to = line->overlap + length * (2.0 * line->half_slope + length * line->curvature);
+    if (line->half_slope != 0.0 || line->curvature != 0.0) {
+        find_in_piece(&whole, result->at_to, found);
+    } else if (line->overlap > 0.0) {
+        gmi_stretches_begin(found, line->from, 0.0);
+    }
+    gmi_stretches_end(found, line->to, 0.0);
+}
+
 void gmi_line_integrate_tangent(const gmi_line *line, const gmi_grid *pinion, const gmi_grid *wheel,
                                 gmi_line_sum *result) {
-    enum { TANGENT = GMI_TANGENT | GMI_MOMENTS };
-    gmi_line_tangent *tangent = line->tangent;
-    const int wheel_leads = line->pinion == NULL && line->wheel != NULL;
-    result->sum = result->contact = result->sum_t1 = result->contact_t1 = 0.0;
-    result->tangent = tangent;
-    tangent->line = line;
-    tangent->pinion = pinion;
-    tangent->wheel = wheel;
-    tangent->t1_zero = 0.0;
-    tangent->per_place = 1.0;
-    if (line->pinion == NULL && line->wheel == NULL) {
-        integrate_ideal(line, TANGENT, result);
+    gmi_stretches found = {.line = line,
+                           .pinion = pinion,
+                           .wheel = wheel,
+                           .per_place = 1.0,
+                           .since = GMI_NOWHERE,
+                           .tangent = line->tangent};
+    if (line->pinion != NULL || line->wheel != NULL) {
+        gmi_line led;
+        const gmi_line *leading = line;
+        const gmi_grid *first = pinion, *second = wheel;
+        if (line->pinion == NULL) {
+            led = led_by_wheel(line);
+            leading = &led;
+            first = wheel;
+            second = &ideal_grid;
+        }
+        found.per_place = 1.0 / first->face_rate;
+        found.t1_zero = -first->face_base * found.per_place;
+        walk_tables(leading, first, second, GMI_STRETCHES, WALK_STRETCHES, &found, result);
     } else {
-        const gmi_line led = wheel_leads ? led_by_wheel(line) : *line;
-        walk_tables(&led, wheel_leads ? wheel : pinion, wheel_leads ? &ideal_grid : wheel, TANGENT,
-                    WALK_TANGENT, result);
+        find_ideal_stretches(line, &found, result);
     }
-    finish_tangent(tangent);
+
+    result->sum = gmi_larger(found.sum, 0.0); /* below 0 by rounding where f is next to nothing */
+    result->contact = found.contact[0];
+    result->sum_t1 = found.sum_t1;
+    result->contact_t1 = found.contact[1];
+    gmi_stretches_finish(&found);
 }
 
 void gmi_line_integrate_squares(const gmi_line *line, const gmi_grid *pinion, const gmi_grid *wheel,
@@ -1148,7 +1100,7 @@ void gmi_line_integrate_squares(const gmi_line *line, const gmi_grid *pinion, co
     } else {
         const gmi_line led = wheel_leads ? led_by_wheel(line) : *line;
         walk_tables(&led, wheel_leads ? wheel : pinion, wheel_leads ? &ideal_grid : wheel,
-                    GMI_SQUARES, WALK_SQUARES, result);
+                    GMI_SQUARES, WALK_SQUARES, NULL, result);
     }
 }
 
@@ -1166,13 +1118,13 @@ void gmi_line_integrate_depths(const gmi_line *line, const gmi_grid *pinion, con
         depths->shift_second = line->wheel != NULL ? by_wheel : 0.0;
         depths->origin_first = by_pinion;
         depths->origin_second = -depths->shift_second;
-        walk_tables(line, pinion, wheel, GMI_DERIVATIVES, WALK_DEPTHS, result);
+        walk_tables(line, pinion, wheel, GMI_DERIVATIVES, WALK_DEPTHS, NULL, result);
     } else if (line->wheel != NULL) {
         depths->per_place = 1.0 / wheel->face_rate;
         depths->shift_first = by_wheel;
         depths->origin_first = -by_wheel;
         const gmi_line led = led_by_wheel(line);
-        walk_tables(&led, wheel, &ideal_grid, GMI_DERIVATIVES, WALK_DEPTHS, result);
+        walk_tables(&led, wheel, &ideal_grid, GMI_DERIVATIVES, WALK_DEPTHS, NULL, result);
     } else {
         const quadratic f = {line->overlap, 0.0, 0.0};
         const piece whole = {0.0, line->to - line->from, f, 0.0, 0.0, 0.0, 0.0};
@@ -1182,24 +1134,6 @@ void gmi_line_integrate_depths(const gmi_line *line, const gmi_grid *pinion, con
         add_depths(&whole, &points, depths);
         result->at_from = result->at_to = line->overlap;
     }
-}
-
-/* w of the cell that holds the place, bilinear. */
-static double deviation_at(const gmi_grid *grid, const double *table, double profile, double t1) {
-    const table_point at = point_at(grid, table, profile, t1);
-    return at.node[0] + (at.across - at.mixed * at.q) * at.p + at.along * at.q;
-}
-
-double gmi_line_value(const gmi_line *line, const gmi_grid *pinion, const gmi_grid *wheel,
-                      double t1) {
-    double value = line->overlap;
-    if (line->pinion != NULL) {
-        value += deviation_at(pinion, line->pinion, line->pinion_profile, t1);
-    }
-    if (line->wheel != NULL) {
-        value += deviation_at(wheel, line->wheel, line->wheel_profile, t1);
-    }
-    return value;
 }
 
 void gmi_line_integrate(const gmi_line *line, const gmi_grid *pinion, const gmi_grid *wheel,

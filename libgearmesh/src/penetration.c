@@ -233,16 +233,31 @@ static int tilt_line(side_view *view, double rho_origin, int wanted, gmi_line *l
  * How a side moves with all its coordinates
  * ------------------------------------------------------------------------------------------- */
 
-/* What is known of a line's tangent before it is followed. */
-static OWN_STACK void begin_tangent(const side_view *view, double rho_origin) {
+/* What the tangents of all lines have in common. */
+static OWN_STACK void begin_tangents(const side_view *view, gmi_tilt_motion *motion) {
     const gmi_side *prepared = view->prepared;
     gmi_line_tangent *line = &view->tangent->line;
-    memset(line, 0, sizeof *line);
-    gmi_tilt_tangent(view->pair, view->at, view->side, rho_origin, view->lines.delta,
-                     &view->tangent->rates, line);
     line->pinion_per_rho = prepared->pinion_grid.per_rho;
     line->wheel_per_rho = prepared->wheel_grid.per_rho;
     line->face_per_length = prepared->wheel_grid.face_rate / view->pair->face_width;
+    gmi_tilt_motion_find(view->pair, view->at, view->side, view->lines.delta, &view->tangent->rates,
+                         motion);
+}
+
+/* What is known of a line's tangent before it is followed. */
+static void begin_tangent(const side_view *view, const gmi_tilt_motion *motion, double rho_origin) {
+    gmi_line_tangent *line = &view->tangent->line;
+    memset(line->contact, 0, sizeof line->contact);
+    memset(line->sum_by, 0, sizeof line->sum_by);
+    memset(line->contact_by, 0, sizeof line->contact_by);
+    gmi_tilt_tangent(motion, rho_origin, line);
+}
+
+/* Of a part: with friction all else takes more stack, and what lines have in common is found anew. */
+static OWN_STACK void begin_part_tangent(const side_view *view, double rho_origin) {
+    gmi_tilt_motion motion;
+    begin_tangents(view, &motion);
+    begin_tangent(view, &motion, rho_origin);
 }
 
 /* An end at t1 that moves by one coordinate takes f there into the sum or out of it, and the touching part likewise. */
@@ -476,7 +491,7 @@ SPECIALIZED void add_line_in_parts(side_view *view, const gmi_line *line, double
         to = next_cut(view, rho_origin, from.t1, line->to);
         gmi_line part = gmi_line_between(line, from.t1, to.t1);
         if (wanted & GMI_TANGENT) {
-            begin_tangent(view, rho_origin);
+            begin_part_tangent(view, rho_origin);
             part.tangent = &view->tangent->line;
         }
         gmi_line_sum sum;
@@ -520,8 +535,10 @@ SPECIALIZED gmi_line line_between(const gm_pair *pair, const gmi_side *prepared,
     return line;
 }
 
-SPECIALIZED void add_line(side_view *view, const gmi_flank *pinion, const gmi_flank *wheel, int k,
-                          int wanted, int is_tilted, int slides, gmi_side_sum *side) {
+/* motion: of a tangent without friction. */
+SPECIALIZED void add_line(side_view *view, const gmi_tilt_motion *motion, const gmi_flank *pinion,
+                          const gmi_flank *wheel, int k, int wanted, int is_tilted, int slides,
+                          gmi_side_sum *side) {
     const gmi_interval part = gmi_line_clip(&view->ends, k);
     const gmi_side *prepared = view->prepared;
     if (!(part.from < part.to) && !is_tilted) {
@@ -543,7 +560,7 @@ SPECIALIZED void add_line(side_view *view, const gmi_flank *pinion, const gmi_fl
     }
 
     if (wanted & GMI_TANGENT) {
-        begin_tangent(view, rho_origin);
+        begin_tangent(view, motion, rho_origin);
         line.tangent = &view->tangent->line;
     }
 
@@ -614,6 +631,10 @@ SPECIALIZED void follow_lines(const gm_pair *pair, const gmi_engagement *at,
     if (is_tilted || wanted & GMI_TANGENT) {
         find_cuts(view);
     }
+    gmi_tilt_motion motion;
+    if (wanted & GMI_TANGENT && !slides) {
+        begin_tangents(view, &motion);
+    }
     view->wheel_reach = at->line_of_action + view->lines.delta - at->wheel_profile_start;
 
     /* Line by line, each with the teeth that meet on it; those that cannot reach each other are left out. */
@@ -623,7 +644,7 @@ SPECIALIZED void follow_lines(const gm_pair *pair, const gmi_engagement *at,
         const gmi_flank wheel = gmi_flank_of(prepared->wheel, teeth.wheel);
         const double reach = is_tilted ? prepared->tilt_bound : 0.0;
         if (view->lines.delta + pinion.peak + wheel.peak + reach > 0.0) {
-            add_line(view, &pinion, &wheel, k, wanted, is_tilted, slides, total);
+            add_line(view, &motion, &pinion, &wheel, k, wanted, is_tilted, slides, total);
         }
         teeth.pinion = gmi_next_tooth(teeth.pinion, teeth.step, pair->pinion.teeth);
         teeth.wheel = gmi_next_tooth(teeth.wheel, teeth.step, pair->wheel.teeth);

@@ -337,46 +337,63 @@ void gmi_tilt_line(const gm_pair *pair, const gmi_engagement *at, int side, doub
     *line = gmi_tilt_of_line(&tilt, rho_origin);
 }
 
-void gmi_tilt_tangent(const gm_pair *pair, const gmi_engagement *at, int side, double rho_origin,
-                      double delta, const gmi_rates *rates, gmi_line_tangent *tangent) {
-    const tilted line = tilted_of(pair, at, side, rho_origin);
+void gmi_tilt_motion_find(const gm_pair *pair, const gmi_engagement *at, int side, double delta,
+                          const gmi_rates *rates, gmi_tilt_motion *motion) {
+    const tilted line = tilted_of(pair, at, side, 0.0);
     const double a = line.a, g = line.g, tau = line.tau, r_bw = line.r_bw;
-    const double gain = 1.0 + tau * g;
-    const double u = line.u.at_zero, u1 = line.u.per_t1;
-    const double linear = -gain * g - 0.5 * a * a * tau;
-    const double square = -0.5 * a * a / line.length;
     const straight second = combined(line.rho_w, tau, line.zeta, 0.0);
+    motion->tau = tau;
+    motion->u = line.u.at_zero;
+    motion->u_per_t1 = line.u.per_t1;
+    motion->per_length = 1.0 / line.length;
+    motion->gain = 1.0 + tau * g;
+    motion->linear = -motion->gain * g - 0.5 * a * a * tau;
+    motion->square = -0.5 * a * a * motion->per_length;
+    motion->along = a;
+    motion->across = g;
+    motion->by_along = -motion->gain * tau * r_bw - 0.5 * g * r_bw;
+    motion->by_across = tau * delta - tau * tau * a * r_bw + g * second.at_zero - 0.5 * a * r_bw;
+    motion->by_across_per_t1 = g * second.per_t1;
+    motion->speed = rates->delta - tau * r_bw * rates->along;
+    motion->speed_by_arm = -rates->across;
+}
+
+void gmi_tilt_tangent(const gmi_tilt_motion *motion, double rho_origin, gmi_line_tangent *tangent) {
+    const double a = motion->along, g = motion->across, tau = motion->tau;
+    const double u = motion->u + tau * rho_origin, u1 = motion->u_per_t1;
+    const double squares[3] = {u * u, 2.0 * u * u1, u1 * u1};
 
     /* Of the overlap: by u, which the origin raises by tau, the length and the wheel's face lower by tau and by 1. */
-    const double by_u[2] = {linear + 2.0 * square * u, 2.0 * square * u1};
-    const double squares[3] = {u * u, 2.0 * u * u1, u1 * u1};
+    const double by_u[2] = {motion->linear + 2.0 * motion->square * u, 2.0 * motion->square * u1};
+    const double half_square = 0.5 * g * g;
     double(*by)[3] = tangent->by;
-    by[GMI_BY_ORIGIN][0] = tau * by_u[0] - 0.5 * g * g;
+    by[GMI_BY_ORIGIN][0] = tau * by_u[0] - half_square;
     by[GMI_BY_ORIGIN][1] = tau * by_u[1];
-    by[GMI_BY_DELTA][0] = gain;
+    by[GMI_BY_DELTA][0] = motion->gain;
+    by[GMI_BY_DELTA][1] = 0.0;
+    by[GMI_BY_AXIAL][0] = -by_u[0] - half_square * tau;
+    by[GMI_BY_AXIAL][1] = -by_u[1];
 
     /* By the length of the line of action. */
-    const double per_length = 1.0 / line.length;
-    const double curved = square * per_length;
-    by[GMI_BY_LENGTH][0] = 0.5 * g * g - tau * by_u[0] - curved * squares[0];
+    const double curved = motion->square * motion->per_length;
+    by[GMI_BY_LENGTH][0] = half_square - tau * by_u[0] - curved * squares[0];
     by[GMI_BY_LENGTH][1] = -tau * by_u[1] - curved * squares[1];
     by[GMI_BY_LENGTH][2] = -curved * squares[2];
 
-    /* By the tilts, and by the wheel's face. */
-    const double turned = a * per_length;
-    by[GMI_BY_ALONG][0] = -gain * tau * r_bw - 0.5 * g * r_bw - a * tau * u - turned * squares[0];
+    /* By the tilts. */
+    const double turned = a * motion->per_length;
+    by[GMI_BY_ALONG][0] = motion->by_along - a * tau * u - turned * squares[0];
     by[GMI_BY_ALONG][1] = -a * tau * u1 - turned * squares[1];
     by[GMI_BY_ALONG][2] = -turned * squares[2];
-    by[GMI_BY_ACROSS][0] = tau * delta - tau * (g * u + tau * a * r_bw) - gain * u +
-                           g * second.at_zero - 0.5 * a * r_bw;
-    by[GMI_BY_ACROSS][1] = -tau * g * u1 - gain * u1 + g * second.per_t1;
-    by[GMI_BY_AXIAL][0] = -by_u[0] - 0.5 * g * g * tau;
-    by[GMI_BY_AXIAL][1] = -by_u[1];
+    const double by_arm = -tau * g - motion->gain;
+    by[GMI_BY_ACROSS][0] = motion->by_across + by_arm * u - g * rho_origin;
+    by[GMI_BY_ACROSS][1] = motion->by_across_per_t1 + by_arm * u1;
+    by[GMI_BY_ACROSS][2] = 0.0;
 
     tangent->arm[0] = u;
     tangent->arm[1] = u1;
-    tangent->speed[0] = rates->delta - rates->across * u - tau * r_bw * rates->along;
-    tangent->speed[1] = -rates->across * u1;
+    tangent->speed[0] = motion->speed + motion->speed_by_arm * u;
+    tangent->speed[1] = motion->speed_by_arm * u1;
 }
 
 /* Of each term of the shift its largest on flanks and face, but for the term that is the same everywhere. */

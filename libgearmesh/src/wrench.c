@@ -92,21 +92,6 @@ void gmi_wrench_map_force(const gm_pair *pair, const gmi_engagement *at, int sid
     }
 }
 
-void gmi_wrench_map_add(const gmi_wrench_map *map, const double force[GMI_WEIGHTS],
-                        gm_wrench *wrench) {
-    const double whole = force[GMI_WHOLE], by_t1 = force[GMI_BY_T1], by_rho = force[GMI_BY_RHO];
-    const double moved[3] = {map->by_t1[0] * by_t1 + map->by_rho[0] * by_rho,
-                             map->by_t1[1] * by_t1 + map->by_rho[1] * by_rho,
-                             map->by_rho[2] * by_rho};
-    for (int k = 0; k < 3; ++k) {
-        const double on_wheel = map->force[k] * whole;
-        wrench->wheel_force[k] += on_wheel;
-        wrench->wheel_moment[k] += map->wheel[k] * whole + moved[k];
-        wrench->pinion_force[k] -= on_wheel;
-        wrench->pinion_moment[k] -= map->pinion[k] * whole + moved[k];
-    }
-}
-
 /*
  * What a tip corner changes: the force turns by Delta, away from the pinion's axis, to cos(Delta) e + sin(Delta) n, and acts
  * where the corner is. T sin(Delta) = r_b gap' - (r_bp + r_bw) (1 - cos(Delta)). With the wheel's tip the pinion's flank
