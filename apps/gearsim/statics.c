@@ -51,12 +51,19 @@ static int is_no_load(const config *conf, int index) {
     return fabs(load_of(conf, index)) <= 1e-12 * largest;
 }
 
-/* A period under one load: where the position before was in equilibrium, and how it goes on from there. */
-typedef struct sweep {
-    double load;   /* (N m) */
+/* Where a position was in equilibrium, and how it goes on from there. */
+typedef struct known_position {
     double angle;  /* (rad) */
     double offset; /* (m), NaN = not known yet */
     double slope;  /* its derivative by the pinion angle (m/rad) */
+} known_position;
+
+/* A period under one load: the last two positions, and which guess would have been the better one at the last. */
+typedef struct sweep {
+    double load; /* (N m) */
+    known_position last, before;
+    int bends; /* tables do; ideal flanks and elastic teeth begin as well along the slope */
+    int is_cubic;
 } sweep;
 
 /* What of an equilibrium is kept until its row is written. */
@@ -132,40 +139,57 @@ static int find_needed(static_results *results, unsigned needs, static_position 
     return status;
 }
 
-/* The equilibrium, from the position before. */
-static int find_position(const gear_mesh *gears, sweep *before, static_position *position) {
+/* What the cubic through both positions with their slopes is beyond the slope of the last one, by divided differences. */
+static double bend_of(const sweep *known, double on) {
+    const known_position *last = &known->last, *before = &known->before;
+    const double per_step = 1.0 / (last->angle - before->angle);
+    const double mean = (last->offset - before->offset) * per_step;
+    const double bend = (last->slope - mean) * per_step;
+    const double before_bend = (mean - before->slope) * per_step;
+
+    return on * on * (bend + (1.0 + on * per_step) * (bend - before_bend));
+}
+
+/* The equilibrium, from the positions before: close positions follow a cubic, others at best the slope. */
+static int find_position(const gear_mesh *gears, sweep *known, static_position *position) {
     const gm_pair *pair = &gears->pair;
     const double angle = position->pinion_angle;
-    const double guess = before->offset + before->slope * (angle - before->angle);
-    const int status =
-        gear_contact_equilibrium(gears, angle, position->conf->start_speed, before->load, guess,
-                                 &position->offset, &position->mesh);
+    const double on = angle - known->last.angle;
+    const double straight = known->last.offset + known->last.slope * on;
+    const double cubic = known->bends ? straight + bend_of(known, on) : straight;
+    const int status = gear_contact_equilibrium(gears, angle, position->conf->start_speed,
+                                                known->load, known->is_cubic ? cubic : straight,
+                                                &position->offset, &position->mesh);
 
     /* Along the curve of constant torque, for the guess at the next position. */
-    before->angle = angle;
-    before->offset = position->offset;
-    before->slope = pair->pinion.base_radius + pair->wheel.base_radius *
-                                                   position->mesh.wheel_torque_by.pinion_angle /
-                                                   position->mesh.wheel_torque_by.wheel_angle;
+    if (known->bends) {
+        known->is_cubic = fabs(position->offset - cubic) < fabs(position->offset - straight);
+        known->before = known->last;
+    }
+    known->last.angle = angle;
+    known->last.offset = position->offset;
+    known->last.slope = pair->pinion.base_radius + pair->wheel.base_radius *
+                                                       position->mesh.wheel_torque_by.pinion_angle /
+                                                       position->mesh.wheel_torque_by.wheel_angle;
     return status;
 }
 
 /* state: what has been found there; NULL = nothing yet. */
 static int write_position(const config *conf, const gear_mesh *gears, double angle,
-                          const found_state *state, sweep *before, static_results *results,
+                          const found_state *state, sweep *known, static_results *results,
                           int *status) {
     /* The pressure of elastic teeth is looked at under each load at least once. */
-    const int is_first = isnan(before->offset) && conf->law == LAW_ELASTIC;
+    const int is_first = isnan(known->last.offset) && conf->law == LAW_ELASTIC;
     const unsigned needs = results->needs | (is_first ? 1u << TAKES_FACES : 0);
     static_position position = {
-        .conf = conf, .gears = gears, .pinion_angle = angle, .load = before->load};
+        .conf = conf, .gears = gears, .pinion_angle = angle, .load = known->load};
 
     if (state != NULL && !isnan(state->offset)) {
         position.offset = state->offset;
         position.mesh.contact = state->contact;
         position.mesh.loss = state->loss;
     } else {
-        *status = find_position(gears, before, &position);
+        *status = find_position(gears, known, &position);
         if (*status != GM_OK) {
             return EXIT_RUN_FAILED;
         }
@@ -180,7 +204,7 @@ static int write_position(const config *conf, const gear_mesh *gears, double ang
     for (int i = 0; i < results->columns; ++i) {
         values[results->place[i]] = static_columns[results->column[i]].value(&position);
     }
-    if (load_file_rows(results->distribution, angle, before->load, results->points,
+    if (load_file_rows(results->distribution, angle, known->load, results->points,
                        position.faces.points) != 0) {
         return EXIT_RUN_FAILED;
     }
@@ -306,7 +330,9 @@ static const found_state *states_under(load_block *block, const config *conf,
 /* The period under one load; 0, or an exit code and the file is closed. */
 static int write_period(const config *conf, const gear_mesh *gears, double load,
                         const found_state *states, static_results *results) {
-    sweep before = {load, 0.0, (double)NAN, 0.0};
+    const known_position none = {0.0, (double)NAN, 0.0};
+    const int bends = conf->law != LAW_ELASTIC && !gear_contact_is_ideal(gears);
+    sweep known = {load, none, none, bends, 0};
 
     for (int position = 0; position < conf->positions; ++position) {
         const double angle = pinion_angle(conf, &gears->pair, position);
@@ -316,7 +342,7 @@ static int write_period(const config *conf, const gear_mesh *gears, double load,
             return interrupted(conf, results, load, angle);
         }
         const found_state *state = states != NULL ? &states[position] : NULL;
-        if (write_position(conf, gears, angle, state, &before, results, &status) != 0) {
+        if (write_position(conf, gears, angle, state, &known, results, &status) != 0) {
             return fail(conf, results, load, angle, status);
         }
     }
