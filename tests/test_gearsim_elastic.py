@@ -280,11 +280,12 @@ class Elastic(unittest.TestCase):
         gears = SPUR["gears"] | {"pinion_teeth": 32, "wheel_teeth": 77, "helix_angle_deg": 34, "face_width_mm": 120,
                                  "center_distance_mm": 218 / math.cos(math.radians(34))}
         wide = {"gears": gears, "load": {"mean_Nm": 200 * 120 * 0.18}, "analysis": {"type": "static", "positions": 20}}
-        told = r"run.ini: mesh.stations: note: 17 stations leave some ([\d.]+) % .*; (\d+) leave 0.4"
+        told = r"run.ini:\d+: mesh.stations: note: 17 stations leave some ([\d.]+) % .*; (\d+) leave 0.4"
         for mesh in ({}, OFF):
             error, stderr = {}, {}
-            for stations in (17, None, 97):
-                settings = {} if stations == 17 else {"stations": stations or int(re.search(told, stderr[17])[2])}
+            for stations in (17, "told", None, 97):
+                settings = {"stations": int(re.search(told, stderr[17])[2]) if stations == "told" else stations}
+                settings = {} if stations is None else settings
                 self.write(wide | {"mesh": mesh | settings})
                 result = subprocess.run([GEARSIM, "run.ini"], cwd=self.folder, capture_output=True, text=True, check=False)
                 self.assertEqual(result.returncode, 0, result.stderr)
@@ -294,6 +295,10 @@ class Elastic(unittest.TestCase):
             estimate = float(re.search(told, stderr[17])[1]) / 100
             self.assertTrue(0.4 * estimate < left[17] < 1.2 * estimate, (left, estimate))
             self.assertLess(left[None], 0.0045)
+
+            # Those that are told are also those taken where none are given.
+            self.assertEqual(error[None], error["told"])
+            self.assertNotIn("stations", stderr[None])
         for quiet in (NREL | {"mesh": {}}, SPUR | {"mesh": {}}, NREL):
             self.write(quiet)
             result = subprocess.run([GEARSIM, "run.ini"], cwd=self.folder, capture_output=True, text=True, check=False)

@@ -97,7 +97,7 @@ typedef struct config {
     double roughness;            /* Ra, m */
     enum corner_contact corner_contact;
     double tip_rounding; /* radius in modules */
-    int stations;        /* of elastic teeth along the face */
+    int stations;        /* of elastic teeth along the face; 0 = as the pair wants */
 
     gm_pose pose; /* of the wheel against the drawing */
 

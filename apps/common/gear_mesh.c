@@ -67,6 +67,33 @@ static int refuse_pose(const config *conf, const gm_pair *pair) {
     return EXIT_BAD_INPUT;
 }
 
+/*
+ * Teeth bend along the face over the length l of their layer, from where a line of contact ends in the path: elements that
+ * are long against it, on lines that are short, leave an error of the transmission error. On random pairs it was some
+ * 0.04 h^2 / (l s), h the length of an element, s that of a line across the path, along the face; elastic.md. This times the
+ * square of the number of elements.
+ */
+static double error_of_one_element(const gm_pair *pair) {
+    const double decay = 1.45 * pair->normal_module * cos(pair->helix_angle);
+    const double path = pair->path_end - pair->path_start;
+    return 0.04 * pair->face_width * fabs(pair->face_advance) / (decay * path);
+}
+
+/* As many as leave 0.4 %, as the estimate scatters. */
+static double stations_wanted(const gm_pair *pair) {
+    return ceil(sqrt(error_of_one_element(pair) / 0.003)) + 1;
+}
+
+/* Those given, or as many as the pair wants: usual gears 17, wide ones of large helix angle up to 49. */
+static int stations_of(const config *conf, const gm_pair *pair) {
+    enum { USUAL = 17, MOST = 49 };
+    if (conf->stations > 0) {
+        return conf->stations;
+    }
+    const double wanted = conf->law == LAW_ELASTIC ? stations_wanted(pair) : USUAL;
+    return wanted > USUAL ? (int)fmin(wanted, MOST) : USUAL; /* NaN: usual */
+}
+
 static gm_mesh_params params_of(const config *conf, const gear_mesh *mesh) {
     static const int laws[] = {[LAW_CONSTANT] = GM_LAW_CONSTANT,
                                [LAW_ISO6336] = GM_LAW_ISO6336,
@@ -92,7 +119,7 @@ static gm_mesh_params params_of(const config *conf, const gear_mesh *mesh) {
     params.wheel_bore_radius = conf->wheel_bore_radius;
     params.pinion_tooth_stiffness = mesh->tooth_stiffness[GM_PINION];
     params.wheel_tooth_stiffness = mesh->tooth_stiffness[GM_WHEEL];
-    params.stations = conf->stations;
+    params.stations = stations_of(conf, &mesh->pair);
     params.corner_contact = conf->model == MODEL_3D && conf->corner_contact == CORNER_CONTACT_ON
                                 ? GM_CORNER_ON
                                 : GM_CORNER_OFF;
@@ -311,27 +338,18 @@ static int join_halves(gear_mesh *mesh, const config *conf) {
     return 0;
 }
 
-/*
- * Teeth bend along the face over the length l of their layer, from where a line of contact ends in the path: elements that
- * are long against it, on lines that are short, leave an error of the transmission error. On random pairs it was some
- * 0.04 h^2 / (l s), h the length of an element, s that of a line across the path, along the face; elastic.md.
- */
 static void remark_few_stations(const config *conf, const gear_mesh *mesh) {
     const gm_pair *pair = &mesh->pair;
-    const double elements = conf->stations - 1;
-    const double decay = 1.45 * pair->normal_module * cos(pair->helix_angle);
-    const double path = pair->path_end - pair->path_start;
-    const double each = 0.04 * pair->face_width * fabs(pair->face_advance) / (decay * path);
-    const double error = each / (elements * elements);
+    const int stations = stations_of(conf, pair);
+    const double elements = stations - 1;
+    const double error = error_of_one_element(pair) / (elements * elements);
 
     if (error > 0.006) { /* not where NaN */
-        const double wanted = fmin(97, ceil(sqrt(each / 0.004)) + 1);
-
         config_remark(
             conf, "mesh.stations",
             "%d stations leave some %.1f %% in the transmission error, as they are far apart "
             "on short lines of contact; %.0f leave 0.4",
-            conf->stations, 100 * error, wanted);
+            stations, 100 * error, fmin(97, stations_wanted(pair)));
     }
 }
 
