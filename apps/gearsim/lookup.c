@@ -219,10 +219,13 @@ lookup_choice lookup_choose(const config *conf, const gear_mesh *gears) {
         return choice;
     }
 
-    /* The coarsest that will do. */
-    const int coarsest = coarsest_of(conf);
+    /* The coarsest that will do: elastic teeth that are all alike hardly vibrate, which asks for a finer one. */
+    int coarsest = coarsest_of(conf);
     choice.params = params_of(conf, gears, coarsest);
     const double all = combinations(&choice.params, gears);
+    if (conf->law == LAW_ELASTIC && all == 1.0) {
+        choice.params = params_of(conf, gears, ++coarsest);
+    }
     if (all == 0.0) {
         choice.is_used = conf->lookup == LOOKUP_ON;
         return choice;
