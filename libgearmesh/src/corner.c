@@ -217,6 +217,23 @@ void gmi_corner_at(const gmi_corner *corner, double roll, gmi_corner_place *plac
         (corner->line_of_action * found.cosine + (corner->mate_base + r_g) * found.sine);
 }
 
+OWN_STACK void gmi_corner_joint_at(const gmi_corner *corner, double roll, gmi_corner_joint *found) {
+    gmi_corner_place place;
+    gmi_corner_at(corner, roll, &place);
+    found->gap = place.gap;
+    found->slope = place.by_roll;
+    found->versine = place.versine;
+    found->across = place.across;
+    found->along = place.along;
+    found->gain = place.gain;
+    found->versine_by_roll = place.versine_by_roll;
+    found->versine_by_length = place.versine_by_length;
+    found->gain_by_roll = place.gain_by_roll;
+    found->gain_by_length = place.gain_by_length;
+    found->across_by_roll = place.across_by_roll;
+    found->along_by_roll = place.along_by_roll;
+}
+
 /* The gap is convex: from beyond, Newton's method comes closer from the same side. */
 double gmi_corner_touch(const gmi_corner *corner, double overlap) {
     gmi_corner_place place;

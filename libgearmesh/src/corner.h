@@ -49,6 +49,17 @@ void gmi_corner_at(const gmi_corner *corner, double roll, gmi_corner_place *plac
 void gmi_corner_gaps(const gmi_corner *corner, int count, const double *roll, double *gap,
                      double *by_roll, double *by_roll_twice);
 
+/* What lines that go on there need of it, at one roll. */
+typedef struct gmi_corner_joint {
+    double gap, slope;
+    double versine, across, along, gain;
+    double versine_by_roll, versine_by_length;
+    double gain_by_roll, gain_by_length;
+    double across_by_roll, along_by_roll; /* of spur gears */
+} gmi_corner_joint;
+
+void gmi_corner_joint_at(const gmi_corner *corner, double roll, gmi_corner_joint *found);
+
 /*
  * The force of the parts of all lines of a side that are beyond the tip of one gear, in the transverse section, with
  * weights; of the stiffness and of damping.

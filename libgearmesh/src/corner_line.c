@@ -51,23 +51,6 @@ static double next_joint(const gmi_corner *corner, double roll, int climbs) {
     return (ceil(roll / width - JOINT_ROUNDING) - 1.0) * width;
 }
 
-static void find_joint(const gmi_corner *corner, double roll, gmi_corner_joint *found) {
-    gmi_corner_place place;
-    gmi_corner_at(corner, roll, &place);
-    found->gap = place.gap;
-    found->slope = place.by_roll;
-    found->versine = place.versine;
-    found->across = place.across;
-    found->along = place.along;
-    found->gain = place.gain;
-    found->versine_by_roll = place.versine_by_roll;
-    found->versine_by_length = place.versine_by_length;
-    found->gain_by_roll = place.gain_by_roll;
-    found->gain_by_length = place.gain_by_length;
-    found->across_by_roll = place.across_by_roll;
-    found->along_by_roll = place.along_by_roll;
-}
-
 /* Both parabolas between two joints meet halfway with the same slope: gap and slope at both ends say which. */
 static OWN_STACK void find_parabola(const gmi_corner *corner, double roll,
                                     gmi_corner_parabola *found) {
@@ -81,12 +64,12 @@ static OWN_STACK void find_parabola(const gmi_corner *corner, double roll,
         if (is_known && from == found->pair_to) {
             found->begins = ends;
         } else {
-            find_joint(corner, from, &found->begins);
+            gmi_corner_joint_at(corner, from, &found->begins);
         }
         if (is_known && to == found->pair_from) {
             found->ends = begins;
         } else {
-            find_joint(corner, to, &found->ends);
+            gmi_corner_joint_at(corner, to, &found->ends);
         }
         found->pair_from = from;
         found->pair_to = to;
@@ -116,7 +99,7 @@ static OWN_STACK void find_point(const gmi_corner *corner, double roll,
     }
     gmi_corner_place place;
     gmi_corner_at(corner, roll, &place);
-    find_joint(corner, roll, &found->begins);
+    gmi_corner_joint_at(corner, roll, &found->begins);
     found->ends = found->begins;
     found->from = found->pair_from = found->pair_to = roll;
     found->gap = place.gap;
@@ -349,10 +332,11 @@ static gmi_part_force force_with_moments(const gmi_corner_view *v, const gmi_cor
     const double origin = whole->origin;
 
     /* rho_p = origin + advance t1: the moment grows by the force as the origin moves. */
-    double moment_by[2] = {load->whole, 0.0}, touching_by[2] = {0.0, 0.0};
+    double moment_by[2] = {load->whole, 0.0}, touching_by[2][2] = {{0.0, 0.0}, {0.0, 0.0}};
     for (int k = GMI_BY_ORIGIN; k <= GMI_BY_DELTA && v->wanted & GMI_DERIVATIVES; ++k) {
         moment_by[k] += origin * load->whole_by[k] + advance * load->by_t1_by[k];
-        touching_by[k] = v->tangent->contact_by[k][0];
+        touching_by[0][k] = v->tangent->contact_by[k][0];
+        touching_by[1][k] = v->tangent->contact_by[k][1];
     }
 
     /* By angles and speeds. */
@@ -362,62 +346,81 @@ static gmi_part_force force_with_moments(const gmi_corner_view *v, const gmi_cor
         .moment = gmi_varying_of(pair, side, origin * load->whole + advance * load->by_t1,
                                  moment_by[GMI_BY_ORIGIN], moment_by[GMI_BY_DELTA],
                                  damping * (origin * sum->contact + advance * sum->contact_t1)),
-        .contact = gmi_varying_of(pair, side, sum->contact, touching_by[GMI_BY_ORIGIN],
-                                  touching_by[GMI_BY_DELTA], 0.0),
+        .contact = gmi_varying_of(pair, side, sum->contact, touching_by[0][GMI_BY_ORIGIN],
+                                  touching_by[0][GMI_BY_DELTA], 0.0),
         .force_t1 = gmi_varying_of(pair, side, load->by_t1, load->by_t1_by[GMI_BY_ORIGIN],
-                                   load->by_t1_by[GMI_BY_DELTA], damping * sum->contact_t1)};
+                                   load->by_t1_by[GMI_BY_DELTA], damping * sum->contact_t1),
+        .contact_t1 = gmi_varying_of(pair, side, sum->contact_t1, touching_by[1][GMI_BY_ORIGIN],
+                                     touching_by[1][GMI_BY_DELTA], 0.0)};
     return result;
 }
 
-/* A function of the roll beyond a tip, at one that moves. */
-static gmi_varying follow(double value, double by_roll, const gmi_varying *roll) {
-    gmi_varying result = {.value = value};
+/* The middle of the load of a part beyond a tip: its roll, and the mean square of how far the load is from it. */
+typedef struct tip_middle {
+    gmi_varying roll, square;
+    double per_t1; /* of the roll (m) */
+} tip_middle;
+
+/* The load is even or straight over what touches, C: so far as friction knows, its mean square is C^2/12 - apart^2. */
+static tip_middle middle_of(const gmi_corner_view *v, const gmi_beyond *beyond,
+                            const gmi_part_force *part) {
+    const double t1 = part->force_t1.value / part->force.value;
+    const double contact = part->contact.value, touching = part->contact_t1.value / contact;
+    const double apart = touching - t1, per_t1 = beyond->per_t1;
+    tip_middle middle = {
+        .roll = gmi_varying_of(v->mesh->pair, v->side, gmi_corner_roll_at(beyond, t1),
+                               beyond->by_origin, beyond->by_delta, 0.0),
+        .square = {.value = per_t1 * per_t1 * (contact * contact / 12.0 - apart * apart)},
+        .per_t1 = per_t1};
     for (int k = 0; k < GMI_MOTIONS; ++k) {
-        result.by[k] = by_roll * roll->by[k];
+        const double contact_by = part->contact.by[k];
+        const double t1_by = (part->force_t1.by[k] - t1 * part->force.by[k]) / part->force.value;
+        const double apart_by = (part->contact_t1.by[k] - touching * contact_by) / contact - t1_by;
+        middle.roll.by[k] += per_t1 * t1_by;
+        middle.square.by[k] =
+            per_t1 * per_t1 * (contact * contact_by / 6.0 - 2.0 * apart * apart_by);
     }
-    return result;
+    return middle;
 }
 
-/* Where the middle of the load of a part is off the line of action: as in add_tip_load(), with derivatives. */
-static gmi_tip_place tip_place_of(const gmi_corner_view *v, const gmi_beyond *beyond, int role,
-                                  const gmi_corner_parabola *gap, const gmi_part_force *part) {
+/* Over the load: the mean of what changes with the roll, and how it changes along the part. */
+static void follow(const gmi_bend *bend, const tip_middle *middle, gmi_varying *mean,
+                   gmi_varying *by_t1) {
+    mean->value = bend->value + 0.5 * bend->by_roll_twice * middle->square.value;
+    by_t1->value = middle->per_t1 * bend->by_roll;
+    for (int k = 0; k < GMI_MOTIONS; ++k) {
+        mean->by[k] =
+            bend->by_roll * middle->roll.by[k] + 0.5 * bend->by_roll_twice * middle->square.by[k];
+        by_t1->by[k] = middle->per_t1 * bend->by_roll_twice * middle->roll.by[k];
+    }
+}
+
+/* Where the load of a part is off the line of action. */
+static void find_tip_place(const gmi_corner_view *v, const gmi_beyond *beyond, int role,
+                           const gmi_corner_parabola *gap, const gmi_part_force *part,
+                           gmi_tip_place *place) {
     const gmi_engagement *at = &v->mesh->engagement;
     const double base[2] = {v->mesh->pair->pinion.base_radius, at->wheel_base_radius};
     const double base_sum = base[GM_PINION] + base[GM_WHEEL];
     const double length = at->line_of_action;
-
-    /* The roll there. */
-    const double t1 = part->force_t1.value / part->force.value;
-    gmi_varying roll = gmi_varying_of(v->mesh->pair, v->side, gmi_corner_roll_at(beyond, t1),
-                                      beyond->by_origin, beyond->by_delta, 0.0);
-    for (int k = 0; k < GMI_MOTIONS; ++k) {
-        roll.by[k] +=
-            beyond->per_t1 * (part->force_t1.by[k] - t1 * part->force.by[k]) / part->force.value;
-    }
-
-    /* Straight from joint to joint; of spur gears it is known there. */
-    const gmi_corner_joint *a = &gap->begins, *b = &gap->ends;
-    const double pair_length = gap->pair_to - gap->pair_from;
-    const int is_point = !(pair_length > 0.0);
-    const double gone = roll.value - gap->pair_from;
-    const double versine_by =
-        is_point ? a->versine_by_roll : (b->versine - a->versine) / pair_length;
-    const double gain_by = is_point ? a->gain_by_roll : (b->gain - a->gain) / pair_length;
-    const double versine = a->versine + gone * versine_by;
-    const double gain = a->gain + gone * gain_by;
+    const tip_middle middle = middle_of(v, beyond, part);
+    const double roll = middle.roll.value;
 
     /* The turn by the slope of the gap, T sin(Delta) = r_g gap' - (r_bp + r_bw) (1 - cos(Delta)), and the arms by both. */
-    const double slope = gap->slope + gap->curvature * (roll.value - gap->from);
-    const double sine = (base[role] * slope - base_sum * versine) / length;
-    const double sine_by = (base[role] * gap->curvature - base_sum * versine_by) / length;
-    const double longer = base_sum * sine - length * versine;
-    const double longer_by = base_sum * sine_by - length * versine_by;
-    const int is_pinion = role == GM_PINION;
-    const gmi_tip_place place = {
-        follow(is_pinion ? longer - gain : gain, is_pinion ? longer_by - gain_by : gain_by, &roll),
-        follow(longer, longer_by, &roll), follow(versine, versine_by, &roll),
-        follow(sine, sine_by, &roll)};
-    return place;
+    gmi_corner_joint halfway;
+    const gmi_corner_joint *a = &gap->begins, *m = &halfway, *b = &gap->ends;
+    gmi_corner_joint_at(&v->mesh->corners[role], gmi_corner_middle(gap), &halfway);
+    const gmi_bend slope = gmi_corner_bend(gap, roll, a->slope, m->slope, b->slope, gap->curvature);
+    const gmi_bend versine =
+        gmi_corner_bend(gap, roll, a->versine, m->versine, b->versine, a->versine_by_roll);
+    const gmi_bend gain = gmi_corner_bend(gap, roll, a->gain, m->gain, b->gain, a->gain_by_roll);
+    const gmi_bend sine = gmi_bend_sum(&slope, base[role] / length, &versine, -base_sum / length);
+    const gmi_bend longer = gmi_bend_sum(&sine, base_sum, &versine, -length);
+    const gmi_bend other = gmi_bend_sum(&longer, 1.0, &gain, -1.0);
+    follow(role == GM_PINION ? &other : &gain, &middle, &place->lead, &place->lead_t1);
+    follow(&longer, &middle, &place->longer, &place->longer_t1);
+    follow(&versine, &middle, &place->versine, &place->versine_t1);
+    follow(&sine, &middle, &place->sine, &place->sine_t1);
 }
 
 /* Friction of a part, on the line of action or at a tip. */
@@ -427,14 +430,15 @@ static OWN_STACK void add_friction(gmi_corner_view *v, const gmi_corner_line *wh
     const part_force load = force_of(v, sum);
     const gmi_part_force part = force_with_moments(v, whole, &load, sum);
     if (!(load.whole > 0.0 && (is_beyond[GM_PINION] || is_beyond[GM_WHEEL]))) {
-        gmi_friction_add(v->sliding, &part, &sums->friction);
+        gmi_friction_add(v->sliding, v->lines.advance, &part, &sums->friction);
         return;
     }
     const int role = is_beyond[GM_PINION] ? GM_PINION : GM_WHEEL;
     const gmi_beyond *beyond = &whole->beyond[role];
-    const gmi_tip_place place =
-        tip_place_of(v, beyond, role, gap_at(v, beyond, role, middle), &part);
-    gmi_friction_add_tip(v->sliding, &part, &place, &sums->friction, &sums->tip_friction);
+    gmi_tip_place place;
+    find_tip_place(v, beyond, role, gap_at(v, beyond, role, middle), &part, &place);
+    gmi_friction_add_tip(v->sliding, v->lines.advance, &part, &place, &sums->friction,
+                         &sums->tip_friction);
 }
 
 /* The end of a part that moves, and takes the overlap and the touching part along. */

@@ -11,15 +11,6 @@
 #include "corner.h"
 #include "internal.h"
 
-/* What is known of the corner at a joint. */
-typedef struct gmi_corner_joint {
-    double gap, slope;
-    double versine, across, along, gain;
-    double versine_by_roll, versine_by_length;
-    double gain_by_roll, gain_by_length;
-    double across_by_roll, along_by_roll; /* of spur gears */
-} gmi_corner_joint;
-
 /* The gap around one roll: a parabola from `from` on, and where the corner is. */
 typedef struct gmi_corner_parabola {
     double from, gap, slope, curvature;
@@ -79,6 +70,40 @@ typedef struct gmi_corner_line {
 
 static inline double gmi_corner_roll_at(const gmi_beyond *beyond, double t1) {
     return beyond->at_zero + beyond->per_t1 * t1;
+}
+
+/* Where both parabolas between two joints meet. */
+static inline double gmi_corner_middle(const gmi_corner_parabola *gap) {
+    return 0.5 * (gap->pair_from + gap->pair_to);
+}
+
+/* What of a corner changes with the roll beyond the tip. */
+typedef struct gmi_bend {
+    double value, by_roll, by_roll_twice;
+} gmi_bend;
+
+/* A parabola through three joints; of spur gears one that is known where they are with how it changes. */
+static inline gmi_bend gmi_corner_bend(const gmi_corner_parabola *gap, double roll, double begins,
+                                       double middle, double ends, double by_roll_there) {
+    const double length = gap->pair_to - gap->pair_from;
+    gmi_bend bend = {begins, by_roll_there, 0.0};
+    if (length > 0.0) {
+        const double q = (roll - gap->pair_from) / length;
+        bend.value = (1.0 - q) * (1.0 - 2.0 * q) * begins + 4.0 * q * (1.0 - q) * middle +
+                     q * (2.0 * q - 1.0) * ends;
+        bend.by_roll =
+            ((4.0 * q - 3.0) * begins + (4.0 - 8.0 * q) * middle + (4.0 * q - 1.0) * ends) / length;
+        bend.by_roll_twice = 4.0 * (begins - 2.0 * middle + ends) / (length * length);
+    }
+    return bend;
+}
+
+static inline gmi_bend gmi_bend_sum(const gmi_bend *a, double a_factor, const gmi_bend *b,
+                                    double b_factor) {
+    const gmi_bend sum = {a_factor * a->value + b_factor * b->value,
+                          a_factor * a->by_roll + b_factor * b->by_roll,
+                          a_factor * a->by_roll_twice + b_factor * b->by_roll_twice};
+    return sum;
 }
 
 /* corner_tangent.c: the gap moves a part of a line with all coordinates. */

@@ -136,7 +136,7 @@ static at_middle between(const gmi_corner_parabola *gap, double roll, double beg
 typedef struct part_load {
     double force, moment;
     double force_by[GMI_TIP_OWN], moment_by[GMI_TIP_OWN];
-    double contact_by[GMI_COORDINATES];
+    double contact_by[GMI_COORDINATES], contact_t1_by[GMI_COORDINATES];
 } part_load;
 
 /* How a cut within a line moves with it; 0 for an end of the line. */
@@ -178,6 +178,7 @@ static void add_cut(const gmi_corner_view *v, const gmi_corner_line *whole,
         load->force_by[k] += density * moved;
         load->moment_by[k] += density * moved * end->t1;
         load->contact_by[k] += moved;
+        load->contact_t1_by[k] += moved * end->t1;
     }
 }
 
@@ -194,6 +195,7 @@ static OWN_STACK void find_part_load(const gmi_corner_view *v, const gmi_corner_
         load->force_by[k] = stiffness * line->sum_by[k][0] + viscous * contact_by[0];
         load->moment_by[k] = stiffness * line->sum_by[k][1] + viscous * contact_by[1];
         load->contact_by[k] = contact_by[0];
+        load->contact_t1_by[k] = contact_by[1];
     }
     load->force_by[GMI_BY_DELTA_RATE] = damping * sum->contact;
     load->moment_by[GMI_BY_DELTA_RATE] = damping * sum->contact_t1;
@@ -283,184 +285,404 @@ typedef struct moving {
     double value, by[GMI_TIP_VARIABLES];
 } moving;
 
-static void set_moving(const at_middle *what, const double roll_by[GMI_TIP_OWN], moving *result) {
-    memset(result, 0, sizeof *result);
-    result->value = what->value;
+/* The middle of the load of a part; by what moves it. */
+typedef struct moving_middle {
+    double t1, t1_by[GMI_TIP_OWN];
+    double apart, apart_by[GMI_TIP_OWN]; /* that of gmi_sliding_part */
+} moving_middle;
+
+/* As middle_of() has it. */
+static void follow_middle(const part_load *load, const gmi_line_sum *sum, moving_middle *part) {
+    const double contact = sum->contact;
+    const double t1 = load->moment / load->force;
+    const double touching = sum->contact_t1 / contact;
+    part->t1 = t1;
+    part->apart = touching - t1;
     for (int k = 0; k < GMI_TIP_OWN; ++k) {
-        result->by[k] = moved_by(what, roll_by, k);
+        const double contact_by = k < GMI_COORDINATES ? load->contact_by[k] : 0.0;
+        const double contact_t1_by = k < GMI_COORDINATES ? load->contact_t1_by[k] : 0.0;
+        part->t1_by[k] = (load->moment_by[k] - t1 * load->force_by[k]) / load->force;
+        part->apart_by[k] = (contact_t1_by - touching * contact_by) / contact - part->t1_by[k];
     }
 }
 
+/* What a tip has, with derivatives by what moves it alone; and how it changes along a part, by t1. */
+typedef struct of_tip {
+    double value, by[GMI_TIP_OWN];
+    double per_t1, per_t1_by[GMI_TIP_OWN];
+} of_tip;
+
 /* What a tip makes of the place on the line of action: gmi_tip_place with all derivatives. */
 typedef struct moving_tip {
-    moving lead, longer, versine, sine;
+    of_tip lead, versine, sine;
 } moving_tip;
 
-/* As tip_place_of() has it. */
-static OWN_STACK void follow_tip_place(const gmi_corner_view *v, const gmi_corner_line *whole,
-                                       int role, const gmi_corner_parabola *gap,
-                                       const part_load *load, moving_tip *tip) {
+/* What changes with the roll beyond a tip; and its derivative by T. */
+typedef struct at_tip {
+    gmi_bend own, by_length;
+} at_tip;
+
+static at_tip scaled_sum(const at_tip *a, double a_factor, const at_tip *b, double b_factor) {
+    const at_tip sum = {gmi_bend_sum(&a->own, a_factor, &b->own, b_factor),
+                        gmi_bend_sum(&a->by_length, a_factor, &b->by_length, b_factor)};
+    return sum;
+}
+
+/* Times T, or over it, which is the power of -1. */
+static at_tip times_length(const at_tip *a, double length, int power) {
+    const double factor = power > 0 ? length : 1.0 / length;
+    const double factor_by = factor * power / length;
+    const at_tip product = {gmi_bend_sum(&a->own, factor, &a->own, 0.0),
+                            gmi_bend_sum(&a->own, factor_by, &a->by_length, factor)};
+    return product;
+}
+
+/* How the roll moves along the line with what moves the part. */
+typedef struct moving_roll {
+    double middle, middle_by[GMI_TIP_OWN]; /* of the load (m) */
+    double per_t1, per_t1_by[GMI_TIP_OWN];
+    double square, square_by[GMI_TIP_OWN]; /* mean of (t1 of the load less its middle)^2 (1) */
+} moving_roll;
+
+static OWN_STACK void find_moving_roll(const gmi_corner_view *v, const gmi_corner_line *whole,
+                                       int role, const part_load *load, double contact,
+                                       const moving_middle *part, moving_roll *roll) {
+    const gmi_beyond *beyond = &whole->beyond[role];
+    double line_by[GMI_COORDINATES][2];
+    gmi_tilt_beyond_by(v->mesh->pair, &v->mesh->engagement, v->side, whole->origin, role, line_by);
+    roll->middle = gmi_corner_roll_at(beyond, part->t1);
+    roll->per_t1 = beyond->per_t1;
+    roll->square = contact * contact / 12.0 - part->apart * part->apart;
+    for (int k = 0; k < GMI_TIP_OWN; ++k) {
+        roll->middle_by[k] = beyond->per_t1 * part->t1_by[k];
+        roll->per_t1_by[k] = 0.0;
+        roll->square_by[k] = -2.0 * part->apart * part->apart_by[k];
+    }
+    for (int k = 0; k < GMI_COORDINATES; ++k) {
+        roll->middle_by[k] += line_by[k][0] + line_by[k][1] * part->t1;
+        roll->per_t1_by[k] = line_by[k][1];
+        roll->square_by[k] += contact * load->contact_by[k] / 6.0;
+    }
+}
+
+/* Over the load: the mean, and how it changes along the part. */
+static void set_tip(const at_tip *what, const moving_roll *roll, of_tip *found) {
+    const gmi_bend *own = &what->own, *by_length = &what->by_length;
+    const double per_t1 = roll->per_t1;
+    const double half_square = 0.5 * per_t1 * per_t1 * roll->square;
+    found->value = own->value + own->by_roll_twice * half_square;
+    found->per_t1 = per_t1 * own->by_roll;
+    for (int k = 0; k < GMI_TIP_OWN; ++k) {
+        const double roll_by = roll->middle_by[k], per_t1_by = roll->per_t1_by[k];
+        const double half_square_by =
+            per_t1 * (per_t1_by * roll->square + 0.5 * per_t1 * roll->square_by[k]);
+        found->by[k] = own->by_roll * roll_by + own->by_roll_twice * half_square_by;
+        found->per_t1_by[k] = per_t1 * own->by_roll_twice * roll_by + per_t1_by * own->by_roll;
+    }
+    found->by[GMI_BY_LENGTH] += by_length->value + by_length->by_roll_twice * half_square;
+    found->per_t1_by[GMI_BY_LENGTH] += per_t1 * by_length->by_roll;
+}
+
+/* As find_tip_place() has it: the slope of the gap, the turn by it, and the pinion's arm by both. */
+static OWN_STACK void follow_tip_place(const gmi_corner_view *v, int role,
+                                       const gmi_corner_parabola *gap,
+                                       const gmi_corner_joint *halfway, const moving_roll *roll,
+                                       moving_tip *tip) {
     const gmi_engagement *at = &v->mesh->engagement;
     const double base[2] = {v->mesh->pair->pinion.base_radius, at->wheel_base_radius};
     const double base_sum = base[GM_PINION] + base[GM_WHEEL];
-    const double length = at->line_of_action;
-    at_middle slope, versine;
-    double roll_by[GMI_TIP_OWN];
-    const double roll = follow_roll(v, whole, role, load, roll_by);
-    find_turn(gap, roll, &slope, &versine);
+    const double length = at->line_of_action, middle = roll->middle;
+    const gmi_corner_joint *a = &gap->begins, *m = halfway, *b = &gap->ends;
 
-    /* The turn by the slope of the gap, and the arms by both. */
-    const gmi_corner_joint *a = &gap->begins, *b = &gap->ends;
-    at_middle gain = between(gap, roll, a->gain, b->gain, a->gain_by_roll);
-    gain.by_length = between(gap, roll, a->gain_by_length, b->gain_by_length, 0.0).value;
-    const double sine_value = (base[role] * slope.value - base_sum * versine.value) / length;
-    const at_middle sine = {
-        sine_value, (base[role] * slope.by_roll - base_sum * versine.by_roll) / length,
-        (base[role] * slope.by_length - base_sum * versine.by_length - sine_value) / length};
-    const at_middle longer = {base_sum * sine.value - length * versine.value,
-                              base_sum * sine.by_roll - length * versine.by_roll,
-                              base_sum * sine.by_length - length * versine.by_length -
-                                  versine.value};
-    const at_middle other = {longer.value - gain.value, longer.by_roll - gain.by_roll,
-                             longer.by_length - gain.by_length};
-    set_moving(role == GM_PINION ? &other : &gain, roll_by, &tip->lead);
-    set_moving(&longer, roll_by, &tip->longer);
-    set_moving(&versine, roll_by, &tip->versine);
-    set_moving(&sine, roll_by, &tip->sine);
+    /* At a fixed roll d gap' / dT = -d versine / d roll; second derivatives count between joints alone. */
+    const at_tip slope = {
+        gmi_corner_bend(gap, middle, a->slope, m->slope, b->slope, gap->curvature),
+        gmi_corner_bend(gap, middle, -a->versine_by_roll, -m->versine_by_roll, -b->versine_by_roll,
+                        0.0)};
+    const at_tip versine = {
+        gmi_corner_bend(gap, middle, a->versine, m->versine, b->versine, a->versine_by_roll),
+        gmi_corner_bend(gap, middle, a->versine_by_length, m->versine_by_length,
+                        b->versine_by_length, 0.0)};
+    at_tip lead = {
+        gmi_corner_bend(gap, middle, a->gain, m->gain, b->gain, a->gain_by_roll),
+        gmi_corner_bend(gap, middle, a->gain_by_length, m->gain_by_length, b->gain_by_length, 0.0)};
+    at_tip sine = scaled_sum(&slope, base[role], &versine, -base_sum);
+    sine = times_length(&sine, length, -1);
+    if (role == GM_PINION) {
+        const at_tip shorter = times_length(&versine, length, 1);
+        lead = scaled_sum(&shorter, -1.0, &lead, -1.0);
+        lead = scaled_sum(&sine, base_sum, &lead, 1.0);
+    }
+    set_tip(&lead, roll, &tip->lead);
+    set_tip(&versine, roll, &tip->versine);
+    set_tip(&sine, roll, &tip->sine);
 }
 
-/* Sliding speed in the middle of the load; tip: NULL = on the line of action. */
+/* How a part slides. */
+typedef struct moving_speed {
+    moving speed, slope; /* those of gmi_sliding_part */
+} moving_speed;
+
+/* How a part slides on the line of action. */
 static OWN_STACK void follow_sliding(const gmi_corner_view *v, const gmi_corner_line *whole,
-                                     const part_load *load, const moving_tip *tip, moving *speed) {
+                                     const moving_middle *part, moving_speed *found) {
     const gmi_sliding *s = v->sliding;
-    const double t1 = load->moment / load->force;
-    const double rho_p = whole->origin + v->lines.advance * t1;
+    const double t1 = part->t1;
+    const double advance = v->lines.advance;
+    const double rho_p = whole->origin + advance * t1;
+    const double rho_w = s->line_of_action - rho_p;
     const double both = s->pinion_speed + s->wheel_speed;
+    moving *speed = &found->speed, *slope = &found->slope;
     memset(speed, 0, sizeof *speed);
-    speed->value = s->pinion_speed * rho_p - s->wheel_speed * (s->line_of_action - rho_p) -
-                   s->sideways[0] - s->sideways[1] * t1;
+    memset(slope, 0, sizeof *slope);
+    speed->value =
+        s->pinion_speed * rho_p - s->wheel_speed * rho_w - s->sideways[0] - s->sideways[1] * t1;
+    slope->value = both * advance - s->sideways[1];
 
     /* The middle moves along the line, and the line with its origin. */
-    const double per_t1 = both * v->lines.advance - s->sideways[1];
-    double t1_by[GMI_TIP_OWN];
     for (int k = 0; k < GMI_TIP_OWN; ++k) {
-        t1_by[k] = (load->moment_by[k] - t1 * load->force_by[k]) / load->force;
-        speed->by[k] = per_t1 * t1_by[k];
+        speed->by[k] = slope->value * part->t1_by[k];
     }
     speed->by[GMI_BY_ORIGIN] += both;
     speed->by[GMI_BY_LENGTH] -= s->wheel_speed;
     speed->by[GMI_BY_PINION_SPEED] = rho_p;
-    speed->by[GMI_BY_WHEEL_SPEED] = -(s->line_of_action - rho_p);
+    speed->by[GMI_BY_WHEEL_SPEED] = -rho_w;
     speed->by[GMI_BY_SIDEWAYS] = -1.0;
     speed->by[GMI_BY_SIDEWAYS_T1] = -t1;
-    if (tip == NULL) {
-        return;
-    }
-
-    /* At a tip both arms are longer, and the wheel's axis moves across the turned tangent. */
-    const double sideways = s->sideways[0] + s->sideways[1] * t1;
-    const double forward = s->forward[0] + s->forward[1] * t1;
-    const double versine = tip->versine.value, sine = tip->sine.value;
-    const double lead = tip->lead.value, longer = tip->longer.value;
-    speed->value += both * lead - s->wheel_speed * longer + sideways * versine - forward * sine;
-    const double tip_per_t1 = s->sideways[1] * versine - s->forward[1] * sine;
-    for (int k = 0; k < GMI_TIP_OWN; ++k) {
-        speed->by[k] += both * tip->lead.by[k] - s->wheel_speed * tip->longer.by[k] +
-                        sideways * tip->versine.by[k] - forward * tip->sine.by[k] +
-                        tip_per_t1 * t1_by[k];
-    }
-    speed->by[GMI_BY_PINION_SPEED] += lead;
-    speed->by[GMI_BY_WHEEL_SPEED] += lead - longer;
-    speed->by[GMI_BY_SIDEWAYS] += versine;
-    speed->by[GMI_BY_SIDEWAYS_T1] += versine * t1;
-    speed->by[GMI_BY_FORWARD] = -sine;
-    speed->by[GMI_BY_FORWARD_T1] = -sine * t1;
+    slope->by[GMI_BY_PINION_SPEED] = slope->by[GMI_BY_WHEEL_SPEED] = advance;
+    slope->by[GMI_BY_SIDEWAYS_T1] = -1.0;
 }
 
-/* The share of the load that rubs, by its size over what touches and by the speeds. */
+/*
+ * At a tip both arms are longer, and the wheel's axis moves across the turned tangent. Both arms together are longer by
+ * (r_bp + r_bw) sine - T versine, which the wheel turns by as its axis moves.
+ */
+static OWN_STACK void follow_tip_sliding(const gmi_corner_view *v, const moving_tip *tip,
+                                         const moving_middle *part, moving_speed *found) {
+    const gmi_sliding *s = v->sliding;
+    const double t1 = part->t1, length = s->line_of_action;
+    const double base_sum =
+        v->mesh->pair->pinion.base_radius + v->mesh->engagement.wheel_base_radius;
+    const double both = s->pinion_speed + s->wheel_speed;
+    const double sideways = s->sideways[0] + s->sideways[1] * t1 + s->wheel_speed * length;
+    const double forward = s->forward[0] + s->forward[1] * t1 + s->wheel_speed * base_sum;
+    const of_tip *lead = &tip->lead, *versine = &tip->versine, *sine = &tip->sine;
+    const double along = s->sideways[1] * versine->value - s->forward[1] * sine->value;
+    const double turning = s->sideways[1] * versine->per_t1 - s->forward[1] * sine->per_t1;
+
+    /* In the middle of the load, and along the line. */
+    moving *speed = &found->speed, *slope = &found->slope;
+    speed->value += both * lead->value + sideways * versine->value - forward * sine->value;
+    slope->value +=
+        both * lead->per_t1 + sideways * versine->per_t1 - forward * sine->per_t1 + along;
+    for (int k = 0; k < GMI_TIP_OWN; ++k) {
+        speed->by[k] += both * lead->by[k] + sideways * versine->by[k] - forward * sine->by[k] +
+                        along * part->t1_by[k];
+        slope->by[k] += both * lead->per_t1_by[k] + sideways * versine->per_t1_by[k] -
+                        forward * sine->per_t1_by[k] + s->sideways[1] * versine->by[k] -
+                        s->forward[1] * sine->by[k] + turning * part->t1_by[k];
+    }
+    speed->by[GMI_BY_LENGTH] += s->wheel_speed * versine->value;
+    slope->by[GMI_BY_LENGTH] += s->wheel_speed * versine->per_t1;
+
+    /* By the speeds themselves. */
+    speed->by[GMI_BY_PINION_SPEED] += lead->value;
+    speed->by[GMI_BY_WHEEL_SPEED] += lead->value + length * versine->value - base_sum * sine->value;
+    speed->by[GMI_BY_SIDEWAYS] += versine->value;
+    speed->by[GMI_BY_SIDEWAYS_T1] += versine->value * t1;
+    speed->by[GMI_BY_FORWARD] = -sine->value;
+    speed->by[GMI_BY_FORWARD_T1] = -sine->value * t1;
+    slope->by[GMI_BY_PINION_SPEED] += lead->per_t1;
+    slope->by[GMI_BY_WHEEL_SPEED] +=
+        lead->per_t1 + length * versine->per_t1 - base_sum * sine->per_t1;
+    slope->by[GMI_BY_SIDEWAYS] += versine->per_t1;
+    slope->by[GMI_BY_SIDEWAYS_T1] += versine->value + versine->per_t1 * t1;
+    slope->by[GMI_BY_FORWARD] = -sine->per_t1;
+    slope->by[GMI_BY_FORWARD_T1] = -sine->value - sine->per_t1 * t1;
+}
+
+/* Share or lean of the load: by its size over what touches and by the speeds. */
 static OWN_STACK void follow_share(const gmi_corner_view *v, const part_load *load, double contact,
-                                   const moving *speed, moving *share) {
-    const gmi_point_friction at =
-        gmi_friction_of_speed(v->sliding, load->force / contact, speed->value);
+                                   const moving_middle *part, const moving_speed *sliding,
+                                   const gmi_part_share *at, moving *share) {
     const gmi_rolling_by rolling = gmi_rolling_differentiate(v->sliding);
-    share->value = at.share;
+    share->value = at->value;
     for (int k = 0; k < GMI_TIP_VARIABLES; ++k) {
-        share->by[k] = at.by_speed * speed->by[k];
+        share->by[k] = at->by_speed * sliding->speed.by[k] + at->by_slope * sliding->slope.by[k];
     }
     for (int k = 0; k < GMI_TIP_OWN; ++k) {
-        share->by[k] += at.by_load * load->force_by[k] / load->force;
+        share->by[k] +=
+            at->by_load * load->force_by[k] / load->force + at->by_apart * part->apart_by[k];
     }
     for (int k = 0; k < GMI_COORDINATES; ++k) {
-        share->by[k] -= at.by_load * load->contact_by[k] / contact;
+        share->by[k] += (at->by_contact - at->by_load) * load->contact_by[k] / contact;
     }
-    share->by[GMI_BY_LENGTH] += at.by_rolling * rolling.length;
-    share->by[GMI_BY_PINION_SPEED] += at.by_rolling * rolling.pinion_speed;
-    share->by[GMI_BY_WHEEL_SPEED] += at.by_rolling * rolling.wheel_speed;
+    share->by[GMI_BY_LENGTH] += at->by_rolling * rolling.length;
+    share->by[GMI_BY_PINION_SPEED] += at->by_rolling * rolling.pinion_speed;
+    share->by[GMI_BY_WHEEL_SPEED] += at->by_rolling * rolling.wheel_speed;
 }
 
-/* Adds what has the value a b. */
-static void add_moving(const moving *a, const moving *b, int weight, double sum[GMI_WEIGHTS],
-                       double by[][GMI_WEIGHTS]) {
-    sum[weight] += a->value * b->value;
-    for (int k = 0; k < GMI_TIP_VARIABLES; ++k) {
-        by[k][weight] += a->value * b->by[k] + a->by[k] * b->value;
-    }
-}
-
-/* The force of friction of a part with its moments: times 1, t1 and rho_p. */
+/* One weight of the force of friction of a part, from its share of the load. */
 static void weigh_share(const gmi_corner_view *v, const gmi_corner_line *whole,
-                        const part_load *load, const moving *share, moving weighted[GMI_WEIGHTS]) {
+                        const part_load *load, const moving *share, int weight, moving *weighted) {
     const double advance = v->lines.advance, origin = whole->origin;
-    const double loads[GMI_WEIGHTS] = {load->force, load->moment,
-                                       origin * load->force + advance * load->moment};
-    for (int weight = 0; weight < GMI_WEIGHTS; ++weight) {
-        moving *result = &weighted[weight];
-        result->value = share->value * loads[weight];
-        for (int k = 0; k < GMI_TIP_VARIABLES; ++k) {
-            result->by[k] = share->by[k] * loads[weight];
-        }
+
+    /* Force and moment over t1 make up each of them: 1, t1 and rho_p. */
+    const double of_force = weight == GMI_WHOLE ? 1.0 : weight == GMI_BY_RHO ? origin : 0.0;
+    const double of_moment = weight == GMI_BY_T1 ? 1.0 : weight == GMI_BY_RHO ? advance : 0.0;
+    const double loaded = of_force * load->force + of_moment * load->moment;
+    weighted->value = share->value * loaded;
+    for (int k = 0; k < GMI_TIP_VARIABLES; ++k) {
+        weighted->by[k] = share->by[k] * loaded;
     }
     for (int k = 0; k < GMI_TIP_OWN; ++k) {
-        const double force_by = load->force_by[k], moment_by = load->moment_by[k];
-        weighted[GMI_WHOLE].by[k] += share->value * force_by;
-        weighted[GMI_BY_T1].by[k] += share->value * moment_by;
-        weighted[GMI_BY_RHO].by[k] += share->value * (origin * force_by + advance * moment_by);
+        weighted->by[k] +=
+            share->value * (of_force * load->force_by[k] + of_moment * load->moment_by[k]);
     }
-    weighted[GMI_BY_RHO].by[GMI_BY_ORIGIN] += share->value * load->force;
+    if (weight == GMI_BY_RHO) {
+        weighted->by[GMI_BY_ORIGIN] += share->value * load->force;
+    }
 }
 
-static OWN_STACK void find_share(const gmi_corner_view *v, const gmi_corner_line *whole,
-                                 const part_load *load, double contact, const moving_tip *tip,
-                                 moving *share) {
-    moving speed;
-    follow_sliding(v, whole, load, tip, &speed);
-    follow_share(v, load, contact, &speed, share);
+/* Adds what has a value and moves, times a factor. */
+static void add_moving(const moving *a, double factor, int weight, double sum[GMI_WEIGHTS],
+                       double by[][GMI_WEIGHTS]) {
+    sum[weight] += factor * a->value;
+    for (int k = 0; k < GMI_TIP_VARIABLES; ++k) {
+        by[k][weight] += factor * a->by[k];
+    }
 }
 
-/* tip: NULL = on the line of action. */
+/* Adds what a tip has, times a force. */
+static void add_at_tip(const of_tip *tip, const moving *force, int weight, double sum[GMI_WEIGHTS],
+                       double by[][GMI_WEIGHTS]) {
+    add_moving(force, tip->value, weight, sum, by);
+    for (int k = 0; k < GMI_TIP_OWN; ++k) {
+        by[k][weight] += tip->by[k] * force->value;
+    }
+}
+
+/* Adds the lean times how that changes along the part, and for the moment along the face times t1. */
+static void add_along_tip(const of_tip *tip, const moving *lean, const moving_middle *part,
+                          int weight, double sum[GMI_WEIGHTS], double by[][GMI_WEIGHTS]) {
+    const double t1 = weight == GMI_BY_T1 ? part->t1 : 1.0;
+    add_moving(lean, tip->per_t1 * t1, weight, sum, by);
+    for (int k = 0; k < GMI_TIP_OWN; ++k) {
+        const double t1_by = weight == GMI_BY_T1 ? part->t1_by[k] : 0.0;
+        by[k][weight] += lean->value * (tip->per_t1_by[k] * t1 + tip->per_t1 * t1_by);
+    }
+}
+
+/* Adds the friction of a part in the middle of its load; tip: NULL = on the line of action. */
 static OWN_STACK void add_share(const gmi_corner_view *v, const gmi_corner_line *whole,
                                 const part_load *load, const moving *share, const moving_tip *tip) {
-    static const moving one = {1.0, {0.0}};
     gmi_corner_rubbing *side = v->rubbing;
-    double *flanks = side->sum[GMI_RUBBING_FLANKS];
-    double(*flanks_by)[GMI_WEIGHTS] = side->by[GMI_RUBBING_FLANKS];
-    moving weighted[GMI_WEIGHTS];
-    weigh_share(v, whole, load, share, weighted);
+    double(*sum)[GMI_WEIGHTS] = side->sum;
     for (int weight = 0; weight < GMI_WEIGHTS; ++weight) {
-        add_moving(&one, &weighted[weight], weight, flanks, flanks_by);
+        moving weighted;
+        weigh_share(v, whole, load, share, weight, &weighted);
+        add_moving(&weighted, 1.0, weight, sum[GMI_RUBBING_FLANKS], side->by[GMI_RUBBING_FLANKS]);
+        if (tip == NULL || weight == GMI_BY_RHO) {
+            continue;
+        }
+
+        /* What the normal has turned, and the pinion's arm from the line of action to the corner. */
+        add_at_tip(&tip->sine, &weighted, weight, sum[GMI_RUBBING_SINE],
+                   side->by[GMI_RUBBING_SINE]);
+        add_at_tip(&tip->versine, &weighted, weight, sum[GMI_RUBBING_VERSINE],
+                   side->by[GMI_RUBBING_VERSINE]);
+        if (weight == GMI_WHOLE) {
+            add_at_tip(&tip->lead, &weighted, GMI_BY_RHO, sum[GMI_RUBBING_FLANKS],
+                       side->by[GMI_RUBBING_FLANKS]);
+        }
     }
+}
+
+/* And what makes it lean along the part: a moment over t1, which the middle of the load does not have (N). */
+static OWN_STACK void add_lean(const gmi_corner_view *v, const moving *lean,
+                               const moving_middle *part, const moving_tip *tip) {
+    gmi_corner_rubbing *side = v->rubbing;
+    double(*sum)[GMI_WEIGHTS] = side->sum;
+    double *flanks = sum[GMI_RUBBING_FLANKS];
+    double(*flanks_by)[GMI_WEIGHTS] = side->by[GMI_RUBBING_FLANKS];
+    add_moving(lean, 1.0, GMI_BY_T1, flanks, flanks_by);
+    add_moving(lean, v->lines.advance, GMI_BY_RHO, flanks, flanks_by);
     if (tip == NULL) {
         return;
     }
 
-    /* From the line of action to the corner. */
-    add_moving(&tip->lead, &weighted[GMI_WHOLE], GMI_BY_RHO, flanks, flanks_by);
-    for (int weight = GMI_WHOLE; weight <= GMI_BY_T1; ++weight) {
-        add_moving(&tip->sine, &weighted[weight], weight, side->sum[GMI_RUBBING_SINE],
-                   side->by[GMI_RUBBING_SINE]);
-        add_moving(&tip->versine, &weighted[weight], weight, side->sum[GMI_RUBBING_VERSINE],
-                   side->by[GMI_RUBBING_VERSINE]);
+    /* With it the arm gets longer, and the moment of what is turned grows. */
+    add_along_tip(&tip->lead, lean, part, GMI_BY_RHO, flanks, flanks_by);
+    const of_tip *turned[GMI_RUBBING_PARTS] = {
+        [GMI_RUBBING_SINE] = &tip->sine, [GMI_RUBBING_VERSINE] = &tip->versine};
+    for (int of = GMI_RUBBING_SINE; of <= GMI_RUBBING_VERSINE; ++of) {
+        add_at_tip(turned[of], lean, GMI_BY_T1, sum[of], side->by[of]);
+        add_along_tip(turned[of], lean, part, GMI_WHOLE, sum[of], side->by[of]);
+        add_along_tip(turned[of], lean, part, GMI_BY_T1, sum[of], side->by[of]);
     }
+}
+
+/* What a tip makes of the place of the part. */
+static OWN_STACK void follow_tip(const gmi_corner_view *v, const gmi_corner_line *whole, int role,
+                                 const gmi_corner_parabola *gap, const part_load *load,
+                                 double contact, const moving_middle *part, moving_tip *tip) {
+    moving_roll roll;
+    gmi_corner_joint halfway;
+    find_moving_roll(v, whole, role, load, contact, part, &roll);
+    gmi_corner_joint_at(&v->mesh->corners[role], gmi_corner_middle(gap), &halfway);
+    follow_tip_place(v, role, gap, &halfway, &roll, tip);
+}
+
+/* What is known of a part, to its friction. */
+static OWN_STACK void find_friction(const gmi_corner_view *v, const part_load *load,
+                                    const gmi_line_sum *sum, const moving_middle *part,
+                                    const moving_speed *sliding, gmi_part_friction *found) {
+    const gmi_sliding_part as = {.load = load->force / sum->contact,
+                                 .contact = sum->contact,
+                                 .speed = sliding->speed.value,
+                                 .slope = sliding->slope.value,
+                                 .apart = part->apart};
+    gmi_friction_of_part(v->sliding, &as, found);
+}
+
+/* Adds the friction of a part; tip: NULL = on the line of action. */
+static OWN_STACK void add_rubbing(const gmi_corner_view *v, const gmi_corner_line *whole,
+                                  const part_load *load, const gmi_line_sum *sum,
+                                  const moving_middle *part, const moving_tip *tip) {
+    moving_speed sliding;
+    follow_sliding(v, whole, part, &sliding);
+    if (tip != NULL) {
+        follow_tip_sliding(v, tip, part, &sliding);
+    }
+    gmi_part_friction at;
+    moving found;
+    find_friction(v, load, sum, part, &sliding, &at);
+    follow_share(v, load, sum->contact, part, &sliding, &at.share, &found);
+    add_share(v, whole, load, &found, tip);
+
+    /* The lean is that of the whole load. */
+    follow_share(v, load, sum->contact, part, &sliding, &at.lean, &found);
+    for (int k = 0; k < GMI_TIP_VARIABLES; ++k) {
+        found.by[k] *= load->force;
+    }
+    for (int k = 0; k < GMI_TIP_OWN; ++k) {
+        found.by[k] += found.value * load->force_by[k];
+    }
+    found.value *= load->force;
+    add_lean(v, &found, part, tip);
+}
+
+/* Of a part that presses. */
+static OWN_STACK void follow_rubbing(const gmi_corner_view *v, const gmi_corner_line *whole,
+                                     int role, const gmi_corner_parabola *gap,
+                                     const part_load *load, const gmi_line_sum *sum) {
+    moving_middle part;
+    moving_tip tip;
+    follow_middle(load, sum, &part);
+    if (gap != NULL) {
+        follow_tip(v, whole, role, gap, load, sum->contact, &part, &tip);
+    }
+    add_rubbing(v, whole, load, sum, &part, gap != NULL ? &tip : NULL);
 }
 
 OWN_STACK void gmi_corner_follow_friction(const gmi_corner_view *v, const gmi_corner_line *whole,
@@ -474,17 +696,9 @@ OWN_STACK void gmi_corner_follow_friction(const gmi_corner_view *v, const gmi_co
     for (int k = 0; k < GMI_TIP_OWN; ++k) {
         side->force_by[k] += load.force_by[k];
     }
-    if (!(load.force > 0.0)) {
-        return;
+    if (load.force > 0.0) {
+        follow_rubbing(v, whole, role, gap, &load, sum);
     }
-
-    moving share;
-    moving_tip tip;
-    if (gap != NULL) {
-        follow_tip_place(v, whole, role, gap, &load, &tip);
-    }
-    find_share(v, whole, &load, sum->contact, gap != NULL ? &tip : NULL, &share);
-    add_share(v, whole, &load, &share, gap != NULL ? &tip : NULL);
 }
 
 /* What of the coefficient is the same all over the side. */

@@ -15,7 +15,7 @@
  * of mu_r have a closed form for a load that is even or straight there: exact between ideal flanks of parallel axes.
  * They take the force of a part, its first moments and its touching length. Friction of a part acts a little farther
  * from the pitch point than the middle of its load; torques and loss take it there, so that power in is power out and
- * loss, to rounding. Of lines with corners mu_r of a part is that at its mean sliding speed.
+ * loss, to rounding.
  */
 #include "internal.h"
 
@@ -127,58 +127,6 @@ static double sliding_at(const gmi_sliding *s, double rho_p, double t1) {
            s->sideways[1] * t1;
 }
 
-/* Mean sliding speed of a part, at its mean rho_p and t1. */
-static gmi_varying sliding_speed(const gmi_sliding *s, const gmi_part_force *part) {
-    const double rho_p = part->moment.value / part->force.value;
-    const double rho_w = s->line_of_action - rho_p;
-    const double t1 = part->force_t1.value / part->force.value;
-    gmi_varying speed = {.value = sliding_at(s, rho_p, t1)};
-
-    /* The place of the mean moves with the load along the line. */
-    for (int k = 0; k < GMI_MOTIONS; ++k) {
-        const double force_by = part->force.by[k];
-        const double rho_by = (part->moment.by[k] - rho_p * force_by) / part->force.value;
-        const double t1_by = (part->force_t1.by[k] - t1 * force_by) / part->force.value;
-        speed.by[k] = (s->pinion_speed + s->wheel_speed) * rho_by - s->sideways[1] * t1_by;
-    }
-
-    /* And the speeds of the gears count by themselves. */
-    speed.by[GMI_PINION_SPEED] += rho_p;
-    speed.by[GMI_WHEEL_SPEED] -= s->wheel_sign * rho_w;
-    return speed;
-}
-
-/*
- * The same at a tip, where both arms are longer, the flanks slide along the turned tangent, and the wheel's axis moves
- * across that.
- */
-static gmi_varying tip_sliding_speed(const gmi_sliding *s, const gmi_part_force *part,
-                                     const gmi_tip_place *place) {
-    const double t1 = part->force_t1.value / part->force.value;
-    const double sideways = s->sideways[0] + s->sideways[1] * t1;
-    const double forward = s->forward[0] + s->forward[1] * t1;
-
-    /* On the flank, and what the edge adds. */
-    gmi_varying speed = sliding_speed(s, part);
-    const double both = s->pinion_speed + s->wheel_speed;
-    speed.value += both * place->lead.value - s->wheel_speed * place->longer.value +
-                   sideways * place->versine.value - forward * place->sine.value;
-
-    /* As the edge moves on the flank, and the mean along the face. */
-    for (int k = 0; k < GMI_MOTIONS; ++k) {
-        const double t1_by = (part->force_t1.by[k] - t1 * part->force.by[k]) / part->force.value;
-        speed.by[k] +=
-            both * place->lead.by[k] - s->wheel_speed * place->longer.by[k] +
-            sideways * place->versine.by[k] - forward * place->sine.by[k] +
-            (s->sideways[1] * place->versine.value - s->forward[1] * place->sine.value) * t1_by;
-    }
-
-    /* Longer arms turn the speeds of the gears into more. */
-    speed.by[GMI_PINION_SPEED] += place->lead.value;
-    speed.by[GMI_WHEEL_SPEED] -= s->wheel_sign * (place->longer.value - place->lead.value);
-    return speed;
-}
-
 /* ---------------------------------------------------------------------------------------------
  * Coefficients
  * ------------------------------------------------------------------------------------------- */
@@ -192,7 +140,7 @@ typedef struct coefficient {
  * [BenedictKelley]: 0.0127 lg(29.66 (F/b) / (eta |v| v_sum^2)), N/m and mPa s, with sqrt(v^2 + v0^2) for |v|. Not below 0,
  * where the formula does not hold. The other laws have the same mu all over a side.
  */
-static coefficient coefficient_of(const gmi_sliding *s, double load, double speed) {
+SPECIALIZED coefficient coefficient_of(const gmi_sliding *s, double load, double speed) {
     coefficient mu = {1.0, 0.0, 0.0, 0.0};
     if (s->friction->law != GM_FRICTION_BENEDICT_KELLEY) {
         return mu;
@@ -234,21 +182,6 @@ static gmi_point_friction friction_of(const gmi_sliding *s, double load, double 
     return result;
 }
 
-static gmi_varying share_of(const gmi_sliding *s, const gmi_varying *load,
-                            const gmi_varying *speed) {
-    const gmi_point_friction at = friction_of(s, load->value, speed->value);
-    gmi_varying share = {.value = at.share};
-    for (int k = 0; k < GMI_MOTIONS; ++k) {
-        share.by[k] = at.by_speed * speed->by[k] + at.by_load * load->by[k] / load->value +
-                      at.by_rolling * s->rolling.by[k] / s->rolling.value;
-    }
-    return share;
-}
-
-gmi_point_friction gmi_friction_of_speed(const gmi_sliding *sliding, double load, double speed) {
-    return friction_of(sliding, load, speed);
-}
-
 gmi_point_friction gmi_friction_at(const gmi_sliding *sliding, double rho_p, double t1,
                                    double load) {
     return friction_of(sliding, load, sliding_at(sliding, rho_p, t1));
@@ -269,15 +202,6 @@ gmi_rolling_by gmi_rolling_differentiate(const gmi_sliding *sliding) {
 /* ---------------------------------------------------------------------------------------------
  * Along a part
  * ------------------------------------------------------------------------------------------- */
-
-/* A part as friction sees it: sliding speeds in the middle of its load and of its touching length. */
-typedef struct sliding_part {
-    double load;    /* over the touching length (N) */
-    double contact; /* that length, C (1) */
-    double speed;   /* v, at the middle of the load (m/s) */
-    double slope;   /* w = dv / dt1 (m/s) */
-    double apart;   /* t1 of the middle of the touching length less that of the load (1) */
-} sliding_part;
 
 /* A number of a part, by the sliding speed, by ln C, by the slope, and by how far the two middles are apart. */
 typedef struct along_part {
@@ -311,7 +235,7 @@ static double arc_remainder(double y, double *growth) {
  *
  * An even load has 2 u / S, and k h^2 is its covariance of r and v; a load that is straight in v has the second term too.
  */
-static void find_along_part(const sliding_part *part, double creep_squared, along_part *mean,
+static void find_along_part(const gmi_sliding_part *part, double creep_squared, along_part *mean,
                             along_part *lean) {
     const double w = part->slope, half_contact = 0.5 * part->contact;
     const double u = part->speed + w * part->apart;
@@ -360,19 +284,9 @@ static void find_along_part(const sliding_part *part, double creep_squared, alon
     lean->by_apart = k_by_speed * w * w * square;
 }
 
-/* Friction of a part over its transverse force, less what is the same all over a side; with the logarithms of load,
- * rolling speed and touching length. */
-typedef struct part_share {
-    double value, by_speed, by_load, by_rolling, by_contact, by_slope, by_apart;
-} part_share;
-
-typedef struct part_friction {
-    part_share share, lean;
-} part_friction;
-
-static part_share share_of_part(const coefficient *mu, double normal, const along_part *r) {
+static gmi_part_share share_of_part(const coefficient *mu, double normal, const along_part *r) {
     const double factor = normal * mu->value;
-    const part_share share = {
+    const gmi_part_share share = {
         .value = factor * r->value,
         .by_speed = factor * r->by_speed + normal * mu->by_speed * r->value,
         .by_load = normal * mu->by_load * r->value,
@@ -384,8 +298,8 @@ static part_share share_of_part(const coefficient *mu, double normal, const alon
     return share;
 }
 
-static void find_part_friction(const gmi_sliding *s, const sliding_part *part,
-                               part_friction *found) {
+void gmi_friction_of_part(const gmi_sliding *s, const gmi_sliding_part *part,
+                          gmi_part_friction *found) {
     const coefficient mu = coefficient_of(s, part->load, part->speed);
     along_part mean, lean;
     find_along_part(part, s->friction->creep_squared, &mean, &lean);
@@ -398,7 +312,7 @@ static void find_part_friction(const gmi_sliding *s, const sliding_part *part,
  * ------------------------------------------------------------------------------------------- */
 
 /* Share or lean of a part: by its load, of which rho_p and t1 are the means, and by how the flanks slide there. */
-static void differentiate_share(const gmi_sliding *s, double advance, const part_share *at,
+static void differentiate_share(const gmi_sliding *s, double advance, const gmi_part_share *at,
                                 const gmi_load *load, const gmi_load_by *load_by, double rho_p,
                                 double t1, double by[GMI_VARIABLES]) {
     const double by_speed = at->by_speed;
@@ -433,7 +347,7 @@ static void differentiate_share(const gmi_sliding *s, double advance, const part
 
 /* Derivatives of the friction of a part: of its share with all weights, of its lean with the moments. */
 static OWN_STACK void add_part_derivatives(const gmi_sliding *sliding, double advance,
-                                           const part_friction *at, const gmi_load *load,
+                                           const gmi_part_friction *at, const gmi_load *load,
                                            const gmi_load_by *load_by, double rho_p, double t1,
                                            gmi_rubbing_by *by) {
     double share_by[GMI_VARIABLES];
@@ -469,15 +383,15 @@ void gmi_rubbing_add(const gmi_sliding *sliding, double advance, const gmi_load 
     /* About its mean rho_p and t1, with its load over its touching length. */
     const double rho_p = force[GMI_BY_RHO] / force[GMI_WHOLE];
     const double t1 = force[GMI_BY_T1] / force[GMI_WHOLE];
-    const sliding_part part = {
+    const gmi_sliding_part part = {
         .load = force[GMI_WHOLE] / load->contact[0],
         .contact = load->contact[0],
         .speed = sliding_at(sliding, rho_p, t1),
         .slope = (sliding->pinion_speed + sliding->wheel_speed) * advance - sliding->sideways[1],
         .apart = load->contact[1] / load->contact[0] - t1,
     };
-    part_friction at;
-    find_part_friction(sliding, &part, &at);
+    gmi_part_friction at;
+    gmi_friction_of_part(sliding, &part, &at);
     for (int weight = 0; weight < GMI_WEIGHTS; ++weight) {
         total->force[weight] += at.share.value * force[weight];
     }
@@ -556,47 +470,176 @@ void gmi_friction_sum_of(const gm_pair *pair, int side, const gmi_rubbing *rubbi
  * By what a solver knows
  * ------------------------------------------------------------------------------------------- */
 
-/* By the load of the part over its touching length; what it adds at the place of the line of action. */
-static gmi_varying add_part(const gmi_sliding *sliding, const gmi_part_force *part,
-                            const gmi_varying *speed, gmi_friction_sum *total) {
-    const double contact = part->contact.value;
-    gmi_varying load = {.value = part->force.value / contact};
-    for (int k = 0; k < GMI_MOTIONS; ++k) {
-        load.by[k] = (part->force.by[k] - load.value * part->contact.by[k]) / contact;
-    }
+/* A part with all that its friction depends on. */
+typedef struct varying_part {
+    double t1; /* the middle of its load */
+    double t1_by[GMI_MOTIONS];
+    gmi_varying speed, slope, apart; /* those of gmi_sliding_part */
+} varying_part;
 
-    const gmi_varying share = share_of(sliding, &load, speed);
-    gmi_varying_add_product(&share, &part->force, &total->force);
-    gmi_varying_add_product(&share, &part->moment, &total->moment);
-    total->force_t1 += share.value * part->force_t1.value;
-    total->loss += share.value * part->force.value * speed->value;
-    return share;
+/* The middle of the load, and how far that of the touching length is from it. */
+static void find_middle(const gmi_part_force *part, varying_part *found) {
+    const double force = part->force.value, contact = part->contact.value;
+    const double t1 = part->force_t1.value / force;
+    const double touching = part->contact_t1.value / contact;
+    found->t1 = t1;
+    found->apart.value = touching - t1;
+    for (int k = 0; k < GMI_MOTIONS; ++k) {
+        found->t1_by[k] = (part->force_t1.by[k] - t1 * part->force.by[k]) / force;
+        found->apart.by[k] =
+            (part->contact_t1.by[k] - touching * part->contact.by[k]) / contact - found->t1_by[k];
+    }
 }
 
-void gmi_friction_add(const gmi_sliding *sliding, const gmi_part_force *part,
+/* How a part slides on the line of action; advance: of rho_p over t1. */
+static void find_sliding(const gmi_sliding *s, double advance, const gmi_part_force *part,
+                         varying_part *found) {
+    find_middle(part, found);
+    const double force = part->force.value;
+    const double rho_p = part->moment.value / force;
+    const double both = s->pinion_speed + s->wheel_speed;
+    const gmi_varying none = {.value = 0.0};
+    found->speed = found->slope = none;
+    found->speed.value = sliding_at(s, rho_p, found->t1);
+    found->slope.value = both * advance - s->sideways[1];
+
+    /* The place of the mean moves with the load along the line. */
+    for (int k = 0; k < GMI_MOTIONS; ++k) {
+        const double rho_by = (part->moment.by[k] - rho_p * part->force.by[k]) / force;
+        found->speed.by[k] = both * rho_by - s->sideways[1] * found->t1_by[k];
+    }
+
+    /* And the speeds of the gears count by themselves. */
+    found->speed.by[GMI_PINION_SPEED] += rho_p;
+    found->speed.by[GMI_WHEEL_SPEED] -= s->wheel_sign * (s->line_of_action - rho_p);
+    found->slope.by[GMI_PINION_SPEED] += advance;
+    found->slope.by[GMI_WHEEL_SPEED] += s->wheel_sign * advance;
+}
+
+/*
+ * The same at a tip, where both arms are longer, the flanks slide along the turned tangent, and the wheel's axis moves
+ * across that.
+ */
+static void add_tip_sliding(const gmi_sliding *s, const gmi_tip_place *place, varying_part *found) {
+    const double both = s->pinion_speed + s->wheel_speed;
+    const double sideways = s->sideways[0] + s->sideways[1] * found->t1;
+    const double forward = s->forward[0] + s->forward[1] * found->t1;
+    const double along = s->sideways[1] * place->versine.value - s->forward[1] * place->sine.value;
+    const double turning =
+        s->sideways[1] * place->versine_t1.value - s->forward[1] * place->sine_t1.value;
+
+    /* In the middle of the load what the edge adds, and along the line. */
+    found->speed.value += both * place->lead.value - s->wheel_speed * place->longer.value +
+                          sideways * place->versine.value - forward * place->sine.value;
+    found->slope.value += both * place->lead_t1.value - s->wheel_speed * place->longer_t1.value +
+                          sideways * place->versine_t1.value - forward * place->sine_t1.value +
+                          along;
+
+    /* As the edge moves on the flank, and the middle along the face. */
+    for (int k = 0; k < GMI_MOTIONS; ++k) {
+        found->speed.by[k] += both * place->lead.by[k] - s->wheel_speed * place->longer.by[k] +
+                              sideways * place->versine.by[k] - forward * place->sine.by[k] +
+                              along * found->t1_by[k];
+        found->slope.by[k] += both * place->lead_t1.by[k] -
+                              s->wheel_speed * place->longer_t1.by[k] +
+                              sideways * place->versine_t1.by[k] - forward * place->sine_t1.by[k] +
+                              s->sideways[1] * place->versine.by[k] -
+                              s->forward[1] * place->sine.by[k] + turning * found->t1_by[k];
+    }
+
+    /* Longer arms turn the speeds of the gears into more. */
+    found->speed.by[GMI_PINION_SPEED] += place->lead.value;
+    found->speed.by[GMI_WHEEL_SPEED] -= s->wheel_sign * (place->longer.value - place->lead.value);
+    found->slope.by[GMI_PINION_SPEED] += place->lead_t1.value;
+    found->slope.by[GMI_WHEEL_SPEED] -=
+        s->wheel_sign * (place->longer_t1.value - place->lead_t1.value);
+}
+
+/* Share or lean of a part, times its force. */
+static gmi_varying rubbing_of(const gmi_sliding *s, const gmi_part_share *at,
+                              const gmi_part_force *part, const varying_part *moving) {
+    const double by_touching = at->by_contact - at->by_load;
+    gmi_varying share = {.value = at->value}, force = {.value = 0.0};
+    for (int k = 0; k < GMI_MOTIONS; ++k) {
+        share.by[k] = at->by_speed * moving->speed.by[k] + at->by_slope * moving->slope.by[k] +
+                      at->by_apart * moving->apart.by[k] +
+                      at->by_load * part->force.by[k] / part->force.value +
+                      by_touching * part->contact.by[k] / part->contact.value +
+                      at->by_rolling * s->rolling.by[k] / s->rolling.value;
+    }
+    gmi_varying_add_product(&share, &part->force, &force);
+    return force;
+}
+
+/* The friction of a part, and by how much more than the middle of its load has it leans over t1 (N). */
+typedef struct part_rubbing {
+    gmi_varying force, lean;
+} part_rubbing;
+
+static void add_scaled(const gmi_varying *a, double factor, gmi_varying *sum) {
+    sum->value += factor * a->value;
+    for (int k = 0; k < GMI_MOTIONS; ++k) {
+        sum->by[k] += factor * a->by[k];
+    }
+}
+
+/* Adds what a part has at the place of the line of action. */
+static part_rubbing add_part(const gmi_sliding *sliding, double advance, const gmi_part_force *part,
+                             const varying_part *moving, gmi_friction_sum *total) {
+    const gmi_sliding_part as = {.load = part->force.value / part->contact.value,
+                                 .contact = part->contact.value,
+                                 .speed = moving->speed.value,
+                                 .slope = moving->slope.value,
+                                 .apart = moving->apart.value};
+    gmi_part_friction at;
+    gmi_friction_of_part(sliding, &as, &at);
+    const part_rubbing found = {rubbing_of(sliding, &at.share, part, moving),
+                                rubbing_of(sliding, &at.lean, part, moving)};
+
+    /* About the pinion's axis with the mean arm of the load, and farther out by its lean. */
+    const double rho_p = part->moment.value / part->force.value;
+    gmi_varying arm = {.value = rho_p};
+    for (int k = 0; k < GMI_MOTIONS; ++k) {
+        arm.by[k] = (part->moment.by[k] - rho_p * part->force.by[k]) / part->force.value;
+    }
+    add_scaled(&found.force, 1.0, &total->force);
+    gmi_varying_add_product(&found.force, &arm, &total->moment);
+    add_scaled(&found.lean, advance, &total->moment);
+    total->force_t1 += found.force.value * moving->t1 + found.lean.value;
+    total->loss += found.force.value * as.speed + found.lean.value * as.slope;
+    return found;
+}
+
+void gmi_friction_add(const gmi_sliding *sliding, double advance, const gmi_part_force *part,
                       gmi_friction_sum *total) {
     if (part->force.value > 0.0) {
-        const gmi_varying speed = sliding_speed(sliding, part);
-        (void)add_part(sliding, part, &speed, total);
+        varying_part moving;
+        find_sliding(sliding, advance, part, &moving);
+        (void)add_part(sliding, advance, part, &moving, total);
     }
 }
 
-void gmi_friction_add_tip(const gmi_sliding *sliding, const gmi_part_force *part,
+void gmi_friction_add_tip(const gmi_sliding *sliding, double advance, const gmi_part_force *part,
                           const gmi_tip_place *place, gmi_friction_sum *total,
                           gmi_tip_friction *tip) {
-    const gmi_varying speed = tip_sliding_speed(sliding, part, place);
-    const gmi_varying share = add_part(sliding, part, &speed, total);
+    varying_part moving;
+    find_sliding(sliding, advance, part, &moving);
+    add_tip_sliding(sliding, place, &moving);
+    const part_rubbing at = add_part(sliding, advance, part, &moving, total);
 
     /* From the line of action to the corner. */
-    gmi_varying force = {.value = 0.0};
-    gmi_varying_add_product(&share, &part->force, &force);
-    gmi_varying_add_product(&force, &place->lead, &total->moment);
-    gmi_varying_add_product(&force, &place->longer, &tip->longer);
-    const double force_t1 = share.value * part->force_t1.value;
-    tip->versine += place->versine.value * force.value;
-    tip->versine_t1 += place->versine.value * force_t1;
-    tip->sine += place->sine.value * force.value;
-    tip->sine_t1 += place->sine.value * force_t1;
+    gmi_varying_add_product(&at.force, &place->lead, &total->moment);
+    gmi_varying_add_product(&at.lean, &place->lead_t1, &total->moment);
+    gmi_varying_add_product(&at.force, &place->longer, &tip->longer);
+    gmi_varying_add_product(&at.lean, &place->longer_t1, &tip->longer);
+
+    /* Moments along the face of what is turned: sine and versine in the middle of the load, and the lean there. */
+    const double force = at.force.value, lean = at.lean.value, t1 = moving.t1;
+    const double force_t1 = force * t1 + lean;
+    tip->versine += place->versine.value * force + place->versine_t1.value * lean;
+    tip->versine_t1 += place->versine.value * force_t1 + place->versine_t1.value * t1 * lean;
+    tip->sine += place->sine.value * force + place->sine_t1.value * lean;
+    tip->sine_t1 += place->sine.value * force_t1 + place->sine_t1.value * t1 * lean;
 }
 
 /* Times the common part of mu. */

@@ -1006,10 +1006,11 @@ void gmi_sliding_find(const gmi_friction *friction, const gm_pair *pair, const g
 
 /* The normal force of a part of a line, in the transverse section. */
 typedef struct gmi_part_force {
-    gmi_varying force;    /* (N) */
-    gmi_varying moment;   /* times mean rho_p (N m) */
-    gmi_varying contact;  /* touching part (1) */
-    gmi_varying force_t1; /* times mean t1 (N) */
+    gmi_varying force;      /* (N) */
+    gmi_varying moment;     /* times mean rho_p (N m) */
+    gmi_varying contact;    /* touching part (1) */
+    gmi_varying force_t1;   /* times mean t1 (N) */
+    gmi_varying contact_t1; /* touching part times its mean t1 (1) */
 } gmi_part_force;
 
 /* Friction on the wheel, in the sense in which the pinion's flank moves; on the pinion the other way. And how it moves. */
@@ -1032,9 +1033,11 @@ typedef struct gmi_friction_sum {
 
 /* Where a part is that a tip corner bears: off the line of action, whose place has the roll lengths rho_p and T - rho_p. */
 typedef struct gmi_tip_place {
-    gmi_varying lead;   /* what the arm of friction about the pinion's axis is longer by (m) */
-    gmi_varying longer; /* and that of both together (m) */
+    gmi_varying
+        lead; /* what the arm of friction about the pinion's axis is longer by, on average of the load (m) */
+    gmi_varying longer;        /* and that of both together (m) */
     gmi_varying versine, sine; /* 1 - cos and sin of the turn of the normal */
+    gmi_varying lead_t1, longer_t1, versine_t1, sine_t1; /* in the middle of the load by t1 */
 } gmi_tip_place;
 
 /* What friction at tips adds to gmi_friction_sum. */
@@ -1057,8 +1060,30 @@ typedef struct gmi_point_friction {
 gmi_point_friction gmi_friction_at(const gmi_sliding *sliding, double rho_p, double t1,
                                    double load);
 
-/* Where the sliding speed is known. */
-gmi_point_friction gmi_friction_of_speed(const gmi_sliding *sliding, double load, double speed);
+/* A part of a line on which the sliding speed is straight: speeds in the middle of its load and of its touching length. */
+typedef struct gmi_sliding_part {
+    double load;    /* over the touching length (N) */
+    double contact; /* that length, C (1) */
+    double speed;   /* v, at the middle of the load (m/s) */
+    double slope;   /* w = dv / dt1 (m/s) */
+    double apart;   /* t1 of the middle of the touching length less that of the load (1) */
+} gmi_sliding_part;
+
+/*
+ * Friction of a part over its transverse force, less what is the same all over a side, with derivatives: by the speed, by
+ * the logarithms of load, rolling speed and touching length, by the slope, and by how far the two middles are apart.
+ */
+typedef struct gmi_part_share {
+    double value, by_speed, by_load, by_rolling, by_contact, by_slope, by_apart;
+} gmi_part_share;
+
+/* The whole; and its moment over t1 about the middle of the load. */
+typedef struct gmi_part_friction {
+    gmi_part_share share, lean;
+} gmi_part_friction;
+
+void gmi_friction_of_part(const gmi_sliding *sliding, const gmi_sliding_part *part,
+                          gmi_part_friction *found);
 
 /* What of the coefficient is the same all over a side, and of it the power of the side's force over the rolling speed. */
 typedef struct gmi_common_friction {
@@ -1086,12 +1111,12 @@ void gmi_rubbing_finish(const gmi_sliding *sliding, const gmi_load *load,
 void gmi_friction_sum_of(const gm_pair *pair, int side, const gmi_rubbing *rubbing,
                          const gmi_rubbing_by *by, gmi_friction_sum *sum);
 
-/* Adds that of one part. */
-void gmi_friction_add(const gmi_sliding *sliding, const gmi_part_force *part,
+/* Adds that of one part; advance: of rho_p over t1 (m). */
+void gmi_friction_add(const gmi_sliding *sliding, double advance, const gmi_part_force *part,
                       gmi_friction_sum *total);
 
 /* Adds that of one part at a tip, whose force is above 0. */
-void gmi_friction_add_tip(const gmi_sliding *sliding, const gmi_part_force *part,
+void gmi_friction_add_tip(const gmi_sliding *sliding, double advance, const gmi_part_force *part,
                           const gmi_tip_place *place, gmi_friction_sum *total,
                           gmi_tip_friction *tip);
 
