@@ -988,23 +988,20 @@ static void wrong_calls_are_refused(void) {
         GM_ASSERT(gm_cache_size(&ends[i], mesh) > 0);
     }
 
-    /* What a table over phase cannot hold: forces that jump, no lines at all, edges that touch beside the lines. */
+    /* What a table over phase cannot hold: forces that jump, no lines at all. */
     gm_test_context("spur");
     assert_refused(&good, jumping, GM_ERR_GEOMETRY);
-    for (int corners = 0; corners <= 1; ++corners) {
-        gm_test_context("simple, or corners: %d", corners);
-        gm_mesh_params law;
-        gm_mesh *other = NULL;
-        gm_mesh_params_default(&law);
-        law.stiffness = 1e8;
-        law.model = corners ? GM_MODEL_3D : GM_MODEL_SIMPLE;
-        law.corner_contact = corners ? GM_CORNER_ON : GM_CORNER_OFF;
-        const size_t room = gm_mesh_size(&law, &pair);
-        void *place = malloc(room);
-        GM_ASSERT_INT(gm_mesh_init(&other, &law, &pair, NULL, NULL, place, room), GM_OK);
-        assert_refused(&good, other, GM_ERR_GEOMETRY);
-        free(place);
-    }
+    gm_test_context("simple");
+    gm_mesh_params law;
+    gm_mesh *other = NULL;
+    gm_mesh_params_default(&law);
+    law.stiffness = 1e8;
+    law.model = GM_MODEL_SIMPLE;
+    const size_t room = gm_mesh_size(&law, &pair);
+    void *place = malloc(room);
+    GM_ASSERT_INT(gm_mesh_init(&other, &law, &pair, NULL, NULL, place, room), GM_OK);
+    assert_refused(&good, other, GM_ERR_GEOMETRY);
+    free(place);
     gm_test_context("NULL");
     assert_refused(NULL, mesh, GM_ERR_NULL);
     assert_refused(&good, NULL, GM_ERR_NULL);
@@ -1024,6 +1021,200 @@ static void wrong_calls_are_refused(void) {
     GM_ASSERT_INT(gm_cache_fill(cache, 0, 1, NULL), GM_OK);
     free(mesh);
     free(jumping);
+}
+
+/* The paper's gears with their edges in contact, twice: exact, and with a cache that both meshes' flanks are for. */
+typedef struct edged {
+    fixture f;
+    gm_mesh *exact;
+} edged;
+
+static gm_mesh *make_edged_mesh(const fixture *f, int corner, double damping) {
+    gm_mesh_params params;
+    gm_mesh *mesh = NULL;
+    gm_mesh_params_default(&params);
+    params.stiffness = 1e8;
+    params.damping = damping;
+    params.corner_contact = corner;
+    const size_t size = gm_mesh_size(&params, &f->pair);
+    GM_ASSERT_INT(
+        gm_mesh_init(&mesh, &params, &f->pair, f->flanks[0], f->flanks[1], malloc(size), size),
+        GM_OK);
+    return mesh;
+}
+
+static void make_edged(edged *e, int side, int corner, int has_flanks) {
+    fixture *f = &e->f;
+    memset(e, 0, sizeof *e);
+    f->pair = reference_pair(REFERENCE_FACE_WIDTH);
+    if (has_flanks) {
+        read_flanks(f, 0, PAPER "pinion_flanks.csv", PAPER "pinion_pitch.csv");
+        read_flanks(f, 1, PAPER "wheel_flanks.csv", PAPER "wheel_pitch.csv");
+    }
+    gm_cache_params params = default_params();
+    params.side = side;
+    f->mesh = make_edged_mesh(f, corner, 2e3);
+    e->exact = make_edged_mesh(f, corner, 2e3);
+    f->size = gm_cache_size(&params, f->mesh);
+    GM_ASSERT_INT(gm_cache_init(&f->cache, &params, f->mesh, malloc(f->size), f->size), GM_OK);
+    GM_ASSERT_INT(gm_mesh_use_cache(f->mesh, f->cache), GM_OK);
+}
+
+static void free_edged(edged *e) {
+    free(e->exact);
+    free_fixture(&e->f);
+}
+
+/* A random state as deep as under about 1 to 40 N m. */
+static gm_position edged_position(edged *e, uint64_t *seed, int i) {
+    fixture *f = &e->f;
+    gm_position position = random_position(f, seed);
+    position.offset = offset_of(f, gm_test_uniform(seed, 0.5e-6, 14e-6));
+    position.offset_rate = i % 2 == 0 ? 0.0 : gm_test_uniform(seed, -2e-4, 2e-4);
+    return position;
+}
+
+typedef struct edged_errors {
+    double force, force_rms, torque, torque_rms; /* over the mean force, and of that times r_b */
+} edged_errors;
+
+/* How far the cache is off, of force and of what both torques are beside it. */
+static void measure_edged(edged *e, int states, edged_errors *errors) {
+    fixture *f = &e->f;
+    uint64_t seed = 5;
+    const edged_errors none = {0.0, 0.0, 0.0, 0.0};
+    const double force = 1e8 * sum_at_20_Nm;
+    const double r_bp = f->pair.pinion.base_radius, r_bw = f->pair.wheel.base_radius;
+    *errors = none;
+    for (int i = 0; i < states; ++i) {
+        const gm_position position = edged_position(e, &seed, i);
+        gm_mesh_result exact, found;
+        GM_ASSERT_INT(gm_mesh_evaluate_at(e->exact, &position, 0, NULL, &exact), GM_OK);
+        GM_ASSERT_INT(gm_mesh_evaluate_at(f->mesh, &position, 0, NULL, &found), GM_OK);
+        const double off = fabs(found.force - exact.force) / force;
+        const double arms[2] = {
+            (found.pinion_torque / r_bp - found.force) - (exact.pinion_torque / r_bp - exact.force),
+            (found.wheel_torque / r_bw - found.force) - (exact.wheel_torque / r_bw - exact.force)};
+        errors->force = fmax(errors->force, off);
+        errors->force_rms += off * off / states;
+        for (int gear = 0; gear < 2; ++gear) {
+            errors->torque = fmax(errors->torque, fabs(arms[gear]) / force);
+            errors->torque_rms += arms[gear] * arms[gear] / (2.0 * states * force * force);
+        }
+    }
+    errors->force_rms = sqrt(errors->force_rms);
+    errors->torque_rms = sqrt(errors->torque_rms);
+}
+
+static void corners_are_held(void) {
+    for (int i = 0; i < 4; ++i) {
+        edged e;
+        edged_errors with, without;
+        gm_test_context("case %d", i);
+        make_edged(&e, i % 2 == 0 ? GM_DRIVE : GM_COAST, GM_CORNER_ON, i < 2);
+        measure_edged(&e, 4000, &with);
+        free_edged(&e);
+        make_edged(&e, i % 2 == 0 ? GM_DRIVE : GM_COAST, GM_CORNER_OFF, i < 2);
+        measure_edged(&e, 4000, &without);
+        free_edged(&e);
+
+        /* As near as without them; and what edges make of the torques is 1 % of that. */
+        GM_ASSERT(with.force_rms < 3e-4);
+        GM_ASSERT(with.force < 4e-3);
+        GM_ASSERT(with.torque_rms < 4e-5);
+        GM_ASSERT(with.torque < 4e-4);
+        GM_ASSERT(without.force_rms < 2.5e-4);
+    }
+}
+
+/* Force and torques with corners: derivatives are those of what is looked up, what damps held in those by angles. */
+static void derivatives_with_corners_are_those_of_differences(void) {
+    edged e;
+    fixture *f = &e.f;
+    make_edged(&e, GM_DRIVE, GM_CORNER_ON, 1);
+    uint64_t seed = 17;
+    int met = 0, rejected = 0;
+    for (int i = 0; i < 300; ++i) {
+        const gm_position position = edged_position(&e, &seed, i);
+        gm_mesh_result r;
+        GM_ASSERT_INT(gm_mesh_evaluate_at(f->mesh, &position, GM_WANT_DERIVATIVES, NULL, &r),
+                      GM_OK);
+        for (int which = position.offset_rate == 0.0 ? 0 : 2; which < 4; ++which) {
+            gm_test_context("state %d, by %d", i, which);
+            const double r_bp = f->pair.pinion.base_radius, r_bw = f->pair.wheel.base_radius;
+            const double h = which < 2 ? 2e-9 / r_bp : 1e-5;
+            double difference[2][3] = {{0.0}};
+            for (int k = 0; k < 4; ++k) {
+                gm_position moved = position;
+                const double by = (k % 2 == 0 ? -h : h) * (k < 2 ? 1.0 : 0.5);
+                moved.offset += which == 0 ? r_bp * by : which == 1 ? -r_bw * by : 0.0;
+                moved.phase += which == 0 ? r_bp * by : 0.0;
+                moved.offset_rate += which == 2 ? r_bp * by : which == 3 ? -r_bw * by : 0.0;
+                gm_mesh_result at;
+                GM_ASSERT_INT(gm_mesh_evaluate_at(f->mesh, &moved, 0, NULL, &at), GM_OK);
+                const double value[3] = {at.force, at.pinion_torque, at.wheel_torque};
+                for (int of = 0; of < 3; ++of) {
+                    difference[k / 2][of] += (k % 2 == 0 ? -0.5 : 0.5) * value[of] / fabs(by);
+                }
+            }
+            const gm_gradient *by[3] = {&r.force_by, &r.pinion_torque_by, &r.wheel_torque_by};
+            double found[3], expected[3], doubt[3];
+            for (int of = 0; of < 3; ++of) {
+                const double parts[4] = {by[of]->pinion_angle, by[of]->wheel_angle,
+                                         by[of]->pinion_speed, by[of]->wheel_speed};
+                const double arm = of == 0 ? 1.0 : of == 1 ? r_bp : r_bw;
+                found[of] = parts[which] / arm;
+                expected[of] = difference[1][of] / arm;
+                doubt[of] = fabs(difference[0][of] - difference[1][of]) / arm;
+            }
+            const double size = fabs(found[0]) + (which < 2 ? 1e5 : 1.0);
+            if (doubt[0] + doubt[1] + doubt[2] > 1e-5 * size) {
+                ++rejected; /* an edge of a cell between */
+                continue;
+            }
+            GM_ASSERT_ABS(found[0], expected[0], 1e-4 * size);
+
+            /* And what edges add to it in both torques. */
+            for (int of = 1; of < 3; ++of) {
+                GM_ASSERT_ABS(found[of] - found[0], expected[of] - expected[0],
+                              1e-6 * size + 1e-3 * fabs(found[of] - found[0]));
+                ++met;
+            }
+        }
+    }
+    GM_ASSERT(met > 1500);
+    GM_ASSERT(rejected < 100);
+    free_edged(&e);
+}
+
+/* Pairs are counted, wrenches and the other flank are exact, and so is what is deeper than the cache. */
+static void what_a_cache_does_not_hold_of_corners_is_exact(void) {
+    edged e;
+    fixture *f = &e.f;
+    make_edged(&e, GM_DRIVE, GM_CORNER_ON, 1);
+    uint64_t seed = 23;
+    for (int i = 0; i < 200; ++i) {
+        gm_test_context("state %d", i);
+        gm_position position = edged_position(&e, &seed, i);
+        if (i % 4 >= 2) {
+            position.offset = i % 4 == 2 ? -position.offset : offset_of(f, 90e-6);
+        }
+        const int wanted = i % 4 == 0   ? GM_WANT_PAIRS
+                           : i % 4 == 1 ? GM_WANT_WRENCH
+                                        : GM_WANT_DERIVATIVES;
+        gm_mesh_result exact, found;
+        GM_ASSERT_INT(gm_mesh_evaluate_at(e.exact, &position, wanted, NULL, &exact), GM_OK);
+        GM_ASSERT_INT(gm_mesh_evaluate_at(f->mesh, &position, wanted, NULL, &found), GM_OK);
+        if (i % 4 == 0) {
+            GM_ASSERT_INT(found.contact.drive_pairs, exact.contact.drive_pairs);
+            GM_ASSERT_INT(found.contact.coast_pairs, exact.contact.coast_pairs);
+        } else {
+            GM_ASSERT(memcmp(&found.force, &exact.force, sizeof found.force) == 0);
+            GM_ASSERT(found.wheel_torque == exact.wheel_torque);
+            GM_ASSERT(found.pinion_torque == exact.pinion_torque);
+        }
+    }
+    free_edged(&e);
 }
 
 /* Tips so short that some phases have no line of contact: nothing to look up, and nothing to look for without end. */
@@ -1094,6 +1285,9 @@ int main(int argc, char **argv) {
         GM_TEST(kinks_of_a_given_start_have_their_columns),
         GM_TEST(columns_begin_where_contact_does),
         GM_TEST(columns_begin_where_the_exact_sum_does),
+        GM_TEST(corners_are_held),
+        GM_TEST(derivatives_with_corners_are_those_of_differences),
+        GM_TEST(what_a_cache_does_not_hold_of_corners_is_exact),
         GM_TEST(a_pair_that_hardly_touches_is_measured_in_bounded_time),
         GM_TEST(passes_are_those_that_happen),
         GM_TEST(strangers_are_evaluated_exactly),

@@ -1254,7 +1254,6 @@ static void loads_of_tilted_spur_lines_are_the_force(void) {
 
 /* A pair of which a tip reaches to the mate's base circle, and what no corner goes with. */
 static void what_corners_do_not_go_with_is_refused(void) {
-    const gm_pair pair = reference_pair(REFERENCE_FACE_WIDTH);
     gm_mesh_params params;
     const char *field, *requirement;
     gm_mesh_params_default(&params);
@@ -1269,14 +1268,6 @@ static void what_corners_do_not_go_with_is_refused(void) {
     GM_ASSERT_INT(gm_mesh_params_check(&params, &field, &requirement), GM_ERR_PARAMETER);
     GM_ASSERT_STRING(field, "corner_contact");
 
-    /* No cache. */
-    room where;
-    gm_mesh *mesh;
-    GM_ASSERT_INT(make_mesh(&where, &pair, NULL, NULL, GM_CORNER_ON, 0.0, &mesh), GM_OK);
-    gm_cache_params cache;
-    gm_cache_params_default(&cache);
-    GM_ASSERT_INT(gm_cache_size(&cache, mesh), 0);
-
     /* 10 teeth without shift are cut by the tips of 60. */
     gm_pair_params cut;
     gm_pair_params_default(&cut);
@@ -1287,6 +1278,8 @@ static void what_corners_do_not_go_with_is_refused(void) {
     cut.center_distance = 70e-3;
     cut.face_width = 10e-3;
     const gm_pair undercut = make_pair(&cut);
+    room where;
+    gm_mesh *mesh;
     GM_ASSERT_INT(make_mesh(&where, &undercut, NULL, NULL, GM_CORNER_ON, 0.0, &mesh),
                   GM_ERR_GEOMETRY);
     GM_ASSERT_INT(make_mesh(&where, &undercut, NULL, NULL, GM_CORNER_BY_LAW, 0.0, &mesh), GM_OK);

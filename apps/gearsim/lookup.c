@@ -95,12 +95,13 @@ static int has_flanks(const gear_mesh *gears) {
 /* Whether the flanks are tables alone, between parallel axes and as stiff everywhere: columns are then walked. */
 static int has_plain_tables(const config *conf, const gear_mesh *gears) {
     return conf->law != LAW_ELASTIC && has_flanks(gears) && !has_modifications(conf) &&
-           !is_tilted(conf);
+           !is_tilted(conf) && !config_has_corners(conf);
 }
 
-/* Even flanks of constant stiffness are sums of series, which no table is faster than. */
+/* Even flanks of constant stiffness are sums of series, which no table is faster than; but for what their edges do. */
 static int is_dear(const config *conf, const gear_mesh *gears) {
-    return conf->law == LAW_ELASTIC || has_flanks(gears) || is_tilted(conf);
+    return conf->law == LAW_ELASTIC || has_flanks(gears) || is_tilted(conf) ||
+           config_has_corners(conf);
 }
 
 /* Why these gears cannot have tables, NULL if they can: meshes that are not smooth, or have more in them than the tables. */
@@ -113,9 +114,6 @@ static const char *obstacle(const config *conf, const gear_mesh *gears) {
     }
     if (config_has_friction(conf)) {
         return "must be off with friction, which the tables do not hold (got on)";
-    }
-    if (config_has_corners(conf)) {
-        return "must be off with corner contact, which the tables do not hold (got on)";
     }
     return NULL;
 }
@@ -178,8 +176,11 @@ static int coarsest_of(const config *conf) {
     return (conf->law == LAW_ELASTIC) + (conf->relative_tolerance < coarse_tolerance);
 }
 
-static double columns_of(const gm_cache_params *params, const gear_mesh *gears) {
-    const double column = (double)sizeof(double) + (params->depth_cells + 1) * 4.0 * sizeof(float);
+static double columns_of(const config *conf, const gm_cache_params *params,
+                         const gear_mesh *gears) {
+    const double values = conf->law != LAW_ELASTIC && config_has_corners(conf) ? 6.0 : 4.0;
+    const double column =
+        (double)sizeof(double) + (params->depth_cells + 1) * values * sizeof(float);
 
     return floor((double)gm_cache_size(params, gears->prepared[0]) / column);
 }
@@ -207,7 +208,7 @@ static double filling_of(const config *conf, const gear_mesh *gears, const gm_ca
                                   ? per_walked_column + per_walked_node * nodes
                                   : per_start + nodes;
 
-    return met * columns_of(params, gears) * per_column;
+    return met * columns_of(conf, params, gears) * per_column;
 }
 
 lookup_choice lookup_choose(const config *conf, const gear_mesh *gears) {

@@ -12,8 +12,12 @@
  * In phase the sum has kinks: where a line of contact enters or leaves the field of action through a corner, four
  * times per base pitch. Columns stand just before and just behind each kink, so that all other cells are smooth. A
  * kink moves with delta where the wheel sets the limit; the cell around it is as wide as it moves, and narrow still.
+ *
+ * With corner contact lines enter and leave without a kink. What a tip's arm is shorter by is small beside the sum: each
+ * node keeps it for both tips, and it is straight in delta and phase between them.
  */
 #include "cache.h"
+#include "corner.h"
 #include "elastic_mesh.h"
 #include "internal.h"
 #include "penetration.h"
@@ -107,8 +111,8 @@ static void insert_knot(double knots[KNOTS], int *count, double phase) {
     knots[place] = phase;
 }
 
-/* Line k is in a corner where origin + k p_bt + t1 advance = end, with t1 = 0 or 1; see contact.c. */
-static void find_knots(const gm_cache *cache, double knots[KNOTS]) {
+/* How many there are. Line k is in a corner where origin + k p_bt + t1 advance = end, with t1 = 0 or 1; see contact.c. */
+static int find_knots(const gm_cache *cache, double knots[KNOTS]) {
     const gm_pair *pair = cache->pair;
     const gmi_engagement *at = &cache->mesh->engagement;
     const double p_bt = pair->transverse_base_pitch;
@@ -122,6 +126,9 @@ static void find_knots(const gm_cache *cache, double knots[KNOTS]) {
     int count = 0;
     insert_knot(knots, &count, 0.0);
     insert_knot(knots, &count, p_bt);
+    if (cache->has_corners) {
+        return count;
+    }
 
     /* Each corner of the field of action: lower or upper end of the path, one end of the face or the other. */
     for (int corner = 0; corner < CORNERS; ++corner) {
@@ -135,21 +142,22 @@ static void find_knots(const gm_cache *cache, double knots[KNOTS]) {
             insert_knot(knots, &count, phase - p_bt * floor(phase / p_bt));
         }
     }
+    return count;
 }
 
 /* Knots, and equal steps between them of at most p_bt / cells. Returns the number of columns; phases may be NULL. */
 static int place_columns(const gm_cache *cache, int cells, double *phases) {
     const double p_bt = cache->pair->transverse_base_pitch;
     double knots[KNOTS];
-    find_knots(cache, knots);
+    const int count = find_knots(cache, knots);
 
     /* From knot to knot; those that lie together are one. */
     int columns = 0;
     double from = 0.0;
-    for (int i = 1; i < KNOTS; ++i) {
+    for (int i = 1; i < count; ++i) {
         /* The last knot is p_bt, or another one within a rounding of it. */
-        const double width = (i == KNOTS - 1 ? p_bt : knots[i]) - from;
-        if (width < 0.5 * kink_margin * p_bt && i < KNOTS - 1) {
+        const double width = (i == count - 1 ? p_bt : knots[i]) - from;
+        if (width < 0.5 * kink_margin * p_bt && i < count - 1) {
             continue;
         }
 
@@ -201,7 +209,7 @@ static int describe(gm_cache *cache, const gm_cache_params *params, const gm_mes
     if (!check_params(params, pair)) {
         return GM_ERR_PARAMETER;
     }
-    if (pair->face_advance == 0.0 || mesh->model == GM_MODEL_SIMPLE || mesh->has_corners) {
+    if (pair->face_advance == 0.0 || mesh->model == GM_MODEL_SIMPLE) {
         return GM_ERR_GEOMETRY;
     }
 
@@ -211,6 +219,7 @@ static int describe(gm_cache *cache, const gm_cache_params *params, const gm_mes
     cache->mesh = mesh;
     cache->pair = pair;
     cache->side = params->side;
+    cache->has_corners = mesh->has_corners;
     cache->pinion_period = period_of(side->pinion, pair->pinion.teeth);
     cache->wheel_period = period_of(side->wheel, pair->wheel.teeth);
 
@@ -244,9 +253,10 @@ static size_t all_columns(const gm_cache *cache) {
     return (size_t)cache->passes * (size_t)cache->columns;
 }
 
-/* Bytes: the object, a phase per column, a start per column of every pass, then the nodes. 0 if too many. */
+/* Bytes: the object, a phase per column, a start per column of every pass, then nodes and arms. 0 if too many. */
 static size_t bytes_of(const gm_cache *cache) {
-    const uint64_t column = sizeof(double) + (uint64_t)cache->nodes * NODE_VALUES * sizeof(float);
+    const uint64_t values = NODE_VALUES + (cache->has_corners ? 2 : 0);
+    const uint64_t column = sizeof(double) + (uint64_t)cache->nodes * values * sizeof(float);
     const uint64_t bytes = sizeof *cache + (uint64_t)cache->columns * sizeof(double) +
                            (uint64_t)all_columns(cache) * column;
     return bytes <= SIZE_MAX / 2 ? (size_t)bytes : 0;
@@ -276,12 +286,13 @@ int gm_cache_init(gm_cache **cache, const gm_cache_params *params, const gm_mesh
         return GM_ERR_MEMORY;
     }
 
-    /* The object, then phases, starts and nodes. */
+    /* The object, then phases, starts, nodes and arms. */
     gm_cache *made = (gm_cache *)memory;
     *made = described;
     made->phases = (double *)(made + 1);
     made->starts = made->phases + made->columns;
     made->values = (float *)(made->starts + all_columns(made));
+    made->arms = made->values + all_columns(made) * (size_t)made->nodes * NODE_VALUES;
     (void)place_columns(made, params->phase_cells, made->phases);
     for (size_t column = 0; column < all_columns(made); ++column) {
         made->starts[column] = gmi_nan(); /* not filled */
@@ -298,11 +309,26 @@ int gm_cache_passes(const gm_cache *cache) {
  * Filling
  * ------------------------------------------------------------------------------------------- */
 
+/* With corners; arm: NULL = not wanted. */
+static OWN_STACK gmi_side_sum exact_corners(const gm_cache *cache, const gm_position *position,
+                                            float arm[2]) {
+    const gm_mesh *mesh = cache->mesh;
+    gmi_corner_sums sums;
+    gmi_side_sum_corners(mesh, cache->side, position, GMI_DERIVATIVES, 0.0, NULL, &sums);
+    for (int role = GM_PINION; role <= GM_WHEEL && arm != NULL; ++role) {
+        arm[role] = (float)(sums.tips[role].arm / mesh->law.stiffness);
+    }
+    return sums.side;
+}
+
 static gmi_side_sum exact_at(const gm_cache *cache, gm_position *position, double delta,
-                             gm_workspace *workspace) {
+                             gm_workspace *workspace, float arm[2]) {
     const double offset = delta + 0.5 * cache->mesh->engagement.backlash;
     gmi_side_sum sum;
     position->offset = gmi_side_sign(cache->side) * offset;
+    if (cache->has_corners) {
+        return exact_corners(cache, position, arm);
+    }
     (void)gmi_side_sum_by_law(
         cache->mesh, cache->side, position,
         GMI_DERIVATIVES | (cache->mesh->engagement.is_tilted ? GMI_MOMENTS : 0), workspace, &sum);
@@ -316,7 +342,7 @@ static double find_start(const gm_cache *cache, gm_position *position, gm_worksp
     /* In growing steps upwards to the first delta at which something touches. */
     double without = cache->lowest;
     double step = cache->depth;
-    for (; exact_at(cache, position, without + step, workspace).sum == 0.0; step *= 2.0) {
+    for (; exact_at(cache, position, without + step, workspace, NULL).sum == 0.0; step *= 2.0) {
         without += step;
         if (without > 0.5 * cache->pair->transverse_base_pitch) {
             return HUGE_VAL;
@@ -326,7 +352,7 @@ static double find_start(const gm_cache *cache, gm_position *position, gm_worksp
     /* Bisection between there and the last delta without contact. */
     while (step > fine) {
         step *= 0.5;
-        if (exact_at(cache, position, without + step, workspace).sum == 0.0) {
+        if (exact_at(cache, position, without + step, workspace, NULL).sum == 0.0) {
             without += step;
         }
     }
@@ -335,6 +361,11 @@ static double find_start(const gm_cache *cache, gm_position *position, gm_worksp
 
 static float *values_of(const gm_cache *cache, size_t column) {
     return cache->values + column * (size_t)cache->nodes * NODE_VALUES;
+}
+
+/* With corners. */
+static float *arms_of(const gm_cache *cache, size_t column) {
+    return cache->arms + column * (size_t)cache->nodes * 2;
 }
 
 /* d2 sum / d phase d delta from the neighbours: it has to be the same for both cells, and not more. */
@@ -420,7 +451,7 @@ static OWN_STACK double walk_column(const gm_cache *cache, gm_position *position
 }
 
 /* Nodes from the first touch on, each by an evaluation; none where no line exists. */
-static double evaluate_column(const gm_cache *cache, gm_position *position, float *values,
+static double evaluate_column(const gm_cache *cache, gm_position *position, size_t column,
                               gm_workspace *workspace) {
     const double start = find_start(cache, position, workspace);
     if (!(start < HUGE_VAL)) {
@@ -428,12 +459,18 @@ static double evaluate_column(const gm_cache *cache, gm_position *position, floa
     }
 
     /* Even flanks touch all at once: the slope at the start is the one behind it. */
+    float *values = values_of(cache, column);
+    float arm[2] = {0.0F, 0.0F};
     gmi_side_sum sum =
-        exact_at(cache, position, start + ldexp(cache->depth, -START_BISECTIONS), workspace);
-    set_node(cache, values, 0.0, &sum);
-    for (int n = 1; n < cache->nodes; ++n) {
-        sum = exact_at(cache, position, start + (double)n * cache->step, workspace);
-        set_node(cache, values + n * NODE_VALUES, sum.sum, &sum);
+        exact_at(cache, position, start + ldexp(cache->depth, -START_BISECTIONS), workspace, NULL);
+    for (int n = 0; n < cache->nodes; ++n) {
+        if (n > 0) {
+            sum = exact_at(cache, position, start + (double)n * cache->step, workspace, arm);
+        }
+        set_node(cache, values + n * NODE_VALUES, n > 0 ? sum.sum : 0.0, &sum);
+        if (cache->has_corners) {
+            memcpy(arms_of(cache, column) + 2 * n, arm, sizeof arm);
+        }
     }
     return start;
 }
@@ -446,7 +483,7 @@ static void fill_column(gm_cache *cache, int pass, int index, gm_workspace *work
 
     const double start = gmi_side_has_depths(cache->mesh, cache->side)
                              ? walk_column(cache, &position, values)
-                             : evaluate_column(cache, &position, values, workspace);
+                             : evaluate_column(cache, &position, column, workspace);
     if (start < HUGE_VAL) {
         set_mixed(values, cache->nodes);
     }
@@ -586,8 +623,39 @@ static void join_columns(const gm_cache *cache, int index, double phase, const c
     sum->pairs = -1;
 }
 
+/* Straight in delta along one column: 0 where nothing touches. */
+static gmi_cache_arm arm_in_column(const gm_cache *cache, size_t column, double delta, int role) {
+    const double place = (delta - cache->starts[column]) * cache->per_step;
+    gmi_cache_arm arm = {0.0, 0.0, 0.0};
+    if (place > 0.0) {
+        const int n = (int)place;
+        const float *node = arms_of(cache, column) + 2 * n + role;
+        const double grows = (double)node[2] - (double)node[0];
+        arm.value = (double)node[0] + (place - (double)n) * grows;
+        arm.by_delta = grows * cache->per_step;
+    }
+    return arm;
+}
+
+/* And straight in the phase between two of them. */
+static void look_up_arms(const gm_cache *cache, size_t column, int index, double phase,
+                         double delta, gmi_cache_arm arms[2]) {
+    const double width = cache->phases[index + 1] - cache->phases[index];
+    const double share = (phase - cache->phases[index]) / width;
+    const double per_width = gmi_side_sign(cache->side) / width;
+    for (int role = GM_PINION; role <= GM_WHEEL; ++role) {
+        const gmi_cache_arm a = arm_in_column(cache, column, delta, role);
+        const gmi_cache_arm b = arm_in_column(cache, column + 1, delta, role);
+        arms[role].value = a.value + share * (b.value - a.value);
+        arms[role].by_delta = a.by_delta + share * (b.by_delta - a.by_delta);
+        arms[role].by_origin = (b.value - a.value) * per_width;
+    }
+}
+
 int gmi_cache_look_up(gm_cache *cache, const gm_position *position, gm_workspace *workspace,
-                      gmi_side_sum *sum) {
+                      gmi_side_sum *sum, gmi_cache_arm arms[2]) {
+    static const gmi_cache_arm none = {0.0, 0.0, 0.0};
+    arms[GM_PINION] = arms[GM_WHEEL] = none;
     const double delta =
         gmi_ideal_penetration(&cache->mesh->engagement, cache->side, position->offset);
     *sum = gmi_no_contact();
@@ -612,6 +680,9 @@ int gmi_cache_look_up(gm_cache *cache, const gm_position *position, gm_workspace
         return 0;
     }
     join_columns(cache, index, position->phase, &a, &b, sum);
+    if (cache->has_corners && sum->sum > 0.0) {
+        look_up_arms(cache, column, index, position->phase, delta, arms);
+    }
     return 1;
 }
 
@@ -655,8 +726,9 @@ int gm_cache_error(gm_cache *cache, int states, unsigned seed, gm_workspace *wor
         }
 
         gmi_side_sum looked_up;
-        const gmi_side_sum exact = exact_at(cache, &position, start + depth, workspace);
-        if (!gmi_cache_look_up(cache, &position, workspace, &looked_up)) {
+        gmi_cache_arm arms[2];
+        const gmi_side_sum exact = exact_at(cache, &position, start + depth, workspace, NULL);
+        if (!gmi_cache_look_up(cache, &position, workspace, &looked_up, arms)) {
             continue; /* beyond the cache, which answers exactly there */
         }
         add_error(looked_up.sum - exact.sum, &sum_largest, &sum_squares);

@@ -16,6 +16,7 @@ struct gm_cache {
     int common;          /* greatest common divisor of both */
     int passes;          /* tooth passes: least common multiple of both periods */
     int columns;         /* phases per tooth pass */
+    int has_corners;     /* of a constant stiffness: torques need arms too */
     int nodes;           /* places in delta per phase */
     double depth;        /* as in the parameters (m) */
     double step;         /* of delta (m) */
@@ -27,10 +28,17 @@ struct gm_cache {
     double *starts;
 
     float *values; /* [passes][columns][nodes][4] */
+    float *
+        arms; /* [passes][columns][nodes][enum gm_role] with corners: integral of f gap' at that tip (m) */
 };
 
-/* The sum of the side that the cache holds. Returns 0 where the exact evaluation has to answer. */
+/* That of one tip (m): by how much shorter its gear's arm is, over its r_b, times the sum; and how it changes (1). */
+typedef struct gmi_cache_arm {
+    double value, by_origin, by_delta;
+} gmi_cache_arm;
+
+/* The sum of the side that the cache holds, and with corners their arms. 0 where the exact evaluation has to answer. */
 int gmi_cache_look_up(gm_cache *cache, const gm_position *position, gm_workspace *workspace,
-                      gmi_side_sum *sum);
+                      gmi_side_sum *sum, gmi_cache_arm arms[2]);
 
 #endif

@@ -993,14 +993,63 @@ int gmi_mesh_evaluate_exact(const gm_mesh *mesh, const gm_position *position, in
     return GM_OK;
 }
 
+/* Tips of a side that the cache holds. What damps there grows with what touches, as the arms do with delta. */
+static void set_cached_tips(const gmi_law *law, const gmi_cache_arm arms[2], double approach,
+                            gmi_corner_sums *sums) {
+    const double viscous = law->damping * approach;
+    for (int role = GM_PINION; role <= GM_WHEEL; ++role) {
+        const gmi_cache_arm *arm = &arms[role];
+        gmi_tip_load *tip = &sums->tips[role];
+        tip->arm = law->stiffness * arm->value + viscous * arm->by_delta;
+        tip->arm_by_origin = law->stiffness * arm->by_origin;
+        tip->arm_by_delta = law->stiffness * arm->by_delta;
+        tip->arm_by_speed = law->damping * arm->by_delta;
+    }
+}
+
+/* One side with corners: from the cache, if that holds it. */
+static OWN_STACK void set_cached_side(const gm_mesh *mesh, const gm_position *position, int side,
+                                      const double approach[2], int wanted,
+                                      const gmi_side_sum *found, const gmi_cache_arm arms[2],
+                                      gm_mesh_result *result) {
+    const int mask = wanted & GM_WANT_DERIVATIVES ? GMI_DERIVATIVES : GMI_SUM;
+    const int is_held = side == mesh->cache->side;
+    gmi_corner_sums sums;
+    int pairs = found->pairs;
+    if (!is_held || ((wanted & GM_WANT_PAIRS) && pairs < 0)) {
+        gmi_side_sum_corners(mesh, side, position, is_held ? GMI_SUM : mask, approach[side], NULL,
+                             &sums);
+        pairs = sums.side.pairs;
+    }
+    if (is_held) {
+        memset(&sums, 0, sizeof sums);
+        sums.side = *found;
+        sums.side.pairs = pairs;
+        set_cached_tips(&mesh->law, arms, approach[side], &sums);
+    }
+    if (side == GM_DRIVE) {
+        set_drive(mesh, &sums, approach, wanted, result);
+    } else if (sums.side.contact > 0.0) {
+        add_coast(mesh, &sums, approach, wanted, result);
+    }
+}
+
 /* The cache holds one side; the other one hardly ever touches, and is exact. */
 static int evaluate_cached(const gm_mesh *mesh, const gm_position *position, int wanted,
                            gm_workspace *workspace, gm_mesh_result *result) {
     const int held = mesh->cache->side;
     gmi_side_sum sums[2];
+    gmi_cache_arm arms[2];
     if ((wanted & (GM_WANT_WRENCH | GM_WANT_ENERGY)) ||
-        !gmi_cache_look_up(mesh->cache, position, workspace, &sums[held])) {
+        !gmi_cache_look_up(mesh->cache, position, workspace, &sums[held], arms)) {
         return gmi_mesh_evaluate_exact(mesh, position, wanted, workspace, result);
+    }
+    const double approach[2] = {position->offset_rate, -position->offset_rate};
+    if (mesh->has_corners) {
+        for (int side = GM_DRIVE; side <= GM_COAST; ++side) {
+            set_cached_side(mesh, position, side, approach, wanted, &sums[held], arms, result);
+        }
+        return GM_OK;
     }
 
     const int other = held == GM_DRIVE ? GM_COAST : GM_DRIVE;
@@ -1017,7 +1066,6 @@ static int evaluate_cached(const gm_mesh *mesh, const gm_position *position, int
         gmi_mesh_result_set_nan(result);
         return status;
     }
-    const double approach[2] = {position->offset_rate, -position->offset_rate};
     set_result(mesh, &sums[GM_DRIVE], &sums[GM_COAST], NULL, approach, wanted, result);
     return GM_OK;
 }

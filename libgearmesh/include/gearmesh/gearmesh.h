@@ -824,8 +824,7 @@ typedef struct gm_mesh_params {
     int stations; /**< along the face, 2 .. 97; docs/elastic.md has the error of each number [17] */
 
     /** enum gm_corner_contact [GM_CORNER_BY_LAW]. GM_CORNER_ON: 3D model, no tip that reaches to the mate's base
-     *  circle. Start radii then end no line. With constant stiffness gm_cache_init() refuses it, and line loads have no
-     *  pressure under an edge. */
+     *  circle. Start radii then end no line. With constant stiffness line loads have no pressure under an edge. */
     int corner_contact;
 
     /** radius of the tip edges of elastic teeth in modules, 0.001 .. 1 [0.05] */
@@ -1516,7 +1515,7 @@ GM_API void gm_cache_params_default(gm_cache_params *params);
 
 /**
  * Bytes of memory that gm_cache_init() needs: 16 bytes for each of passes * columns * (depth_cells + 1)
- * nodes, and some. There is one tooth pass if all teeth of a gear have the same flank, on both gears,
+ * nodes, 24 with corner contact of a constant stiffness, and some. There is one tooth pass if all teeth of a gear have the same flank, on both gears,
  * else up to z_p z_w / gcd(z_p, z_w): 28.2 MB for the 1845 of 45/41 teeth with the defaults.
  *
  * @return 0 where gm_cache_init() would refuse
@@ -1532,7 +1531,7 @@ GM_API size_t gm_cache_size(const gm_cache_params *params, const gm_mesh *mesh);
  * @param[in]  mesh         3D model of helical gears: the sum of spur gears jumps, and no polynomial follows that
  * @param[in]  memory       at least gm_cache_size() bytes, aligned for double
  * @param[in]  memory_size  bytes in memory
- * @return GM_OK, GM_ERR_NULL, GM_ERR_PARAMETER, GM_ERR_GEOMETRY (spur gears, the simple model, or corner contact),
+ * @return GM_OK, GM_ERR_NULL, GM_ERR_PARAMETER, GM_ERR_GEOMETRY (spur gears, or the simple model),
  *         GM_ERR_MEMORY (too little or not aligned, or more than a computer has)
  */
 GM_API int gm_cache_init(gm_cache **cache, const gm_cache_params *params, const gm_mesh *mesh,
