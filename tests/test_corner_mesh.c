@@ -468,7 +468,7 @@ static void compare_friction(int i, double *torque_off, double *loss_off, double
                     .wheel_speed = -pair->wheel.sign * position.pinion_speed *
                                    pair->pinion.base_radius / pair->wheel.base_radius,
                     .is_chain = 1,
-                    .points = 40000};
+                    .points = 10000};
     brute_side(&c, &position, GM_DRIVE, &points);
     const double torque = with.force * pair->pinion.base_radius;
     *torque_off = (with.pinion_torque - without.pinion_torque - k * points.turning) / torque;

@@ -248,6 +248,12 @@ class Slips(unittest.TestCase):
             with self.subTest(settings):
                 self.assertNotIn("was it meant", self.check(settings).stderr)
 
+    def test_a_speed_is_not_taken_for_one_that_no_gear_reaches(self):
+        """3456.7 turns per second are 207 402 rpm, which is close to a multiple of 100 by chance."""
+        for speed in ("3456.7", "-3456.7", "4321.7"):
+            with self.subTest(speed):
+                self.assertNotIn("was it meant", self.check(f"drive.end_rpm={speed}").stderr)
+
     def test_a_stiffness_that_two_units_explain_names_both(self):
         result = self.check("gears.face_width_mm=5 mesh.stiffness_N_per_m=20")
         self.assertIn("was it meant in N/um? write 2e+07\n", result.stderr)

@@ -513,9 +513,10 @@ static void judge_torque(const config *conf, const char *key, double torque,
                 units, "more than the teeth bear");
 }
 
-/* A speed with decimals that is a round one in another unit, to the digits that people write. */
+/* A speed with decimals that is a round one in another unit, to the digits that people write, and that gears reach:
+   among the largest numbers nearly every one is close to a round one. */
 static void judge_speed(const config *conf, const char *key, double speed) {
-    static const double of_a_radian = 30 / 3.14159265358979323846, roundness = 100;
+    static const double of_a_radian = 30 / 3.14159265358979323846, roundness = 100, fastest = 3e4;
     static const other_unit units[] = {
         {"in rad/s", 30 / 3.14159265358979323846}, {"in turns per second", 60}, {NULL, 0}};
     const double written = of_a_radian * speed;
@@ -526,7 +527,7 @@ static void judge_speed(const config *conf, const char *key, double speed) {
     for (const other_unit *unit = units; unit->meant != NULL; ++unit) {
         const double meant = unit->size * written;
         const double round = roundness * floor(meant / roundness + 0.5);
-        if (round != 0 && fabs(meant - round) <= 5e-5 * fabs(round)) {
+        if (round != 0 && fabs(round) <= fastest && fabs(meant - round) <= 5e-5 * fabs(round)) {
             tell(conf, key, " rpm", "which is no round speed", unit->meant, round);
         }
     }
