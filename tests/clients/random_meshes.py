@@ -193,14 +193,17 @@ def write(path, made):
 # ----------------------------------------------------------------------------------------------------
 
 
-def evaluations(case, files=None):
-    """(result, apex) at each state, one by one, as a solver goes."""
+def evaluations(case, files=None, want=("derivatives", "wrench")):
+    """(result, apex) at each state, one by one, as a solver goes.
+
+    With derivatives the force between tip edges in a pose comes of another sum, up to rounding the same.
+    """
     mesh = case.mesh(files)
     for state, pose, rate in case.states:
         if np.isnan(case.gap):
-            yield mesh.evaluate(*state, want=("derivatives", "wrench"), pose=pose, pose_rate=rate), 0.0
+            yield mesh.evaluate(*state, want=want, pose=pose, pose_rate=rate), 0.0
         else:
-            found = mesh.evaluate(*state, want=("derivatives", "wrench"))
+            found = mesh.evaluate(*state, want=want)
             yield found.result, float(found.apex)
 
 
