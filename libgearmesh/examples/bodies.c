@@ -176,6 +176,7 @@ static double distance_from_differences(const gm_mesh *mesh, const gm_body bodie
     const double step = 1e-9;
     double off[2][2] = {{0.0}}, largest[2][2] = {{0.0}}, worst = 0.0;
     for (int k = 0; k < COORDINATES; ++k) {
+        /* The loads on both bodies, with one of them a step behind and ahead along a coordinate. */
         gm_load on[2][2];
         gm_mesh_result result;
         for (int side = 0; side < 2; ++side) {
@@ -186,6 +187,8 @@ static double distance_from_differences(const gm_mesh *mesh, const gm_body bodie
                 return HUGE_VAL;
             }
         }
+
+        /* Against the column of the matrix; forces and moments, shifts and turns each for themselves. */
         for (int i = 0; i < COORDINATES; ++i) {
             const int turns = k % 6 > 2, is_moment = i % 6 > 2;
             const gm_load *ahead = &on[1][i / 6], *behind = &on[0][i / 6];
@@ -196,6 +199,7 @@ static double distance_from_differences(const gm_mesh *mesh, const gm_body bodie
             *most = fmax(*most, fabs(by[k][i]));
         }
     }
+
     for (int kind = 0; kind < 4; ++kind) {
         worst = fmax(worst, off[kind / 2][kind % 2] / largest[kind / 2][kind % 2]);
     }

@@ -196,10 +196,14 @@ static int observe(void *cvode, gearbox *box, N_Vector state, N_Vector rates, FI
             derivatives(time, state, rates, box) != 0) {
             return 1;
         }
+
+        /* All is told from here on. */
         if (row == 0) {
             memcpy(before, y, sizeof before);
             energy = kinetic(y) + box->stored;
         }
+
+        /* Forces for the spectra, and where the energy has gone. */
         for (int stage = 0; stage < STAGES && row < ROWS; ++stage) {
             found->force[stage][row] = box->force[stage];
         }

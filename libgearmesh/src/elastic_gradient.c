@@ -305,12 +305,16 @@ static void differentiate_energy(const gmi_elastic *law, gmi_elastic_work *work,
                                  gmi_elastic_gradient *energy) {
     const int count = 2 * work->slots;
     const double half = 0.5 * law->hertz_compliance;
+
+    /* By the common roll. */
     energy_terms(count, half, work->force, work->load, work->deflection, work->deviation_by_roll,
                  work->tooth_by_roll, work->rate_by_roll, work->scratch);
     energy->by_roll = gmi_elastic_sum(count, work->scratch);
     if (work->straight) {
         energy->by_roll -= straight_energy_by(law, work, work->rate_by_roll);
     }
+
+    /* And by the line of action at a fixed roll of the pinion, where that is asked for. */
     if (work->at.slopes > 1) {
         double sum = 0.0;
         for (int p = 0; p < count; ++p) {

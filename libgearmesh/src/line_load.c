@@ -303,6 +303,8 @@ static double next_bend(const gm_mesh *mesh, const side_lines *found, double ori
         const gmi_surface_gear gear = gmi_surface_gear_of(mesh, found->side, role, found->reach);
         const double roll = gear.roll_from + gear.per_roll * origin;
         const double per_roll = gear.per_roll * found->lines.advance;
+
+        /* Face and profile lines of its table, and edges of its ramps. */
         if (gear.tables != NULL) {
             const gmi_grid *grid = gear.grid;
             next = fmin(next, next_whole(grid->face_base, grid->face_rate, t1));
@@ -314,6 +316,8 @@ static double next_bend(const gm_mesh *mesh, const side_lines *found, double ori
                                  ramp->per_t1 * grid->face_scale + per_own * per_roll, t1, next);
             }
         }
+
+        /* Where its tip is left. */
         if (mesh->has_corners) {
             gmi_beyond beyond;
             gmi_tilt_beyond(mesh->pair, &mesh->engagement, found->side, origin, found->delta, role,

@@ -1016,17 +1016,22 @@ static OWN_STACK void set_cached_side(const gm_mesh *mesh, const gm_position *po
     const int is_held = side == mesh->cache->side;
     gmi_corner_sums sums;
     int pairs = found->pairs;
+
+    /* The other side, and pairs that the cache does not count, are exact. */
     if (!is_held || ((wanted & GM_WANT_PAIRS) && pairs < 0)) {
         gmi_side_sum_corners(mesh, side, position, is_held ? GMI_SUM : mask, approach[side], NULL,
                              &sums);
         pairs = sums.side.pairs;
     }
+
+    /* Sum and arms of the tips from the cache. */
     if (is_held) {
         memset(&sums, 0, sizeof sums);
         sums.side = *found;
         sums.side.pairs = pairs;
         set_cached_tips(&mesh->law, arms, approach[side], &sums);
     }
+
     if (side == GM_DRIVE) {
         set_drive(mesh, &sums, approach, wanted, result);
     } else if (sums.side.contact > 0.0) {
