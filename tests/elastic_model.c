@@ -1,6 +1,8 @@
 /* SPDX-FileCopyrightText: The gearmesh authors */
 /* SPDX-License-Identifier: BSD-3-Clause */
 #include "elastic_model.h"
+#include "elastic.h"
+#include "tooth_compliance.h"
 
 enum { POINTS = 800, NODES = GMI_ELASTIC_STATIONS_MAX };
 

@@ -11,6 +11,7 @@
 #ifndef ELASTIC_MODEL_H
 #define ELASTIC_MODEL_H
 
+#include "elastic.h"
 #include "elastic_gear.h"
 
 typedef struct elastic_answer {

@@ -4,6 +4,7 @@
 /* The gap of a tip corner: published numbers, and the same corner turned about its axis and looked up on the mate's involute. */
 #include "corner.h"
 #include "gm_test.h"
+#include "meshing.h"
 #include "random_gears.h"
 #include "reference_gear.h"
 

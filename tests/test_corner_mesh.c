@@ -6,7 +6,10 @@
  * differences, and what the corner is there for: no jumps, no kinks, and an energy.
  */
 #include "corner.h"
+#include "flank.h"
+#include "friction.h"
 #include "gm_test.h"
+#include "meshing.h"
 #include "random_gears.h"
 #include "reference_gear.h"
 

@@ -5,7 +5,10 @@
  * Elastic teeth: properties that physics and mathematics demand, and a second implementation by another method on random
  * gears. Reference numbers are in test_elastic_reference.c.
  */
+#include "elastic.h"
 #include "elastic_model.h"
+#include "hertz.h"
+#include "tooth_compliance.h"
 
 #include <math.h>
 

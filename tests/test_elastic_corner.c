@@ -4,6 +4,7 @@
 /* Tip edges of elastic teeth beyond the path of contact: what they add at a point. Whole meshes: test_elastic_mesh.c. */
 #include "elastic_mesh.h"
 #include "gm_test.h"
+#include "meshing.h"
 
 #include <math.h>
 

@@ -8,7 +8,9 @@
 #include "elastic_mesh.h"
 #include "gearmesh/gearmesh.h"
 #include "gm_test.h"
+#include "mesh.h"
 #include "random_gears.h"
+#include "tilt.h"
 
 #define DEGREE 0.017453292519943296
 

@@ -5,7 +5,10 @@
  * Elastic teeth against reference numbers: those of an independent implementation to its digits, and finite elements to the
  * error that the model was seen to have. Reads reference/elastic.txt, whose head describes it.
  */
+#include "elastic.h"
 #include "elastic_gear.h"
+#include "hertz.h"
+#include "tooth_compliance.h"
 
 #include <math.h>
 

@@ -5,8 +5,8 @@
  * The energy stored in a mesh: against the second model, closed forms, and the forces whose work it is. Of elastic teeth
  * test_elastic_mesh.c has check values, and test_body.c the balance of power between two bodies.
  */
+#include "flank.h"
 #include "gm_test.h"
-#include "internal.h"
 #include "random_gears.h"
 #include "reference_gear.h"
 

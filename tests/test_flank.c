@@ -2,9 +2,9 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 
 /* Flank tables in the caller's memory: sizes, places, which tooth has which, and every refusal. */
+#include "flank.h" /* what the objects hold */
 #include "gearmesh/gearmesh.h"
 #include "gm_test.h"
-#include "internal.h" /* what the objects hold */
 #include "reference_gear.h"
 
 #include <string.h>

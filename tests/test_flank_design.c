@@ -2,7 +2,7 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 
 /* Designed modifications in prepared flanks: alone, on top of files, and what they do to a pair of gears. */
-#include "internal.h" /* what the objects hold */
+#include "flank.h" /* what the objects hold */
 #include "io_test.h"
 #include "reference_gear.h"
 

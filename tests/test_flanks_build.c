@@ -2,7 +2,7 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 
 /* Flanks from the contents of files: which set serves which tooth, scale, normal factor, profile window. */
-#include "internal.h" /* what the objects hold */
+#include "flank.h" /* what the objects hold */
 #include "io_test.h"
 
 enum { TEETH = 5, FACE_NODES = 3, PROFILE_NODES = 11, NODES = 33, MOST_SETS = 8 };

@@ -6,11 +6,13 @@
  * and moved as a rigid body, cut by a plane across the pinion's axis, and the point looked for that the pinion's flank
  * reaches first. External pairs and rings, both hands, both sides, posed at random. Nothing here knows of lines of action.
  */
+#include "contact.h" /* one line of contact by itself */
 #include "gearmesh/gearmesh.h"
 #include "gm_test.h"
-#include "internal.h" /* one line of contact by itself */
+#include "meshing.h"
 #include "random_gears.h"
 #include "reference_gear.h"
+#include "tilt.h"
 
 static const double pi = 3.14159265358979323846;
 

@@ -6,7 +6,7 @@
  * __wrap_... below in place of those of the C library (--wrap), so that here every allocation can fail,
  * what is not freed or closed is seen, and the locale has a decimal comma on any machine.
  */
-#include "internal.h" /* what the objects hold */
+#include "flank.h" /* what the objects hold */
 #include "io_test.h"
 #include "reference_gear.h"
 

@@ -2,9 +2,10 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 
 /* Force law, its gradient, and what follows from it for the whole mesh; the simple model. */
+#include "contact.h" /* the law by itself */
 #include "gearmesh/gearmesh.h"
 #include "gm_test.h"
-#include "internal.h" /* the law by itself */
+#include "law.h"
 #include "random_gears.h"
 #include "reference_gear.h"
 

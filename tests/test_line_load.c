@@ -5,8 +5,8 @@
  * Line loads with constant stiffness: the largest one, which lies anywhere on a line. Of corners test_corner_mesh.c has the
  * points themselves, of elastic teeth test_elastic_mesh.c.
  */
+#include "flank.h"
 #include "gm_test.h"
-#include "internal.h"
 #include "random_gears.h"
 
 static const double stiffness_of_all = 1e8;

@@ -4,7 +4,7 @@
 /* Two gears at another centre distance than that of their drawing. */
 #include "gearmesh/gearmesh.h"
 #include "gm_test.h"
-#include "internal.h"
+#include "meshing.h"
 #include "random_gears.h"
 #include "reference_gear.h"
 

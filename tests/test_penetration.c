@@ -3,9 +3,9 @@
 
 /* The evaluation itself: entries agree, refusals leave NaN, nothing but the output is written. What comes out
  * is judged by test_reference.c, test_sweep.c and test_properties.c. */
+#include "flank.h" /* what the objects hold */
 #include "gearmesh/gearmesh.h"
 #include "gm_test.h"
-#include "internal.h" /* what the objects hold */
 #include "random_gears.h"
 #include "reference_gear.h"
 

@@ -7,7 +7,7 @@
  */
 #include "gearmesh/gearmesh.h"
 #include "gm_test.h"
-#include "internal.h" /* the engagement by itself */
+#include "meshing.h" /* the engagement by itself */
 #include "random_gears.h"
 #include "reference_gear.h"
 

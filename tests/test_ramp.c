@@ -7,7 +7,6 @@
  */
 #include "gearmesh/gearmesh.h"
 #include "gm_test.h"
-#include "internal.h" /* what the objects hold */
 #include "reference_gear.h"
 
 #define UM 1e-6

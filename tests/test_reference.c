@@ -5,6 +5,7 @@
  * The library against reference cases computed elsewhere with 40 digits (reference/cases.txt, where
  * source, layout and tolerances stand). Another file of the same layout may be given as argument.
  */
+#include "flank.h"
 #include "gearmesh/gearmesh.h"
 #include "gm_test.h"
 #include "plain_mesh.h"

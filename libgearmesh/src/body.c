@@ -12,6 +12,8 @@
  * the tilted axis [swing and twist of a rotation].
  */
 #include "internal.h"
+#include "mesh.h"
+#include "position.h"
 
 #include <math.h>
 #include <string.h>

@@ -17,9 +17,15 @@
  * node keeps it for both tips, and it is straight in delta and phase between them.
  */
 #include "cache.h"
+
+#include "contact.h"
 #include "corner.h"
 #include "elastic_mesh.h"
+#include "flank.h"
 #include "internal.h"
+#include "line.h"
+#include "mesh.h"
+#include "meshing.h"
 #include "penetration.h"
 
 #include <math.h>

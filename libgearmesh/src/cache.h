@@ -5,6 +5,7 @@
 #ifndef GEARMESH_CACHE_H
 #define GEARMESH_CACHE_H
 
+#include "contact.h"
 #include "internal.h"
 
 struct gm_cache {

@@ -13,7 +13,9 @@
  * lines of ideal and of measured flanks alike.
  */
 #include "contact.h"
+
 #include "internal.h"
+#include "meshing.h"
 
 #include <math.h>
 

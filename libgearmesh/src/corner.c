@@ -23,7 +23,10 @@
  * Sine and arc tangent are series of the small angles: the same bits on every machine.
  */
 #include "corner.h"
+
 #include "internal.h"
+#include "meshing.h"
+#include "wide.h"
 
 #include <math.h>
 

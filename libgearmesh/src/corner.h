@@ -8,7 +8,25 @@
 #ifndef GEARMESH_CORNER_H
 #define GEARMESH_CORNER_H
 
+#include "contact.h"
+#include "friction.h"
 #include "internal.h"
+#include "line.h"
+#include "meshing.h"
+#include "side_tangent.h"
+#include "wrench.h"
+
+/* The tip corner of one gear, as it comes to the mate's flank or goes off it. */
+typedef struct gmi_corner {
+    double tip_base;       /* r_b of the gear whose tip it is (m) */
+    double mate_base;      /* of the gear whose flank it touches (m) */
+    double line_of_action; /* T (m) */
+    double tip_roll;       /* rho_a (m) */
+    double mate_roll;      /* of the flank touched, at the end of the path: T - rho_a (m) */
+    double along, across;  /* of the centre distance times r_a: the parts of its way (m2) */
+    double reach;          /* roll beyond the path after which it is off the mate's flank (m) */
+    double coarse, fine; /* width of a parabola of the gap far from the path, and at its end (m) */
+} gmi_corner;
 
 /* Where the corner is after some roll beyond the end of the path. */
 typedef struct gmi_corner_place {

@@ -12,9 +12,18 @@
  * counts but those of the faces; starts of profiles end no line either.
  */
 #include "corner_line.h"
+
+#include "contact.h"
 #include "corner.h"
+#include "flank.h"
+#include "friction.h"
 #include "internal.h"
+#include "law.h"
+#include "line.h"
+#include "mesh.h"
+#include "meshing.h"
 #include "penetration.h"
+#include "tilt.h"
 
 #include <math.h>
 #include <string.h>

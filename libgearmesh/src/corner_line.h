@@ -8,8 +8,13 @@
 #ifndef GEARMESH_CORNER_LINE_H
 #define GEARMESH_CORNER_LINE_H
 
+#include "contact.h"
 #include "corner.h"
+#include "friction.h"
 #include "internal.h"
+#include "line.h"
+#include "meshing.h"
+#include "tilt.h"
 
 /* The gap around one roll: a parabola from `from` on, and where the corner is. */
 typedef struct gmi_corner_parabola {

@@ -7,7 +7,13 @@
  */
 #include "corner.h"
 #include "corner_line.h"
+#include "friction.h"
 #include "internal.h"
+#include "line.h"
+#include "mesh.h"
+#include "meshing.h"
+#include "side_tangent.h"
+#include "tilt.h"
 
 #include <math.h>
 #include <string.h>

@@ -8,6 +8,7 @@
  * first meshes at x - s tan(beta_b), the second at x + s tan(beta_b). The pinion floats to where both carry the same force.
  */
 #include "internal.h"
+#include "mesh.h"
 
 #include <math.h>
 

@@ -33,7 +33,7 @@
 #ifndef GEARMESH_ELASTIC_H
 #define GEARMESH_ELASTIC_H
 
-#include "tooth_compliance.h"
+#include "internal.h"
 #include "wide.h"
 
 #include <stddef.h>

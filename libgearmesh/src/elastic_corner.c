@@ -15,10 +15,12 @@
  * rounding of the edge takes. On it the curvature, and with it ln of the contact law's rate, goes over from that of both
  * flanks to that of flank and edge, as 3 t^2 - 2 t^3. So nothing jumps, nor does its derivative.
  */
+#include "corner.h"
+#include "elastic.h"
 #include "elastic_mesh.h"
-
 #include "internal.h"
-#include "surface.h"
+#include "meshing.h"
+#include "wide.h"
 
 #include <math.h>
 #include <stdint.h>

@@ -7,9 +7,15 @@
  *
  * What damping adds to the force of a side is taken to be distributed over the points as the elastic one.
  */
+#include "contact.h"
+#include "elastic.h"
 #include "elastic_mesh.h"
-
+#include "friction.h"
 #include "internal.h"
+#include "law.h"
+#include "mesh.h"
+#include "meshing.h"
+#include "tilt.h"
 
 /* Sums over the points of a side, each force with its share. */
 typedef struct point_sums {

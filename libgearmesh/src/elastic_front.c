@@ -12,8 +12,8 @@
  * the unknowns that are still there and that it meets.
  */
 #include "elastic.h"
-
 #include "internal.h"
+#include "wide.h"
 
 /* The elimination is compiled once for each usual number of lines. */
 #if defined(__GNUC__)

@@ -17,9 +17,9 @@
  * moving end changes weight and places of the two points of that part.
  */
 #include "elastic.h"
-
 #include "hertz.h"
 #include "internal.h"
+#include "wide.h"
 
 #include <string.h>
 

@@ -6,8 +6,9 @@
  * contact law's rate, the layers along the face. All logarithms and trigonometry happen here.
  */
 #include "elastic.h"
-
 #include "internal.h"
+#include "tooth_compliance.h"
+#include "wide.h"
 
 #include <math.h>
 #include <string.h>

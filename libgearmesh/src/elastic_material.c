@@ -4,10 +4,15 @@
 /*
  * Material of the flanks at the points of elastic teeth: tables, linear reliefs, pitch, and what tilted axes make of it.
  */
+#include "contact.h"
+#include "elastic.h"
 #include "elastic_mesh.h"
-
 #include "internal.h"
+#include "mesh.h"
+#include "meshing.h"
+#include "penetration.h"
 #include "surface.h"
+#include "wide.h"
 
 #include <string.h>
 

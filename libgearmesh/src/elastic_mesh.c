@@ -8,9 +8,16 @@
  */
 #include "elastic_mesh.h"
 
+#include "contact.h"
+#include "corner.h"
+#include "elastic.h"
 #include "internal.h"
+#include "mesh.h"
+#include "meshing.h"
 #include "penetration.h"
 #include "surface.h"
+#include "tilt.h"
+#include "tooth_compliance.h"
 
 #include <math.h>
 #include <string.h>

@@ -8,9 +8,14 @@
 #ifndef GEARMESH_ELASTIC_MESH_H
 #define GEARMESH_ELASTIC_MESH_H
 
+#include "contact.h"
 #include "corner.h"
 #include "elastic.h"
+#include "friction.h"
 #include "internal.h"
+#include "mesh.h"
+#include "meshing.h"
+#include "wide.h"
 
 /* ---------------------------------------------------------------------------------------------
  * Corner contact: elastic_corner.c

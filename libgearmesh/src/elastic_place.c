@@ -7,9 +7,9 @@
  * contact law come from the tables of the law.
  */
 #include "elastic.h"
-
 #include "hertz.h"
 #include "internal.h"
+#include "wide.h"
 
 #include <math.h>
 #include <stdint.h>

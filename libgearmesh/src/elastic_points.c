@@ -7,9 +7,9 @@
  * Only the contact law, which looks up one row of a table for each, is written for four.
  */
 #include "elastic.h"
-
 #include "hertz.h"
 #include "internal.h"
+#include "wide.h"
 
 #include <string.h>
 

@@ -17,9 +17,9 @@
  * The first state comes from the last solution, by its derivative by x and by the change from the one before it along the roll.
  */
 #include "elastic.h"
-
 #include "hertz.h"
 #include "internal.h"
+#include "wide.h"
 
 #include <math.h>
 #include <stdint.h>

@@ -5,7 +5,6 @@
  * The workspace of elastic teeth: its arrays in the memory of the caller.
  */
 #include "elastic.h"
-
 #include "internal.h"
 
 #include <string.h>

@@ -9,7 +9,13 @@
  *
  * Negative torque loads the coast flanks. What follows knows only a load that grows with "travel" = direction * x.
  */
+#include "equilibrium.h"
+
+#include "contact.h"
 #include "internal.h"
+#include "law.h"
+#include "mesh.h"
+#include "meshing.h"
 
 #include <float.h>
 #include <math.h>

@@ -10,7 +10,12 @@
  *
  * As in equilibrium.c, "travel" is direction * x, which grows with the load.
  */
+#include "contact.h"
+#include "equilibrium.h"
 #include "internal.h"
+#include "law.h"
+#include "line.h"
+#include "mesh.h"
 #include "penetration.h"
 
 #include <math.h>

@@ -7,8 +7,11 @@
  * of base pitches. Whole turns are not known, so that what tells it has the period of a base pitch: a sine, whose other
  * zeros go the other way.
  */
+#include "contact.h"
 #include "corner.h"
 #include "internal.h"
+#include "mesh.h"
+#include "meshing.h"
 
 #include <math.h>
 

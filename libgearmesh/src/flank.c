@@ -6,6 +6,8 @@
  * stand its second differences along both grid directions, which are what slope and curvature of the
  * bilinear surface change by where the line crosses a grid line. They are zero at the borders.
  */
+#include "flank.h"
+
 #include "internal.h"
 
 #include <math.h>

@@ -17,7 +17,12 @@
  * from the pitch point than the middle of its load; torques and loss take it there, so that power in is power out and
  * loss, to rounding.
  */
+#include "friction.h"
+
 #include "internal.h"
+#include "line.h"
+#include "meshing.h"
+#include "side_tangent.h"
 
 #include <math.h>
 

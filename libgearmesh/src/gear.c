@@ -6,6 +6,8 @@
  * length rho = r_b chi, the length of the tangent from the point to the base circle, which is also its
  * distance along the line of action from the base tangent point [Paper, Eqs. 13-17, 21-22].
  */
+#include "gear.h"
+
 #include "internal.h"
 
 #include <math.h>

@@ -3,6 +3,7 @@
 
 /* The line contact law where speed does not matter: outside the table, and with all its derivatives. See hertz.h. */
 #include "hertz.h"
+
 #include "internal.h"
 
 double gmi_hertz_reciprocal_rare(double eta) {

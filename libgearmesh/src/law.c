@@ -5,7 +5,10 @@
  * The force law: how force follows from overlap. Force and gradient stand in internal.h, to be inlined; here are their
  * inverse, and what users ask of a mesh as a whole. Lines that lean, corners and line loads take its stiffness per length.
  */
+#include "law.h"
+
 #include "internal.h"
+#include "mesh.h"
 
 #include <math.h>
 

@@ -18,6 +18,10 @@
  * tables if their grids agree) and profile lines (constant t2) of each table. Rounding may place a crossing just
  * behind the end of the table instead of on it: that one step beyond reads zeros or the neighbouring row.
  */
+#include "line.h"
+
+#include "contact.h"
+#include "flank.h"
 #include "internal.h"
 #include "stretch.h"
 

@@ -6,11 +6,19 @@
  * line load is K f / b; elastic teeth have it from their deflections. The largest one of constant stiffness is looked for
  * where it can be: at the bends of the overlap and on top of its humps.
  */
+#include "contact.h"
 #include "corner.h"
+#include "elastic.h"
 #include "elastic_mesh.h"
+#include "flank.h"
 #include "internal.h"
+#include "line.h"
+#include "mesh.h"
+#include "meshing.h"
 #include "penetration.h"
+#include "position.h"
 #include "surface.h"
+#include "tilt.h"
 
 #include <math.h>
 

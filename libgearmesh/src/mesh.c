@@ -5,12 +5,22 @@
  * The mesh: pair, flanks, model and law as one prepared object, and its evaluation. Nothing here but composition: what
  * overlaps is found by penetration.c or cache.c, law.c makes a force of it, wrench.c says where it acts.
  */
+#include "mesh.h"
+
 #include "cache.h"
 #include "contact.h"
 #include "corner.h"
 #include "elastic_mesh.h"
+#include "flank.h"
+#include "friction.h"
 #include "internal.h"
+#include "law.h"
+#include "meshing.h"
 #include "penetration.h"
+#include "position.h"
+#include "side_tangent.h"
+#include "tilt.h"
+#include "wrench.h"
 
 #include <math.h>
 #include <string.h>

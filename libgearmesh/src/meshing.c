@@ -5,6 +5,10 @@
  * Two gears at a centre distance [Paper, Eq. 23; ISO21771]: working pressure angle, line of action, backlash, path of
  * contact. The gears stay as they are drawn, so that the same function serves the drawing and axes that have moved.
  */
+#include "meshing.h"
+
+#include "contact.h"
+#include "gear.h"
 #include "internal.h"
 
 #include <math.h>

@@ -5,7 +5,9 @@
  * From a drawing to a pair ready for evaluation: checks, and the geometry of two gears in mesh
  * [Paper, Eqs. 4-8, 13-17, 23, corrected; ISO21771]. Each step fills the part of gm_pair it is named after.
  */
+#include "gear.h"
 #include "internal.h"
+#include "meshing.h"
 
 #include <float.h>
 #include <math.h>

@@ -9,8 +9,18 @@
  * slices, no quadrature error.
  */
 #include "penetration.h"
+
 #include "contact.h"
+#include "flank.h"
+#include "friction.h"
 #include "internal.h"
+#include "law.h"
+#include "line.h"
+#include "mesh.h"
+#include "meshing.h"
+#include "position.h"
+#include "side_tangent.h"
+#include "tilt.h"
 
 #include <math.h>
 #include <string.h>

@@ -2,26 +2,62 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 
 /*
- * The sum of a side by what its flanks are, and what both sides together are for the user: inlined where the library
- * evaluates. Apart from internal.h, as it calls contact.c and penetration.c, which need that.
+ * The sums over all lines of one side, by what its flanks are, and what both sides together are for the user: inlined where
+ * the library evaluates.
  */
 #ifndef GEARMESH_PENETRATION_H
 #define GEARMESH_PENETRATION_H
 
+#include "contact.h"
+#include "flank.h"
 #include "internal.h"
+#include "line.h"
+#include "meshing.h"
+#include "ramp.h"
+
+/* One side of a mesh: what all its evaluations have in common. */
+typedef struct gmi_side {
+    const gmi_tables *pinion; /* NULL = ideal */
+    const gmi_tables *wheel;
+    gmi_grid pinion_grid; /* not set where both flanks are ideal */
+    gmi_grid wheel_grid;
+    int ramps;         /* of both flanks */
+    int is_tilted;     /* the axes are */
+    double tilt_bound; /* what tilted axes add to the overlap at most (m) */
+    double tilt_reach; /* by what they move the ends of lines at most (m) */
+    double flank_peak; /* most material of both flanks (m) */
+    double peak;       /* both: nothing touches at a delta <= -peak (m) */
+} gmi_side;
+
+void gmi_side_init(gmi_side *prepared, const gm_pair *pair, const gmi_engagement *at,
+                   const gm_flanks *pinion_flanks, const gm_flanks *wheel_flanks, int side);
+
+/* The same side in another pose. */
+void gmi_side_move(gmi_side *prepared, const gm_pair *pair, const gmi_engagement *at, int side);
+
+/*
+ * A side of flanks without ramps between parallel axes at all depths from one walk: `part` has the sums in the end.
+ */
+void gmi_side_sum_depths(const gm_pair *pair, const gmi_engagement *at, const gmi_side *prepared,
+                         int side, const gm_position *position, gmi_depths *depths);
+
+void gmi_side_sum_tables(const gm_pair *pair, const gmi_engagement *at, const gmi_side *prepared,
+                         int side, const gm_position *position, int wanted, gmi_side_sum *total);
+
+/* gmi_side_sum.pairs of such a side alone. */
+int gmi_side_count_pairs(const gm_pair *pair, const gmi_engagement *at, const gmi_side *prepared,
+                         int side, const gm_position *position);
+
+void gmi_side_sum_simple(const gm_pair *pair, const gmi_engagement *at, int side, double offset,
+                         gmi_side_sum *total);
+
+/* All of it NaN. */
+gm_penetration gmi_penetration_nan(void);
 
 /* Nothing reaches across the gap: the usual state of one of both sides. */
 static inline int gmi_side_is_clear(const gmi_engagement *at, const gmi_side *prepared, int side,
                                     double offset) {
     return gmi_ideal_penetration(at, side, offset) + prepared->peak <= 0.0;
-}
-
-/* Whether one walk tells of many depths: flanks of tables between parallel axes, with teeth of a constant stiffness. */
-static inline int gmi_side_has_depths(const gm_mesh *mesh, int side) {
-    const gmi_side *prepared = &mesh->side[side];
-    return mesh->model != GM_MODEL_SIMPLE && mesh->elastic == NULL && !mesh->has_corners &&
-           mesh->pair->face_advance != 0.0 && prepared->ramps == 0 && !prepared->is_tilted &&
-           (prepared->pinion != NULL || prepared->wheel != NULL);
 }
 
 /* The integral along a line or a part of it, with the grids that it runs through. */

@@ -5,6 +5,8 @@
  * From angles to teeth and phase, once. r_b phi of a gear that has turned for an hour is metres, the
  * penetration micrometres; so whole teeth are taken off each angle exactly before anything is multiplied.
  */
+#include "position.h"
+
 #include "internal.h"
 
 #include <math.h>

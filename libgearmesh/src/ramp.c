@@ -9,7 +9,12 @@
  * one straight line, which line.c takes as the value and the slope that f has beside the tables. So ramps are exact on
  * any grid and without one; each edge costs one more entry into the tables.
  */
+#include "ramp.h"
+
+#include "contact.h"
+#include "flank.h"
 #include "internal.h"
+#include "line.h"
 
 /* One ramp along the line: takes off max(0, at_zero + per_t1 t1). */
 typedef struct trace {

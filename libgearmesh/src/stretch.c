@@ -11,7 +11,9 @@
  */
 #include "stretch.h"
 
+#include "flank.h"
 #include "internal.h"
+#include "line.h"
 
 /* A point of a line in one table: its cell, the place in it, w, and its slopes by u along the profile and by v1 across. */
 typedef struct table_point {

@@ -8,6 +8,7 @@
 #define GEARMESH_STRETCH_H
 
 #include "internal.h"
+#include "line.h"
 
 /* Index of the cell that holds v, clamped into the table against rounding at its rim. */
 static inline int gmi_cell_index(double v, int last) {

@@ -6,7 +6,10 @@
  */
 #include "surface.h"
 
+#include "flank.h"
 #include "internal.h"
+#include "line.h"
+#include "mesh.h"
 #include "wide.h"
 
 #include <stdint.h>

@@ -8,7 +8,13 @@
 #ifndef GEARMESH_SURFACE_H
 #define GEARMESH_SURFACE_H
 
+#include "contact.h"
+#include "flank.h"
 #include "internal.h"
+#include "line.h"
+#include "mesh.h"
+#include "penetration.h"
+#include "tilt.h"
 
 /*
  * Points on lines of one side, t1 = t1_from + per_place place on the common face, and what is found at them: material

@@ -11,9 +11,17 @@
  *     delta by -dO.e,   T by dO.e + dO.t (r_bp + r_bw) / T,   the origin by dO.t r_bp / T,
  *     and turns e by dO.t / T, so that the tilt along it grows by its part across times that, and the one across falls.
  */
+#include "contact.h"
 #include "corner.h"
+#include "friction.h"
 #include "internal.h"
+#include "line.h"
+#include "mesh.h"
+#include "meshing.h"
 #include "penetration.h"
+#include "position.h"
+#include "side_tangent.h"
+#include "wrench.h"
 
 #include <math.h>
 #include <string.h>

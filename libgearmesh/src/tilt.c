@@ -22,7 +22,12 @@
  *
  * All of them are straight along t1, so that each sets one end of the line at most.
  */
+#include "tilt.h"
+
+#include "contact.h"
 #include "internal.h"
+#include "line.h"
+#include "meshing.h"
 
 #include <math.h>
 

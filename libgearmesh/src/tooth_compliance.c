@@ -24,6 +24,7 @@
  */
 #include "tooth_compliance.h"
 
+#include "gear.h"
 #include "internal.h"
 
 #include <math.h>

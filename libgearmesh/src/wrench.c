@@ -6,8 +6,15 @@
  * the transverse section, and tan(beta_b) of it along the axis. Where it acts follows from its first moments over t1
  * and rho_p.
  */
+#include "wrench.h"
+
+#include "contact.h"
 #include "corner.h"
+#include "friction.h"
 #include "internal.h"
+#include "law.h"
+#include "meshing.h"
+#include "side_tangent.h"
 
 #include <math.h>
 

@@ -2,7 +2,7 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 #include "slices.h"
 
-#include "internal.h" /* the nodes where the core keeps them: the same data for both */
+#include "flank.h" /* the nodes where the core keeps them: the same data for both */
 
 #include <math.h>
 

@@ -12,7 +12,11 @@
  *
  * So are elastic teeth, whose tables are made with it: the law of a mesh is replaced by that of the file.
  */
+#include "elastic.h"
 #include "gearmesh/gearmesh.h"
+#include "law.h"
+#include "mesh.h"
+#include "meshing.h"
 
 #include "elastic_mesh.h"
 

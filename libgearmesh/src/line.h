@@ -1,0 +1,192 @@
+/* SPDX-FileCopyrightText: The gearmesh authors */
+/* SPDX-License-Identifier: BSD-3-Clause */
+
+/* One line of contact: how it runs through the tables of both flanks, what moves it, and its integrals. */
+#ifndef GEARMESH_LINE_H
+#define GEARMESH_LINE_H
+
+#include "flank.h"
+#include "internal.h"
+
+/*
+ * How the lines of one side run through the tables of one gear: the same for all its teeth and all lines. Lines are
+ * followed in grid units: v1 = face_rate t1 across the face, s = v1 of the table whose face lines lead, and along
+ * the profile u = v2 counted in the direction in which the lines climb. All zero for ideal flanks; a flank with ramps
+ * and no tables is one cell, so that v2 = t2.
+ */
+typedef struct gmi_grid {
+    int shares_faces; /* of the wheel's: the face lines of both gears' tables are the same */
+    int last_face, last_profile;    /* indices of the last cell */
+    ptrdiff_t row;                  /* doubles from one face line to the next */
+    ptrdiff_t step;                 /* doubles from one profile line to the next, signed */
+    ptrdiff_t corner;               /* doubles from node 0 of a face line to that with u = 0 */
+    double base, direction;         /* u = base + direction v2, direction +1 or -1 */
+    double profile_cells;           /* largest u */
+    double face_base, face_rate;    /* v1 = face_base + face_rate t1, t1 of the common face */
+    double face_origin, face_scale; /* t1 of this gear = face_origin + face_scale t1 */
+    double climb;                   /* d u / d t1 >= 0 */
+    double per_rho;                 /* d v2 / d rho (1/m) */
+    double face_ratio;              /* d v1 / d s: 1 for the table that leads */
+    double rate;                    /* d u / d s > 0 */
+    double profile_spacing;         /* its inverse */
+    /* Half slope and curvature of f change by these times the second difference of the nodes. */
+    double face_kick, profile_kick, bend;
+} gmi_grid;
+
+/* climb: d rho / d t1 of this gear along a line, signed (m); length: rho from start to tip (m); own t1 of the gear. */
+void gmi_grid_init(gmi_grid *grid, const gmi_tables *tables, double climb, double length,
+                   double face_origin, double face_scale);
+
+/* The table of this gear now begins at another place along the common face. */
+void gmi_grid_move(gmi_grid *grid, double face_origin);
+
+/* Lines stay where they are along the profile of this table. */
+void gmi_grid_hold(gmi_grid *grid);
+
+/* What moves the lines of one side and what is on them: its coordinates. */
+enum gmi_coordinate {
+    GMI_BY_ORIGIN, /* of the lines (m) */
+    GMI_BY_DELTA,  /* ideal penetration (m) */
+    GMI_BY_LENGTH, /* of the line of action (m) */
+    GMI_BY_ALONG,  /* the tilt along the line of action, gmi_engagement.along (rad) */
+    GMI_BY_ACROSS, /* and across it (rad) */
+    GMI_BY_AXIAL,  /* the wheel's face (m) */
+    GMI_COORDINATES
+};
+
+/*
+ * How f along a line moves with the coordinates of its side, and how fast it approaches: by polynomials in t1, and by
+ * what the tables have at the points looked up. In the result integrals over the touching part.
+ */
+typedef struct gmi_line_tangent {
+    double by[GMI_COORDINATES]
+             [3];    /* beside the tables; of second order by the length and the tilts alone */
+    double speed[2]; /* of approach (m/s); line.c leaves it and the next to others */
+
+    /* u of tilt.c: the speed of approach falls by it times that of the tilt across (m) */
+    double arm[2];
+
+    double pinion_per_rho, wheel_per_rho,
+        face_per_length; /* d v2 / d rho of both, d v1 / d z of the wheel (1/m) */
+
+    /* Times 1 and t1, over all parts of the line: */
+    double contact[4];                 /* of 1, t1, t1^2, t1^3 */
+    double sum_by[GMI_COORDINATES][2]; /* of d f / d coordinate */
+    double contact_by[GMI_COORDINATES]
+                     [3]; /* how the touching part moves, at the roots of f; and times t1^2 */
+
+} gmi_line_tangent;
+
+/*
+ * One line: t1 from `from` to `to`, with f = overlap + 2 half_slope s + curvature s^2 + tables of both flanks, s = t1 - from.
+ */
+typedef struct gmi_line {
+    double from, to;
+    double overlap;       /* delta, both pitch deviations, and ramps (m) */
+    double half_slope;    /* half of what ramps and tilt make of d f / d t1 there (m) */
+    double curvature;     /* half of what the tilt makes of d2 f / d t1^2 (m) */
+    const double *pinion; /* table, NULL = none */
+    const double *wheel;
+    double pinion_profile; /* v2 of the pinion's table at t1 = 0 */
+    double wheel_profile;
+    gmi_line_tangent *tangent; /* GMI_TANGENT */
+} gmi_line;
+
+/* The part of a line between two places: the parabola as seen from where it begins. */
+static inline gmi_line gmi_line_between(const gmi_line *line, double from, double to) {
+    gmi_line part = *line;
+    const double gone = from - line->from;
+    part.from = from;
+    part.to = to;
+    part.overlap += gone * (2.0 * line->half_slope + gone * line->curvature);
+    part.half_slope += gone * line->curvature;
+    return part;
+}
+
+/* At one depth: the sum, its derivatives by delta and by the origin of the lines, and half of its second one by delta. */
+typedef struct gmi_depth_sum {
+    double sum, by_delta, by_origin, bend;
+} gmi_depth_sum;
+
+/* One end of a line: how f changes from there on with t1 and with the shift (m). */
+typedef struct gmi_depth_end {
+    double slope, curvature; /* the latter half the second derivative */
+    double grows, grows_rate;
+} gmi_depth_end;
+
+/*
+ * A side at many depths from one walk along its lines (GMI_DEPTHS): delta is that of the walk and a shift. With the shift f
+ * grows by itself and by the slope of the wheel's flank, whose place moves, and with it the kinks of its table; where the
+ * wheel sets the ends of lines these move. That is the whole of it as long as no kink or end that moves passes another one
+ * or a place where f is zero.
+ */
+enum { GMI_DEPTHS_MAX = 41 };
+typedef struct gmi_depths {
+    int count;
+    double shift[GMI_DEPTHS_MAX]; /* ascending (m) */
+    double largest;               /* the last one; -infinite without any */
+    double per_shift; /* depths per shift on average; 0 if they are all the same (1/m) */
+    double touch; /* least shift at which anything touches, if it is below what it is set to (m) */
+
+    /* Of pieces that touch all along from depth n on, without shift; of those that touch in part, and of the ends. */
+    gmi_depth_sum whole[GMI_DEPTHS_MAX], part[GMI_DEPTHS_MAX];
+    double cube[GMI_DEPTHS_MAX]; /* by the third power of the shift, from depth n on */
+
+    /* Of the line at hand, by the slopes of the table that leads and of the other one: */
+    double per_place;                 /* from its places to t1 */
+    double shift_first, shift_second; /* d f / d shift */
+    double origin_first, origin_second;
+    gmi_depth_end from, to;
+} gmi_depths;
+
+/* Integrals over the part of a line where f > 0. */
+typedef struct gmi_line_sum {
+    double sum;        /* of f (m) */
+    double contact;    /* of 1 (1) */
+    double pinion;     /* of the pinion's d deviation / d v2 (GMI_DERIVATIVES) (m) */
+    double wheel;      /* of the wheel's (m) */
+    double sum_t1;     /* of f t1 (GMI_MOMENTS) (m) */
+    double contact_t1; /* of t1 (1) */
+
+    /* Over the roots of f within the line, where the touching part ends (GMI_CONTACT_DERIVATIVES): */
+    double roots;        /* sum of 1 / |df/dt1| (1/m) */
+    double roots_pinion; /* of the pinion's d deviation / d v2, over |df/dt1| (1) */
+    double roots_wheel;  /* of the wheel's (1) */
+
+    double at_from; /* f itself at both ends (m) */
+    double at_to;
+    gmi_depths *depths; /* GMI_DEPTHS */
+} gmi_line_sum;
+
+/* What the tables add to d f / d coordinate, from the slopes of the pinion, of the wheel and of the wheel's face. */
+static inline void gmi_line_add_slopes(const gmi_line_tangent *tangent, double pinion, double wheel,
+                                       double face, double by[GMI_COORDINATES]) {
+    const double by_pinion = tangent->pinion_per_rho * pinion;
+    const double by_wheel = tangent->wheel_per_rho * wheel;
+    by[GMI_BY_ORIGIN] += by_pinion - by_wheel;
+    by[GMI_BY_DELTA] += by_wheel;
+    by[GMI_BY_LENGTH] += by_wheel;
+    by[GMI_BY_AXIAL] -= tangent->face_per_length * face;
+}
+
+/* The same at all depths; the result has f at both ends of the line at the depth of the walk. */
+void gmi_line_integrate_depths(const gmi_line *line, const gmi_grid *pinion, const gmi_grid *wheel,
+                               gmi_depths *depths, gmi_line_sum *result);
+
+/* Of f squared, and of 1, alone. */
+void gmi_line_integrate_squares(const gmi_line *line, const gmi_grid *pinion, const gmi_grid *wheel,
+                                gmi_line_sum *result);
+
+/* f at one place of a line without ramps and tilt (m). */
+double gmi_line_value(const gmi_line *line, const gmi_grid *pinion, const gmi_grid *wheel,
+                      double t1);
+
+/* wanted: none of GMI_TANGENT, GMI_DEPTHS and GMI_SQUARES. */
+void gmi_line_integrate(const gmi_line *line, const gmi_grid *pinion, const gmi_grid *wheel,
+                        int wanted, gmi_line_sum *result);
+
+/* Sum and moments with the line's tangent: apart, as it takes more stack. */
+void gmi_line_integrate_tangent(const gmi_line *line, const gmi_grid *pinion, const gmi_grid *wheel,
+                                gmi_line_sum *result);
+
+#endif
