@@ -183,6 +183,42 @@ static void channels_do_not_disturb_each_other(void) {
     }
 }
 
+/* However many samples come at a time and have come before: the sum of weights times samples about the row's time. */
+static void long_runs_in_any_pieces_are_the_weighted_sum(void) {
+    enum { SAMPLES = 4000, FACTOR = 3, AT_ONCE = 11, CHANNELS = 3 };
+    const enum sample_kind kinds[CHANNELS] = {SAMPLE_BOX, SAMPLE_PLAIN, SAMPLE_BEHIND};
+    static double samples[CHANNELS * SAMPLES];
+    decimator *filter = decimator_create(FACTOR, CHANNELS, kinds);
+    const int half = decimator_delay(filter);
+    uint64_t seed = 9;
+
+    for (int i = 0; i < CHANNELS * SAMPLES; ++i) {
+        samples[i] = gm_test_uniform(&seed, -1.0, 1.0);
+    }
+    for (int done = 0; done + AT_ONCE < SAMPLES;) {
+        const int count = gm_test_integer(&seed, 1, AT_ONCE);
+        double got[CHANNELS];
+
+        decimator_push_all(filter, count, samples + done, SAMPLES);
+        done += count;
+        decimator_values(filter, got);
+        if (done <= 2 * half) {
+            continue;
+        }
+        for (int k = 0; k < CHANNELS; ++k) {
+            const double *first = samples + k * SAMPLES + done - 1 - 2 * half;
+            double expected = kinds[k] == SAMPLE_PLAIN ? first[half] : 0.0;
+            for (int i = 0; i <= 2 * half && kinds[k] != SAMPLE_PLAIN; ++i) {
+                expected += decimator_weights(filter, kinds[k])[i] * first[i];
+            }
+            /* 91 products of numbers up to 1 in another order. */
+            gm_test_context("channel %d, sample %d", k, done);
+            GM_ASSERT_ABS(got[k], expected, 1e-14);
+        }
+    }
+    decimator_free(filter);
+}
+
 static void factor_one_is_the_identity(void) {
     const enum sample_kind kinds[] = {SAMPLE_VALUES};
     decimator *filter = decimator_create(1, 1, kinds);
@@ -207,6 +243,7 @@ int main(int argc, char **argv) {
         GM_TEST(weights_are_symmetric_with_the_sum_one),
         GM_TEST(plain_channels_are_delayed_alike),
         GM_TEST(channels_do_not_disturb_each_other),
+        GM_TEST(long_runs_in_any_pieces_are_the_weighted_sum),
         GM_TEST(factor_one_is_the_identity),
     };
     return gm_test_main("gearsim.decimate", tests, GM_TEST_COUNT(tests), argc, argv);

@@ -134,6 +134,23 @@ static void any_order_of_calls_gives_the_same(void) {
     }
 }
 
+/* The cubic after the one before, the same one again, and any other one: bit for bit. */
+static void cubics_one_after_the_other_are_those_alone(void) {
+    const load_signal load = load_create(20.0, 10.0, interval, 5);
+    noise_values kept = {.is_known = 0};
+    uint64_t seed = 6;
+    int64_t k = 0;
+
+    for (int i = 0; i < 2000; ++i) {
+        double next[4], alone[4];
+        load_noise_next(&load, k, &kept, next);
+        load_noise_cubic(&load, k, alone);
+        gm_test_context("value %d, call %d", (int)k, i);
+        GM_ASSERT(memcmp(next, alone, sizeof next) == 0);
+        k += i % 5 != 0 ? 1 : gm_test_integer(&seed, -3, 3);
+    }
+}
+
 static void without_amplitude_it_is_the_mean(void) {
     const load_signal load = load_create(-3.25, 0.0, interval, 1);
 
@@ -184,6 +201,7 @@ int main(int argc, char **argv) {
         GM_TEST(torque_and_its_slope_are_continuous),
         GM_TEST(half_way_weights_are_those_of_catmull_rom),
         GM_TEST(any_order_of_calls_gives_the_same),
+        GM_TEST(cubics_one_after_the_other_are_those_alone),
         GM_TEST(without_amplitude_it_is_the_mean),
         GM_TEST(integral_is_that_of_the_pieces),
     };

@@ -121,10 +121,43 @@ static void short_decimals(void) {
     }
 }
 
+/* Times of rows: often with one digit more than are wanted, so that they are a tie but for the rounding of the double. */
+static void times_of_rows(void) {
+    for (int row = 0; row < 40000; ++row) {
+        const double time = row * 13 / 25600.0;
+        for (int digits = 6; digits <= 10; ++digits) {
+            if (!same_as_printf(time, digits)) {
+                return;
+            }
+        }
+    }
+}
+
+/* Each length of the figures, with the point at each of their places. */
+static void every_place_of_the_point(void) {
+    for (int count = 1; count <= 12; ++count) {
+        const double figures = floor(123406789012.0 / pow(10.0, 12 - count));
+        for (int places = -2; places <= 16; ++places) {
+            const double value =
+                places < 0 ? figures * pow(10.0, -places) : figures / pow(10.0, places);
+            for (int digits = 1; digits <= 17; ++digits) {
+                if (!same_as_printf(value, digits) || !same_as_printf(-value, digits)) {
+                    return;
+                }
+            }
+        }
+    }
+}
+
 int main(int argc, char **argv) {
     static const gm_test tests[] = {
-        GM_TEST(special_values), GM_TEST(around_powers_of_ten), GM_TEST(ties),
-        GM_TEST(random_values),  GM_TEST(short_decimals),
+        GM_TEST(special_values),
+        GM_TEST(around_powers_of_ten),
+        GM_TEST(ties),
+        GM_TEST(random_values),
+        GM_TEST(short_decimals),
+        GM_TEST(times_of_rows),
+        GM_TEST(every_place_of_the_point),
     };
     return gm_test_main("gearsim.number", tests, GM_TEST_COUNT(tests), argc, argv);
 }

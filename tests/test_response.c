@@ -77,7 +77,7 @@ static void it_tells_what_the_mesh_has_carried(void) {
         const load_signal load = noise(intervals[i]);
         response *linear = response_create(&load, gain, frequency, 0.05);
         double given = 0.0, from = 0.0, before = 0.0;
-        noise_piece piece = {.is_known = 0};
+        noise_piece piece = {.values = {.is_known = 0}};
 
         for (int k = 0; k < 300; ++k) {
             const double times[] = {from + 0.3 * intervals[i], from + 1.7 * intervals[i]};

@@ -14,6 +14,13 @@
 #include <stdio.h>
 #include <string.h>
 
+/* Apart from what nearly all numbers take, which else would have to save registers for it. */
+#if defined(__GNUC__)
+#define APART static __attribute__((noinline))
+#else
+#define APART static
+#endif
+
 typedef struct double_double {
     double high, low;
 } double_double;
@@ -148,6 +155,8 @@ static int decompose_few(double value, int digits, int64_t *mantissa, int *expon
            n < whole_power_of_ten[digits];
 }
 
+static const double near_tie = 1e-11;
+
 /* value = mantissa * 10^(exponent + 1 - digits) with just so many digits; 0 if that is in doubt. */
 static int decompose(double value, int digits, int64_t *mantissa, int *exponent) {
     int e = guess_exponent(value);
@@ -166,8 +175,9 @@ static int decompose(double value, int digits, int64_t *mantissa, int *exponent)
     n += (int64_t)carry;
     rest -= carry;
 
-    /* The scaling is good to 1e-13 of the last digit; printf settles ties and what is near one. */
-    if (fabs(rest - 0.5) < 1e-6) {
+    /* The scaling is good to 1e-13 of the last digit; printf settles ties and what is nearer to one than any time is that
+     * has one digit more. */
+    if (fabs(rest - 0.5) < near_tie) {
         return 0;
     }
     n += rest > 0.5;
@@ -183,20 +193,32 @@ static int decompose(double value, int digits, int64_t *mantissa, int *exponent)
 }
 
 /*
- * Eight digits of n < 10^8, in one word: halves by 10^4, their halves by 100 and those by 10, side by side. Multiplications
- * take the place of divisions: x * 10486 >> 20 is x / 100 below 10^4, x * 103 >> 10 is x / 10 below 100.
+ * Eight digits of n < 10^8, in one word, the first one in its lowest byte: halves by 10^4, their halves by 100 and those by
+ * 10, side by side. Multiplications take the place of divisions: x * 10486 >> 20 is x / 100 below 10^4, x * 103 >> 10 is
+ * x / 10 below 100.
  */
-static void put_eight(char *out, uint32_t n) {
+static uint64_t eight_digits(uint32_t n) {
     const uint64_t fours = (n / 10000) | ((uint64_t)(n % 10000) << 32);
     const uint64_t hundreds = ((fours * 10486) >> 20) & 0x0000007f0000007f;
     const uint64_t twos = ((fours - 100 * hundreds) << 16) + hundreds;
     const uint64_t tens = ((twos * 103) >> 10) & 0x000f000f000f000f;
-    const uint64_t ones = ((twos - 10 * tens) << 8) + tens + 0x3030303030303030;
 
-    /* The first digit is in the lowest byte, on any machine. */
+    return ((twos - 10 * tens) << 8) + tens + 0x3030303030303030;
+}
+
+/* In the order of the text, on any machine. */
+static inline void put_word(char *out, uint64_t word) {
+#if defined(__BYTE_ORDER__) && __BYTE_ORDER__ == __ORDER_LITTLE_ENDIAN__
+    memcpy(out, &word, sizeof word);
+#else
     for (int i = 0; i < 8; ++i) {
-        out[i] = (char)(ones >> (8 * i));
+        out[i] = (char)(word >> (8 * i));
     }
+#endif
+}
+
+static void put_eight(char *out, uint32_t n) {
+    put_word(out, eight_digits(n));
 }
 
 /* Figures end at a place, with some more that may be copied behind them: copies of a fixed size take no call. */
@@ -251,26 +273,8 @@ static char *put_scientific(char *out, const char *figures, int count, int expon
     return out;
 }
 
-int number_format(char text[NUMBER_TEXT_SIZE], double value, int digits) {
-    const double size = fabs(value);
-    int64_t mantissa;
-    int exponent;
-
-    if (value == 0.0 && !signbit(value)) {
-        text[0] = '0';
-        text[1] = '\0';
-        return 1;
-    }
-
-    /* Where one way is in doubt the next one, which takes longer. */
-    const int is_told =
-        size >= smallest && size <= largest &&
-        ((digits <= FEW_DIGITS && decompose_few(size, digits, &mantissa, &exponent)) ||
-         decompose(size, digits, &mantissa, &exponent));
-    if (!is_told) {
-        return snprintf(text, NUMBER_TEXT_SIZE, "%.*g", digits, value);
-    }
-
+/* The text of digits that are known. */
+static int put_number(char *text, int is_negative, int64_t mantissa, int exponent, int digits) {
     char room[FIGURES + COPIED];
     const char *figures = room + FIGURES - digits;
     int count = digits;
@@ -281,13 +285,89 @@ int number_format(char text[NUMBER_TEXT_SIZE], double value, int digits) {
     }
 
     char *out = text;
-    if (value < 0.0) {
-        *out++ = '-';
-    }
+    *out = '-';
+    out += is_negative;
     out = exponent >= -4 && exponent < digits ? put_fixed(out, figures, count, exponent)
                                               : put_scientific(out, figures, count, exponent);
     *out = '\0';
     return (int)(out - text);
+}
+
+/*
+ * The same of ten digits, from 0.000123 to 1234567890: the first one, a word of eight, and the last one. The word is written
+ * from its register, and once more from the point on. Nothing that has been written is read, which would have to wait for it.
+ */
+static int put_ten(char *text, int is_negative, uint64_t mantissa, int exponent) {
+    const uint32_t nine = (uint32_t)(mantissa / 10);
+    const uint32_t first = nine / 100000000;
+    const uint64_t word = eight_digits(nine - first * 100000000);
+    const int last = (int)(mantissa - (uint64_t)nine * 10);
+
+    /* Without zeros at the end. */
+    int count = last != 0 ? 10 : 9;
+    for (uint64_t rest = word; count > 1 && count < 10 && rest >> 56 == '0'; rest <<= 8) {
+        --count;
+    }
+
+    char *out = text;
+    *out = '-';
+    out += is_negative;
+    if (exponent < 0) {
+        memcpy(out, "0.000", 5);
+        out += 1 - exponent;
+    }
+    out[0] = (char)('0' + first);
+    put_word(out + 1, word);
+    out[9] = (char)('0' + last);
+
+    /* Figures before the point include zeros where the others end. Half of the shift twice, as all of it may be the word. */
+    const int whole = exponent + 1;
+    if (exponent >= 0 && whole < count) {
+        out[whole] = '.';
+        put_word(out + whole + 1, (word >> (4 * exponent)) >> (4 * exponent));
+        out[10] = (char)('0' + last);
+        out += count + 1;
+    } else {
+        out += whole > count ? whole : count;
+    }
+    *out = '\0';
+    return (int)(out - text);
+}
+
+/* Where few digits are in doubt, or many are wanted. */
+APART int format_any(char text[NUMBER_TEXT_SIZE], double value, int digits) {
+    const double size = fabs(value);
+    int64_t mantissa;
+    int exponent;
+
+    if (size >= smallest && size <= largest && decompose(size, digits, &mantissa, &exponent)) {
+        return put_number(text, value < 0.0, mantissa, exponent, digits);
+    }
+    return snprintf(text, NUMBER_TEXT_SIZE, "%.*g", digits, value);
+}
+
+int number_format(char text[NUMBER_TEXT_SIZE], double value, int digits) {
+    const double size = fabs(value);
+    int64_t mantissa;
+    int exponent;
+
+    /* Counts, and nothing at all. */
+    if (value < 10.0 && !signbit(value) && value == (double)(int)value) {
+        text[0] = (char)('0' + (int)value);
+        text[1] = '\0';
+        return 1;
+    }
+
+    /* Where one way is in doubt the next one, which takes longer. */
+    if (digits <= FEW_DIGITS && size >= smallest && size <= largest &&
+        decompose_few(size, digits, &mantissa, &exponent)) {
+        return exponent >= -4 && exponent < digits
+                   ? put_ten(text, value < 0.0,
+                             (uint64_t)(mantissa * whole_power_of_ten[FEW_DIGITS - digits]),
+                             exponent)
+                   : put_number(text, value < 0.0, mantissa, exponent, digits);
+    }
+    return format_any(text, value, digits);
 }
 
 static const char *skip_digits(const char *text) {

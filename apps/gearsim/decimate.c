@@ -16,17 +16,32 @@ static const double pi = 3.14159265358979323846;
 enum { HALF_WIDTH_ROWS = 15 };
 static const double kaiser_beta = 9.1;
 
+/* Vectors of four doubles, which most x86-64 processors have beyond those of two that all of them have. */
+#if defined(__GNUC__) && defined(__x86_64__) && !defined(_WIN32) && !defined(__AVX2__) &&          \
+    !defined(GEARMESH_WITHOUT_AVX2)
+#define HAS_WIDE 1
+#define INLINED  inline __attribute__((always_inline)) /* compiled for what it is called from */
+#else
+#define HAS_WIDE 0
+#define INLINED  inline
+#endif
+
+/* A strip is so many times as long as the filter. The longer, the fewer of its samples are moved to where it begins. */
+enum { STRIP_LENGTHS = 6 };
+
 struct decimator {
     int channels;
     int half;                /* samples on each side of the middle */
     int length;              /* 2 half + 1 */
-    int next;                /* place of the next sample */
+    int strip;               /* STRIP_LENGTHS length */
+    int next;                /* place of the next sample, `length` or more */
     int started;             /* the first sample fills the past */
+    int is_wide;             /* the processor has vectors of four */
     enum sample_kind *kinds; /* [channels] */
     double *weights;         /* [SAMPLE_KINDS - 1][length], from SAMPLE_VALUES on */
 
-    /* [channels][4 length]: a ring written twice, so that the last `length` samples are always contiguous, from `next` on;
-     * and the same from the newest to the oldest, from 3 length - `next` on; of plain channels the first ring alone */
+    /* [channels][2 strip]: a strip with the last `length` samples before `next`; and one from the newest to the oldest, in
+     * which they begin at strip - `next`. Of plain channels the first one alone. */
     double *samples;
     double *sums; /* [4]: in memory, so that compilers make vectors of what ends there */
 };
@@ -125,10 +140,15 @@ decimator *decimator_create(int factor, int channels, const enum sample_kind kin
     created->channels = channels;
     created->half = factor > 1 ? HALF_WIDTH_ROWS * factor : 0;
     created->length = 2 * created->half + 1;
+    created->strip = STRIP_LENGTHS * created->length;
+    created->next = created->length;
+#if HAS_WIDE
+    created->is_wide = __builtin_cpu_supports("avx2") != 0;
+#endif
     created->kinds = malloc(count * sizeof *created->kinds);
     created->weights =
         malloc((SAMPLE_KINDS - 1) * (size_t)created->length * sizeof *created->weights);
-    created->samples = malloc(count * 4 * (size_t)created->length * sizeof *created->samples);
+    created->samples = malloc(count * 2 * (size_t)created->strip * sizeof *created->samples);
     created->sums = malloc(4 * sizeof *created->sums);
     if (created->kinds == NULL || created->weights == NULL || created->samples == NULL ||
         created->sums == NULL) {
@@ -168,13 +188,16 @@ const double *decimator_weights(const decimator *filter, enum sample_kind kind) 
     return weights_of(filter, kind);
 }
 
-static void hold(decimator *filter, const double values[], int stride) {
-    const int size = 4 * filter->length;
+/* The strips of a channel. */
+static double *strips_of(const decimator *filter, int channel) {
+    return filter->samples + (size_t)channel * 2 * (size_t)filter->strip;
+}
 
+static void hold(decimator *filter, const double values[], int stride) {
     for (int channel = 0; channel < filter->channels; ++channel) {
-        double *ring = filter->samples + (size_t)channel * (size_t)size;
-        for (int i = 0; i < size; ++i) {
-            ring[i] = values[channel * stride];
+        double *strip = strips_of(filter, channel);
+        for (int i = 0; i < 2 * filter->strip; ++i) {
+            strip[i] = values[channel * stride];
         }
     }
     filter->started = 1;
@@ -188,55 +211,94 @@ void decimator_push(decimator *filter, const double values[]) {
     decimator_push_all(filter, 1, values, 1);
 }
 
-/* Into the rings of a channel, from a place on that is far enough from their end. */
-static void put(double *ring, int length, int place, int count, const double values[]) {
-    double *forward = ring + place, *backward = ring + 3 * length - 1 - place;
+/* Both strips are full: what the filter still needs moves to where they begin. */
+static void begin_again(decimator *filter) {
+    const size_t kept = (size_t)filter->length, size = kept * sizeof *filter->samples;
 
-    for (int n = 0; n < count; ++n) {
-        forward[n] = forward[n + length] = values[n];
-        backward[-n] = backward[length - n] = values[n];
+    for (int channel = 0; channel < filter->channels; ++channel) {
+        double *end = strips_of(filter, channel) + filter->strip;
+        memcpy(end - filter->strip, end - kept, size);
+        if (filter->kinds[channel] != SAMPLE_PLAIN) {
+            memcpy(end + filter->strip - kept, end, size);
+        }
+    }
+    filter->next = filter->length;
+}
+
+/* Into both strips of a channel. */
+static void put(double *strip, int length, int place, int count, const double values[]) {
+    double *forward = strip + place, *backward = strip + 2 * length - 1 - place;
+    int n = 0;
+
+    /* Four at a time: with the usual oversampling those of a row. */
+    for (; n + 4 <= count; n += 4) {
+        const double four[4] = {values[n], values[n + 1], values[n + 2], values[n + 3]};
+        forward[n] = four[0];
+        forward[n + 1] = four[1];
+        forward[n + 2] = four[2];
+        forward[n + 3] = four[3];
+        backward[-n] = four[0];
+        backward[-n - 1] = four[1];
+        backward[-n - 2] = four[2];
+        backward[-n - 3] = four[3];
+    }
+    for (; n < count; ++n) {
+        forward[n] = backward[-n] = values[n];
     }
 }
 
 void decimator_push_all(decimator *filter, int count, const double values[], int stride) {
-    const int length = filter->length;
-
     if (!filter->started) {
         hold(filter, values, stride);
     }
     for (int done = 0; done < count;) {
-        const int rest = length - filter->next;
+        const int rest = filter->strip - filter->next;
         const int some = count - done < rest ? count - done : rest;
 
         for (int channel = 0; channel < filter->channels; ++channel) {
-            double *ring = filter->samples + (size_t)channel * 4 * (size_t)length;
+            double *strip = strips_of(filter, channel);
             const double *value = values + channel * stride + done;
 
             if (filter->kinds[channel] == SAMPLE_PLAIN) {
-                memcpy(ring + filter->next, value, (size_t)some * sizeof *value);
+                for (int n = 0; n < some; ++n) {
+                    strip[filter->next + n] = value[n];
+                }
             } else {
-                put(ring, length, filter->next, some, value);
+                put(strip, filter->strip, filter->next, some, value);
             }
         }
-        filter->next = some < rest ? filter->next + some : 0;
+        filter->next += some;
         done += some;
+        if (filter->next == filter->strip) {
+            begin_again(filter);
+        }
     }
+}
+
+static INLINED void add_four(const double samples[4], const double mates[4],
+                             const double weights[4], double first[2], double second[2]) {
+    first[0] += weights[0] * (samples[0] + mates[0]);
+    first[1] += weights[1] * (samples[1] + mates[1]);
+    second[0] += weights[2] * (samples[2] + mates[2]);
+    second[1] += weights[3] * (samples[3] + mates[3]);
 }
 
 /*
  * The weights are symmetric: the samples at equal distances from the middle share one. Each is with its mate from the other
  * end, and what is at one place of all three fills a register of two or four; several sums, so that none waits for the other.
  */
-static double weighted_sum(const double *samples, const double *mates, const double *weights,
-                           int half, double middle, double sums[4]) {
+static INLINED double weighted_sum(const double *samples, const double *mates,
+                                   const double *weights, int half, double middle, double sums[4]) {
     double first[2] = {0.0, 0.0}, second[2] = {0.0, 0.0};
     int i = 0;
 
-    for (; i + 4 <= half; i += 4) {
-        first[0] += weights[i] * (samples[i] + mates[i]);
-        first[1] += weights[i + 1] * (samples[i + 1] + mates[i + 1]);
-        second[0] += weights[i + 2] * (samples[i + 2] + mates[i + 2]);
-        second[1] += weights[i + 3] * (samples[i + 3] + mates[i + 3]);
+    for (; i + 8 <= half; i += 8) {
+        add_four(samples + i, mates + i, weights + i, first, second);
+        add_four(samples + i + 4, mates + i + 4, weights + i + 4, first, second);
+    }
+    if (i + 4 <= half) {
+        add_four(samples + i, mates + i, weights + i, first, second);
+        i += 4;
     }
     sums[0] = first[0];
     sums[1] = first[1];
@@ -248,25 +310,41 @@ static double weighted_sum(const double *samples, const double *mates, const dou
     return (sums[0] + sums[1]) + (sums[2] + sums[3]) + middle * samples[half];
 }
 
-void decimator_values(const decimator *filter, double values[]) {
+static INLINED void take_values(const decimator *filter, double values[]) {
     const int half = filter->half;
-    const size_t length = (size_t)filter->length;
-    const double *samples = filter->samples + filter->next;
-    const double *mates = filter->samples + 3 * length - filter->next;
 
     for (int channel = 0; channel < filter->channels; ++channel) {
         const enum sample_kind kind = filter->kinds[channel];
+        const double *strip = strips_of(filter, channel);
+        const double *samples = strip + filter->next - filter->length;
 
         if (kind == SAMPLE_PLAIN) {
-            values[channel] = samples[filter->next < filter->length - half ? half : -half - 1];
+            values[channel] = samples[half];
         } else {
             /* An even number has no middle, and leaves the newest sample out. */
             const int is_even = kind == SAMPLE_BEHIND;
             const double *weights = weights_of(filter, kind);
-            values[channel] = weighted_sum(samples, mates + is_even, weights, half,
+            const double *mates = strip + 2 * filter->strip - filter->next + is_even;
+            values[channel] = weighted_sum(samples, mates, weights, half,
                                            is_even ? 0.0 : weights[half], filter->sums);
         }
-        samples += 4 * length;
-        mates += 4 * length;
     }
+}
+
+/* The same operations in the same order, four of them at a time. */
+#if HAS_WIDE
+__attribute__((target("avx2"))) static void take_values_wide(const decimator *filter,
+                                                             double values[]) {
+    take_values(filter, values);
+}
+#endif
+
+void decimator_values(const decimator *filter, double values[]) {
+#if HAS_WIDE
+    if (filter->is_wide) {
+        take_values_wide(filter, values);
+        return;
+    }
+#endif
+    take_values(filter, values);
 }

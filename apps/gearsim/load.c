@@ -38,18 +38,43 @@ double load_noise_value(const load_signal *load, int64_t k) {
 }
 
 /* Catmull-Rom: through p1 at s = 0 and p2 at s = 1, with the slopes of the chords p0 p2 and p1 p3. */
-void load_noise_cubic(const load_signal *load, int64_t k, double coefficients[4]) {
-    const uint64_t place = (uint64_t)k;
-    const double p0 = value_of_place(load->stream, place - 1);
-    const double p1 = value_of_place(load->stream, place);
-    const double p2 = value_of_place(load->stream, place + 1);
-    const double p3 = value_of_place(load->stream, place + 2);
-    const double half = 0.5 * load->amplitude;
+static void set_cubic(double amplitude, const double p[4], double coefficients[4]) {
+    const double half = 0.5 * amplitude;
 
-    coefficients[0] = load->amplitude * p1;
-    coefficients[1] = half * (p2 - p0);
-    coefficients[2] = half * (2.0 * p0 - 5.0 * p1 + 4.0 * p2 - p3);
-    coefficients[3] = half * (3.0 * (p1 - p2) + p3 - p0);
+    coefficients[0] = amplitude * p[1];
+    coefficients[1] = half * (p[2] - p[0]);
+    coefficients[2] = half * (2.0 * p[0] - 5.0 * p[1] + 4.0 * p[2] - p[3]);
+    coefficients[3] = half * (3.0 * (p[1] - p[2]) + p[3] - p[0]);
+}
+
+static void set_values(const load_signal *load, int64_t k, double p[4]) {
+    for (int n = 0; n < 4; ++n) {
+        p[n] = value_of_place(load->stream, (uint64_t)k + (uint64_t)n - 1);
+    }
+}
+
+void load_noise_cubic(const load_signal *load, int64_t k, double coefficients[4]) {
+    double p[4];
+
+    set_values(load, k, p);
+    set_cubic(load->amplitude, p, coefficients);
+}
+
+void load_noise_next(const load_signal *load, int64_t k, noise_values *kept,
+                     double coefficients[4]) {
+    double *p = kept->value;
+
+    if (kept->is_known && k == kept->k + 1) {
+        p[0] = p[1];
+        p[1] = p[2];
+        p[2] = p[3];
+        p[3] = value_of_place(load->stream, (uint64_t)k + 2);
+    } else {
+        set_values(load, k, p);
+    }
+    kept->is_known = 1;
+    kept->k = k;
+    set_cubic(load->amplitude, p, coefficients);
 }
 
 double load_with_noise(const load_signal *load, double torque, double time) {
@@ -107,15 +132,13 @@ static double unweighted_integral(const double d[4], double from, double to) {
 }
 
 static void keep_piece(const load_signal *load, int64_t k, noise_piece *kept) {
-    if (kept->is_known && kept->k == k) {
+    if (kept->values.is_known && kept->values.k == k) {
         return;
     }
-    load_noise_cubic(load, k, kept->coefficients);
+    load_noise_next(load, k, &kept->values, kept->coefficients);
     for (int n = 0; n < 4; ++n) {
         kept->integral[n] = kept->coefficients[n] / (n + 1);
     }
-    kept->k = k;
-    kept->is_known = 1;
 }
 
 double load_noise_integral(const load_signal *load, double from, double to, double first_weight,

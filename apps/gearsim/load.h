@@ -31,6 +31,17 @@ load_signal load_create(double mean, double amplitude, double interval, uint64_t
 /* Coefficients of the noise between the values k and k + 1: powers of (time / interval - k), N m. */
 void load_noise_cubic(const load_signal *load, int64_t k, double coefficients[4]);
 
+/* The four values that such a cubic is made of, from the value k - 1 on. */
+typedef struct noise_values {
+    int is_known;
+    int64_t k;
+    double value[4]; /* shares of the amplitude */
+} noise_values;
+
+/* The same, where most of the values are known from the cubic before: the four of this one are kept. */
+void load_noise_next(const load_signal *load, int64_t k, noise_values *kept,
+                     double coefficients[4]);
+
 /* Mean or table at a time, without the noise (N m). */
 double load_steady(const load_signal *load, double time);
 
@@ -46,8 +57,7 @@ double load_by_speed(const load_signal *load, double wheel_speed);
 
 /* A piece of the noise that is kept from one integral to the next, as most of them lie in the same piece or the one after. */
 typedef struct noise_piece {
-    int is_known;
-    int64_t k;
+    noise_values values;
     double coefficients[4];
     double integral[4]; /* of the cubic from the piece's beginning on: powers 1 to 4 */
 } noise_piece;

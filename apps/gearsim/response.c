@@ -4,6 +4,14 @@
 
 #include <math.h>
 #include <stdlib.h>
+#include <string.h>
+
+/* Not inlined, see evaluate_motion(). */
+#if defined(__GNUC__)
+#define APART static __attribute__((noinline))
+#else
+#define APART static
+#endif
 
 /* Segments that are kept; a solver looks back by a step or two. */
 enum { KEPT = 512 };
@@ -27,6 +35,9 @@ typedef struct segment {
     double carried[TERMS]; /* what has been carried, see response_carried() */
 } segment;
 
+/* What a segment starts with: p and p' there, and the four coefficients of its noise. */
+enum { STARTS = 6 };
+
 struct response {
     load_signal load;
     int parts;                 /* segments in an interval of the noise */
@@ -37,13 +48,17 @@ struct response {
     double to_rate[TERMS];     /* from p to p' (1/s) */
     double decay;              /* 2 zeta w0: what is carried by p, */
     double by_integral[TERMS]; /* and by the integral of the power before (1/s) */
-    int64_t next;              /* first segment that has not been computed, */
-    int64_t interval;          /* the noise's interval that it lies in, */
-    int part;                  /* which of its parts it is, */
-    double noise[4];           /* and the noise there, over the share of the interval */
-    response_value start;      /* p and p' at its start */
-    double start_carried;      /* likewise */
-    segment kept[KEPT];        /* segment k at k mod KEPT */
+    double to_end
+        [3]
+        [STARTS]; /* p, p' and what is carried at the end of a segment, from what it starts with */
+    int64_t next; /* first segment that has not been computed, */
+    int64_t interval;     /* the noise's interval that it lies in, */
+    int part;             /* which of its parts it is, */
+    noise_values values;  /* the values about it, */
+    double noise[4];      /* and the noise there, over the share of the interval */
+    response_value start; /* p and p' at its start */
+    double start_carried; /* likewise */
+    segment kept[KEPT];   /* segment k at k mod KEPT */
 };
 
 int response_is_useful(const load_signal *load, double frequency) {
@@ -56,6 +71,7 @@ static void restart(response *linear) {
     linear->part = linear->parts - 1;
     linear->start = (response_value){0.0, 0.0};
     linear->start_carried = 0.0;
+    linear->values.is_known = 0;
 }
 
 /*
@@ -93,6 +109,94 @@ static void set_recurrence(response *linear, double gain, double frequency, doub
     }
 }
 
+/* The noise over the share of the next segment: the cubic of its interval from where the segment begins. */
+static void next_noise(response *linear, double noise[4]) {
+    if (++linear->part == linear->parts) {
+        linear->part = 0;
+        load_noise_next(&linear->load, ++linear->interval, &linear->values, linear->noise);
+    }
+
+    /* Most intervals are one segment. */
+    const double *c = linear->noise;
+    if (linear->parts == 1) {
+        memcpy(noise, c, sizeof linear->noise);
+        return;
+    }
+
+    const double share = 1.0 / (double)linear->parts;
+    const double from = (double)linear->part * share;
+    noise[0] = c[0] + from * (c[1] + from * (c[2] + from * c[3]));
+    noise[1] = share * (c[1] + from * (2.0 * c[2] + from * 3.0 * c[3]));
+    noise[2] = share * share * (c[2] + 3.0 * from * c[3]);
+    noise[3] = share * share * share * c[3];
+}
+
+/* The powers of p, each from the two below it, and what follows from p: its derivative, and what is carried. */
+static void set_series(const response *linear, const double start[STARTS], segment *series) {
+    const int terms = linear->terms;
+    const double *noise = start + 2;
+    double *p = series->offset;
+
+    p[0] = start[0];
+    p[1] = start[1] * linear->length;
+    for (int k = 0; k < 4; ++k) {
+        p[k + 2] = linear->by_noise[k] * noise[k] - linear->by_offset[k] * p[k] -
+                   linear->by_rate[k] * p[k + 1];
+    }
+    for (int k = 4; k + 2 < terms; ++k) {
+        p[k + 2] = -linear->by_offset[k] * p[k] - linear->by_rate[k] * p[k + 1];
+    }
+
+    for (int k = 1; k < terms; ++k) {
+        series->rate[k - 1] = linear->to_rate[k] * p[k];
+        series->carried[k] = linear->decay * p[k] + linear->by_integral[k] * p[k - 1];
+    }
+    series->rate[terms - 1] = 0.0;
+    series->carried[0] = 0.0;
+}
+
+static double sum_of(const double coefficients[], int terms) {
+    double sum = 0.0;
+
+    for (int k = terms - 1; k >= 0; --k) {
+        sum += coefficients[k];
+    }
+    return sum;
+}
+
+/* All is linear: each thing that a segment may start with is followed to the end by itself, once. */
+static void set_ends(response *linear) {
+    for (int i = 0; i < STARTS; ++i) {
+        double start[STARTS] = {0.0};
+        segment series;
+        start[i] = 1.0;
+        set_series(linear, start, &series);
+        linear->to_end[0][i] = sum_of(series.offset, linear->terms);
+        linear->to_end[1][i] = sum_of(series.rate, linear->terms);
+        linear->to_end[2][i] = sum_of(series.carried, linear->terms);
+    }
+}
+
+static double end_of(const double row[STARTS], const double start[STARTS]) {
+    return (row[0] * start[0] + row[1] * start[1]) + (row[2] * start[2] + row[3] * start[3]) +
+           (row[4] * start[4] + row[5] * start[5]);
+}
+
+/* Computes one more segment, from where the one before has ended. */
+static void extend(response *linear) {
+    segment *added = &linear->kept[(uint64_t)linear->next % KEPT];
+    double start[STARTS] = {linear->start.offset, linear->start.rate};
+
+    next_noise(linear, start + 2);
+    set_series(linear, start, added);
+    added->carried[0] = linear->start_carried;
+
+    linear->start.offset = end_of(linear->to_end[0], start);
+    linear->start.rate = end_of(linear->to_end[1], start);
+    linear->start_carried += end_of(linear->to_end[2], start);
+    ++linear->next;
+}
+
 response *response_create(const load_signal *load, double gain, double frequency,
                           double damping_ratio) {
     response *created = malloc(sizeof *created);
@@ -103,6 +207,7 @@ response *response_create(const load_signal *load, double gain, double frequency
         created->length = load->interval / (double)created->parts;
         created->per_length = 1.0 / created->length;
         set_recurrence(created, gain, frequency, damping_ratio);
+        set_ends(created);
         restart(created);
     }
     return created;
@@ -112,65 +217,49 @@ void response_free(response *linear) {
     free(linear);
 }
 
-/* The noise over the share of the next segment: the cubic of its interval from where the segment begins. */
-static void next_noise(response *linear, double noise[4]) {
-    if (++linear->part == linear->parts) {
-        linear->part = 0;
-        load_noise_cubic(&linear->load, ++linear->interval, linear->noise);
-    }
-
-    const double share = 1.0 / (double)linear->parts;
-    const double from = (double)linear->part * share;
-    const double *c = linear->noise;
-    noise[0] = c[0] + from * (c[1] + from * (c[2] + from * c[3]));
-    noise[1] = share * (c[1] + from * (2.0 * c[2] + from * 3.0 * c[3]));
-    noise[2] = share * share * (c[2] + 3.0 * from * c[3]);
-    noise[3] = share * share * share * c[3];
-}
-
-/* A polynomial by its even and its odd powers, so that neither waits for the other. */
-static double evaluate(const double coefficients[], int terms, double share) {
-    const double square = share * share;
-    double even = 0.0, odd = 0.0;
+/*
+ * Polynomials by their even and their odd powers, so that neither waits for the other. Both are a vector of two: they end in
+ * memory, so that compilers see it. p and p':
+ */
+APART void evaluate_motion(const segment *part, int terms, double square, double ends[4]) {
+    double p[2] = {0.0, 0.0}, rate[2] = {0.0, 0.0};
 
     for (int k = terms - 2; k >= 0; k -= 2) {
-        even = coefficients[k] + square * even;
-        odd = coefficients[k + 1] + square * odd;
+        p[0] = part->offset[k] + square * p[0];
+        p[1] = part->offset[k + 1] + square * p[1];
+        rate[0] = part->rate[k] + square * rate[0];
+        rate[1] = part->rate[k + 1] + square * rate[1];
     }
-    return even + share * odd;
+    ends[0] = p[0];
+    ends[1] = p[1];
+    ends[2] = rate[0];
+    ends[3] = rate[1];
 }
 
-/* Computes one more segment, from where the one before has ended. */
-static void extend(response *linear) {
-    segment *added = &linear->kept[(uint64_t)linear->next % KEPT];
-    const int terms = linear->terms;
-    double *p = added->offset;
-    double noise[4];
+/* And what has been carried. */
+APART void evaluate_carried(const segment *part, int terms, double square, double ends[2]) {
+    double carried[2] = {0.0, 0.0};
 
-    /* Each power from the two below it. */
-    next_noise(linear, noise);
-    p[0] = linear->start.offset;
-    p[1] = linear->start.rate * linear->length;
-    for (int k = 0; k < 4; ++k) {
-        p[k + 2] = linear->by_noise[k] * noise[k] - linear->by_offset[k] * p[k] -
-                   linear->by_rate[k] * p[k + 1];
+    for (int k = terms - 2; k >= 0; k -= 2) {
+        carried[0] = part->carried[k] + square * carried[0];
+        carried[1] = part->carried[k + 1] + square * carried[1];
     }
-    for (int k = 4; k + 2 < terms; ++k) {
-        p[k + 2] = -linear->by_offset[k] * p[k] - linear->by_rate[k] * p[k + 1];
-    }
+    ends[0] = carried[0];
+    ends[1] = carried[1];
+}
 
-    /* What follows from p: its derivative, and what is carried with its integral. */
-    for (int k = 1; k < terms; ++k) {
-        added->rate[k - 1] = linear->to_rate[k] * p[k];
-        added->carried[k] = linear->decay * p[k] + linear->by_integral[k] * p[k - 1];
-    }
-    added->rate[terms - 1] = 0.0;
-    added->carried[0] = linear->start_carried;
+static response_value motion_in(const segment *part, int terms, double share) {
+    double ends[4];
 
-    linear->start.offset = evaluate(p, terms, 1.0);
-    linear->start.rate = evaluate(added->rate, terms, 1.0);
-    linear->start_carried = evaluate(added->carried, terms, 1.0);
-    ++linear->next;
+    evaluate_motion(part, terms, share * share, ends);
+    return (response_value){.offset = ends[0] + share * ends[1], .rate = ends[2] + share * ends[3]};
+}
+
+static double carried_in(const segment *part, int terms, double share) {
+    double ends[2];
+
+    evaluate_carried(part, terms, share * share, ends);
+    return ends[0] + share * ends[1];
 }
 
 /* The segment that a time is in, and the share of it before the time. */
@@ -192,8 +281,7 @@ response_value response_at(response *linear, double time) {
     double share;
     const segment *part = segment_at(linear, time, &share);
 
-    return (response_value){.offset = evaluate(part->offset, linear->terms, share),
-                            .rate = evaluate(part->rate, linear->terms, share)};
+    return motion_in(part, linear->terms, share);
 }
 
 /* Whether a time is in the segment of the one before, which begins at a whole number of segments; its share there. */
@@ -213,10 +301,9 @@ void response_carried(response *linear, int count, const double times[], double 
             part = segment_at(linear, times[i], &share);
             begin = (double)(int64_t)(times[i] > 0.0 ? times[i] * linear->per_length : 0.0);
         }
-        carried[i] = evaluate(part->carried, terms, share);
+        carried[i] = carried_in(part, terms, share);
         if (values != NULL) {
-            values[i].offset = evaluate(part->offset, terms, share);
-            values[i].rate = evaluate(part->rate, terms, share);
+            values[i] = motion_in(part, terms, share);
         }
     }
 }
