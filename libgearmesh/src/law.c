@@ -2,7 +2,7 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 
 /*
- * The force law: how force follows from overlap. Force and gradient stand in internal.h, to be inlined; here are their
+ * The force law: how force follows from overlap. Force and gradient stand in law.h, to be inlined; here are their
  * inverse, and what users ask of a mesh as a whole. Lines that lean, corners and line loads take its stiffness per length.
  */
 #include "law.h"
