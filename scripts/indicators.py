@@ -27,6 +27,8 @@ from fractions import Fraction
 
 import numpy as np
 
+import stored
+
 TOOTH_ORDERS = (1, 2, 3, 4)
 SIDEBANDS = 10
 LOW_HZ, HIGH_HZ = 20.0, 5000.0  # band of the energies
@@ -53,8 +55,9 @@ INDICATORS = (
 def loss_of_contact(run):
     """Share of the rows without a touching pair; without that column, with under 1 % of the mean force."""
     if run.pairs is not None:
-        return np.mean(run.pairs == 0)
-    return np.mean(np.abs(run.force_N) < 0.01 * np.abs(run.force_N.mean()))
+        return sum(np.count_nonzero(pairs == 0) for _, pairs in stored.blocks(run.pairs)) / len(run.pairs)
+    least_N = 0.01 * abs(run.force_N.mean())
+    return sum(np.count_nonzero(np.abs(force_N) < least_N) for _, force_N in stored.blocks(run.force_N)) / len(run.force_N)
 
 
 def near_tooth_orders(spectra, gears, tooth_orders, width):
@@ -78,26 +81,47 @@ def energy_shares(spectra, gears):
     f0 = gears.eigenfrequency_Hz
     band = spectra.band(LOW_HZ, HIGH_HZ)
     total = spectra.mean_square(band)
-    near = near_tooth_orders(spectra, gears, TOOTH_ORDERS, 0.02)
     return (
         spectra.mean_square(band & spectra.band(0.9 * f0, 1.1 * f0)) / total,
-        spectra.mean_square(band & near) / total,
+        spectra.mean_square(band, lambda piece: near_tooth_orders(piece, gears, TOOTH_ORDERS, 0.02)) / total,
     )
 
 
 def visibility(spectra, gears, k):
     """V_k: share of frames where the peak within 0.8 % of the line is 10 dB over the median of 1.5 .. 8 %."""
-    seen = []
-    for speed_rpm, power in zip(spectra.speed_rpm, spectra.power):
-        line_Hz = k * gears.pinion_teeth * speed_rpm / 60.0
-        if not 1.25 * gears.eigenfrequency_Hz < line_Hz < LINE_TOP_HZ:
-            continue
-        distance = np.abs(spectra.frequency_Hz / line_Hz - 1.0)
-        beside = (distance >= 0.015) & (distance <= 0.08)
-        peak = power[distance <= 0.008]
-        if len(peak) and beside.any():
-            seen.append(peak.max() > OUTSTANDING * np.median(power[beside]))
+    seen, step_Hz = [], spectra.frequency_Hz[1]
+    for piece in spectra.pieces():
+        for speed_rpm, power in zip(piece.speed_rpm, piece.power):
+            line_Hz = k * gears.pinion_teeth * speed_rpm / 60.0
+            if not 1.25 * gears.eigenfrequency_Hz < line_Hz < LINE_TOP_HZ:
+                continue
+
+            # Bins that may be within 8 %, and of them the line and what is beside it.
+            bins = slice(max(0, int(0.92 * line_Hz / step_Hz) - 1), int(1.08 * line_Hz / step_Hz) + 3)
+            distance = np.abs(spectra.frequency_Hz[bins] / line_Hz - 1.0)
+            peak = power[bins][distance <= 0.008]
+            beside = np.sort(power[bins][(distance >= 0.015) & (distance <= 0.08)])
+            if len(peak) and len(beside):
+                median = 0.5 * (beside[(len(beside) - 1) // 2] + beside[len(beside) // 2])
+                seen.append(peak.max() > OUTSTANDING * median)
     return np.mean(seen) if seen else np.nan
+
+
+class LineSums:
+    """Sums over the blocks in which a line counts."""
+
+    def __init__(self):
+        self.blocks, self.power, self.over_floor = 0, 0.0, 0.0
+
+    def add(self, line, floor):
+        self.blocks += len(line)
+        self.power += (line - floor).sum(dtype=float)
+        self.over_floor += (line / floor).sum(dtype=float)
+
+    @property
+    def mean_power(self):
+        """Squared amplitude, floor taken off; 0 where no block counts."""
+        return self.power / self.blocks if self.blocks else 0.0
 
 
 def power_of_lines(lines):
@@ -105,7 +129,7 @@ def power_of_lines(lines):
 
     Noise leaves a remainder of either sign, so it is not cut off at zero before the end.
     """
-    return sum((line - floor).mean() for line, floor in lines if len(line))
+    return sum(line.mean_power for line in lines)
 
 
 def sidebands_of(teeth):
@@ -163,35 +187,55 @@ def amplitude(power):
     return np.sqrt(max(0.0, power))
 
 
-def order_indicators(blocks, gears):
+def line_sums(blocks, gears):
+    """LineSums by (tooth order, None), (tooth order, sideband of it) and (None, order of the rotation)."""
     above_Hz = LINES_ABOVE * gears.eigenfrequency_Hz
-    values, sidebands, counted = {}, 0.0, set()
+    sums = {(k, None): LineSums() for k in TOOTH_ORDERS}
+    sums.update({(k, order): LineSums() for k in TOOTH_ORDERS for order in sideband_orders(gears, k)})
+    sums.update({(None, order): LineSums() for order in rotation_orders(gears)})
+    for piece in blocks.pieces():
+        for (k, order), line in sums.items():
+            if order is None:
+                line.add(*piece.line(k * gears.pinion_teeth, above_Hz))
+            elif k is None:
+                line.add(*piece.line(float(order)))
+            else:
+                line.add(*sideband_line(piece, gears, k, order))
+    return sums
+
+
+def order_indicators(blocks, gears):
+    sums = line_sums(blocks, gears)
+    values, sidebands = {}, {}
     for k in TOOTH_ORDERS:
-        line, floor = blocks.line(k * gears.pinion_teeth, above_Hz)
-        carrier = max(0.0, (line - floor).mean()) if len(line) else np.nan
-        over_floor = (line / floor).mean() if len(line) else np.nan
-        own = {order: sideband_line(blocks, gears, k, order) for order in sideband_orders(gears, k)}
-        beside = power_of_lines(own.values())
-        sidebands += power_of_lines(line for order, line in own.items() if order not in counted)
-        counted.update(own)
+        line = sums[k, None]
+        carrier = max(0.0, line.mean_power) if line.blocks else np.nan
+        over_floor = line.over_floor / line.blocks if line.blocks else np.nan
+        own = {order: sums[k, order] for order in sideband_orders(gears, k)}
+        sidebands = {**own, **sidebands}  # each once: those of the lowest tooth order
         values[f"L{k}_dB"] = 10.0 * np.log10(over_floor)
         values[f"A{k}_N"] = np.sqrt(carrier)
         if over_floor > STANDS_OUT:
-            values[f"car{k}"] = carrier / (carrier + max(0.0, beside))
-    values["S_N"] = amplitude(sidebands)
-    values["O_N"] = amplitude(power_of_lines(blocks.line(float(order)) for order in rotation_orders(gears)))
+            values[f"car{k}"] = carrier / (carrier + max(0.0, power_of_lines(own.values())))
+    values["S_N"] = amplitude(power_of_lines(sidebands.values()))
+    values["O_N"] = amplitude(power_of_lines(sums[None, order] for order in rotation_orders(gears)))
     return values
 
 
 def cell_powers(spectra):
     """Mean power of the cells of B: [speed, frequency] (N^2), NaN for a cell without a frame."""
-    f_Hz, rpm = spectra.frequency_Hz, spectra.speed_rpm
+    f_Hz = spectra.frequency_Hz
     columns = [(f_Hz >= low) & (f_Hz < low + CELL_HZ) for low in np.arange(CELL_HZ, CELL_TOP_HZ, CELL_HZ)]
-    rows = []
-    for low in np.arange(100.0, rpm.max(), CELL_RPM):
-        frames = spectra.power[(rpm >= low) & (rpm < low + CELL_RPM)]
-        rows.append([frames[:, c].mean() if len(frames) and c.any() else np.nan for c in columns])
-    return np.array(rows)
+    bottoms_rpm = np.arange(100.0, spectra.speed_rpm.max(), CELL_RPM)
+    total, frames = np.zeros((len(bottoms_rpm), len(columns))), np.zeros((len(bottoms_rpm), 1))
+    for piece in spectra.pieces():
+        of_columns = np.array([piece.power.sum(axis=1, dtype=float, where=column) for column in columns]).T
+        for row, low in enumerate(bottoms_rpm):
+            inside = (piece.speed_rpm >= low) & (piece.speed_rpm < low + CELL_RPM)
+            total[row] += of_columns[inside].sum(axis=0)
+            frames[row] += inside.sum()
+    with np.errstate(invalid="ignore"):
+        return total / (frames * [column.sum() for column in columns])
 
 
 def louder_share(spectra, reference):
@@ -206,8 +250,7 @@ def louder_share(spectra, reference):
 def high_frequency_rms(spectra, gears):
     """HF: rms above the eigenfrequency, tooth orders 1..8 (2 % wide) left out."""
     band = spectra.band(1.5 * gears.eigenfrequency_Hz, HF_TOP_HZ)
-    near = near_tooth_orders(spectra, gears, range(1, 9), 0.02)
-    return np.sqrt(spectra.mean_square(band & ~near))
+    return np.sqrt(spectra.mean_square(band, lambda piece: ~near_tooth_orders(piece, gears, range(1, 9), 0.02)))
 
 
 def all_indicators(run, spectra, blocks, gears, reference=None):

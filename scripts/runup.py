@@ -12,8 +12,9 @@ import itertools
 import math
 
 import numpy as np
-from scipy import fft, signal
+from scipy import fft
 
+import stored
 import tracking
 from results import Run, RunError, read_run  # noqa: F401  (a run-up is read and analysed by one module)
 
@@ -39,6 +40,9 @@ BLOCK_TURNS = 82  # about so many turns of the pinion: 1/82 order from bin to bi
 LINE_BINS = 4  # between lines of pinion and wheel, so that a Hann window keeps them apart
 # Bins around an order line that tell its floor: nearer ones hold the line, farther ones other lines.
 FLOOR_NEAR, FLOOR_FAR = 4, 24
+
+FRAMES_AT_ONCE = 16  # windows, transformed together
+PIECE_FRAMES, PIECE_BLOCKS = 512, 64  # spectra that are looked at together
 
 
 class Gears:
@@ -81,7 +85,7 @@ def speed_text(run):
 
 
 class Spectra:
-    """Short-time spectra: power[frame, bin] is the squared peak amplitude (N^2)."""
+    """Short-time spectra: power[frame, bin] is the squared peak amplitude (N^2), an array or stored.Rows."""
 
     def __init__(self, frequency_Hz, speed_rpm, power, noise_bandwidth_bins):
         self.frequency_Hz = frequency_Hz
@@ -92,10 +96,19 @@ class Spectra:
     def band(self, low_Hz, high_Hz):
         return (self.frequency_Hz >= low_Hz) & (self.frequency_Hz <= high_Hz)
 
-    def mean_square(self, bins):
-        """Mean square of the signal in the chosen bins, over all frames (N^2)."""
-        total = np.where(bins, self.power, 0.0).sum(axis=1).mean()
-        return total / 2.0 / self.noise_bandwidth_bins
+    def pieces(self):
+        """The same, some frames at a time."""
+        for first in range(0, len(self.speed_rpm), PIECE_FRAMES):
+            part = slice(first, first + PIECE_FRAMES)
+            yield Spectra(self.frequency_Hz, self.speed_rpm[part], self.power[part], self.noise_bandwidth_bins)
+
+    def mean_square(self, bins, among=None):
+        """Mean square of the signal in the chosen bins, over all frames (N^2); of them those of among(piece) [frame, bin]."""
+        total = 0.0
+        for piece in self.pieces():
+            chosen = bins if among is None else bins & among(piece)
+            total += piece.power.sum(axis=1, dtype=float, where=chosen).sum()
+        return total / len(self.speed_rpm) / 2.0 / self.noise_bandwidth_bins
 
 
 def frames_of(run, window, length, hop, padding=1):
@@ -106,12 +119,14 @@ def frames_of(run, window, length, hop, padding=1):
     """
     if len(run.force_N) < length:
         raise RunError(f"the run has {len(run.force_N)} rows, a window needs {length}")
-    weight = signal.get_window(window, length)
-    force_N = run.force_N - run.force_N.mean()
+    weight = tracking.window_of(window, length)
     weight *= 2.0 / weight.sum()
-    frames = np.lib.stride_tricks.sliding_window_view(force_N, length)[::hop]
-    for first in range(0, len(frames), 64):
-        spectrum = fft.rfft(frames[first : first + 64] * weight, padded(length, padding), axis=1)
+    mean_N, count = run.force_N.mean(), (len(run.force_N) - length) // hop + 1
+    for first in range(0, count, FRAMES_AT_ONCE):
+        last = min(first + FRAMES_AT_ONCE, count) - 1
+        force_N = run.force_N[first * hop : last * hop + length] - mean_N
+        frames = np.lib.stride_tricks.sliding_window_view(force_N, length)[::hop]
+        spectrum = fft.rfft(frames * weight, padded(length, padding), axis=1)
         yield first, spectrum.real**2 + spectrum.imag**2
 
 
@@ -128,8 +143,10 @@ def middles_of(values, length, hop):
 
 def short_time_spectra(run, window="hann", length=STANDARD_LENGTH, hop=STANDARD_HOP):
     """Spectra of the contact force without its mean, in frames of `length` rows every `hop` rows."""
-    power = np.concatenate([piece.astype(np.float32) for _, piece in frames_of(run, window, length, hop)])
-    weight = signal.get_window(window, length)
+    power = stored.Rows(length // 2 + 1, np.float32)
+    for _, piece in frames_of(run, window, length, hop):
+        power.append(piece)
+    weight = tracking.window_of(window, length)
     return Spectra(
         np.fft.rfftfreq(length, 1.0 / run.rate_Hz),
         middles_of(run.speed_rpm, length, hop),
@@ -158,7 +175,7 @@ def sweep_gain(run, order, window, length):
     The spectrum of a unit wave exp(i pi c t^2) under the window, at its highest point: c is the rate at which the
     frequency of the order changes. 1 at constant speed.
     """
-    weight = signal.get_window(window, length)
+    weight = tracking.window_of(window, length)
     time_s = (np.arange(length) - (length - 1) / 2) / run.rate_Hz
     sweep_Hz_per_s = order * run.sweep_rpm_per_s() / 60.0
     wave = weight * np.exp(1j * np.pi * sweep_Hz_per_s * time_s**2)
@@ -190,12 +207,12 @@ class Map:
         }
 
 
-def speed_map(run, window="hann", length=STANDARD_LENGTH, hop=STANDARD_HOP, rows=330, over_time=None):
+def speed_map(run, window="hann", length=STANDARD_LENGTH, hop=STANDARD_HOP, rows=330, over_time=None, highest_Hz=None):
     """Rms of the amplitudes over the frames of each row: a Map with never more rows than a third of the frames.
 
     The frames of a row have slightly different speeds, so an order stands at another frequency in each of them, a
     resonance does not. Both are read: the mean over the frames at the same frequency, and at the same order. What is
-    shown is the larger one; for noise they are equal, but for some tenths of a dB.
+    shown is the larger one; for noise they are equal, but for some tenths of a dB. Up to `highest_Hz`, if not half the rate.
     """
     over_time = run.is_constant if over_time is None else over_time
     along = middles_of(run.time_s if over_time else run.speed_rpm, length, hop)
@@ -211,16 +228,18 @@ def speed_map(run, window="hann", length=STANDARD_LENGTH, hop=STANDARD_HOP, rows
     mean_rpm = np.bincount(row_of, speed_rpm, rows) / np.maximum(count, 1)
 
     # Sums over the frames of each row, at the same frequency and at the same order.
-    frequency_Hz = np.fft.rfftfreq(padded(length, PADDING), 1.0 / run.rate_Hz)
+    all_Hz = np.fft.rfftfreq(padded(length, PADDING), 1.0 / run.rate_Hz)
+    frequency_Hz = all_Hz[all_Hz <= (highest_Hz or np.inf)]
     fixed, moving = np.zeros((2, rows, len(frequency_Hz)))
     for first, pieces in frames_of(run, window, length, hop, PADDING):
         for frame, power in enumerate(pieces, start=first):
             row = row_of[frame]
-            fixed[row] += power
+            fixed[row] += power[: len(frequency_Hz)]
             if mean_rpm[row] > 0:
-                moving[row] += np.interp(frequency_Hz * (speed_rpm[frame] / mean_rpm[row]), frequency_Hz, power)
-    with np.errstate(invalid="ignore"):
-        amplitude_N = np.sqrt(np.maximum(fixed, moving) / np.where(count > 0, count, np.nan)[:, None])
+                moving[row] += np.interp(frequency_Hz * (speed_rpm[frame] / mean_rpm[row]), all_Hz, power)
+    amplitude_N = np.maximum(fixed, moving, out=fixed)
+    amplitude_N /= np.where(count > 0, count, np.nan)[:, None]
+    np.sqrt(amplitude_N, out=amplitude_N)
     return Map(frequency_Hz, (edges[:-1] + edges[1:]) / 2.0, (low, high), amplitude_N, over_time)
 
 
@@ -258,23 +277,24 @@ def order_cuts(run, order, multiples, teeth):
     """
     hop_s = min(CUT_HOP_S, (run.time_s[-1] - run.time_s[0]) / CUT_POINTS)
     hop = max(1, int(round(hop_s * run.rate_Hz)))
-    force_N = run.force_N - run.force_N.mean()
+    mean_N, rows = run.force_N.mean(), len(run.force_N)
 
     # Windows that lie within the run, each as long as its speed wants it.
-    middle = np.arange(hop // 2, len(force_N), hop)
+    middle = np.arange(hop // 2, rows, hop)
     half = np.maximum(4, (cut_windows_s(run, run.speed_rpm[middle], teeth) * run.rate_Hz / 2).astype(int))
-    inside = (middle >= half) & (middle + half <= len(force_N))
+    inside = (middle >= half) & (middle + half <= rows)
     middle, half = middle[inside], half[inside]
     if not len(middle):
-        raise RunError(f"the run has {len(force_N)} rows, too few for an order cut")
+        raise RunError(f"the run has {rows} rows, too few for an order cut")
 
     # Some windows at a time, so that what is turned back is never all of the run.
     amplitude_N, weight = np.empty((len(multiples), len(middle))), np.empty(0)
     for piece in np.array_split(np.arange(len(middle)), max(1, len(middle) // 64)):
         low, high = (middle - half)[piece].min(), (middle + half)[piece].max()
-        back = np.exp(-1j * np.remainder(order * run.angle_rad[low:high], 2.0 * np.pi))
+        phase, force_N = order * run.angle_rad[low:high], run.force_N[low:high] - mean_N
+        back = np.cos(phase) - 1j * np.sin(phase)
         powers = itertools.accumulate(itertools.repeat(back, max(multiples)), np.multiply)
-        still = [force_N[low:high] * power for multiple, power in enumerate(powers, 1) if multiple in multiples]
+        still = [force_N * power for multiple, power in enumerate(powers, 1) if multiple in multiples]
         for window in piece:
             if len(weight) != 2 * half[window]:
                 weight = tracking.even_weight(2 * half[window])
@@ -286,16 +306,24 @@ def order_cuts(run, order, multiples, teeth):
 
 
 class OrderBlocks:
-    """Spectra over the pinion angle: power[block, bin], squared peak amplitude (N^2)."""
+    """Spectra over the pinion angle: power[block, bin], squared peak amplitude (N^2), an array or stored.Rows."""
 
-    def __init__(self, turns, speed_rpm, lowest_rpm, highest_rpm, power, trusted_Hz, sweep_rpm_per_s):
+    def __init__(self, turns, bins, speed_rpm, lowest_rpm, highest_rpm, power, trusted_Hz, sweep_rpm_per_s):
         self.turns = turns  # of the pinion in a block: bins for each order
-        self.order = np.arange(power.shape[1]) / turns
+        self.order = np.arange(bins) / turns
         self.speed_rpm = speed_rpm  # mean of each block
         self.lowest_rpm, self.highest_rpm = lowest_rpm, highest_rpm  # of each block
         self.power = power
         self.trusted_Hz = trusted_Hz
         self.sweep_rpm_per_s = sweep_rpm_per_s
+
+    def pieces(self):
+        """The same, some blocks at a time."""
+        for first in range(0, len(self.speed_rpm), PIECE_BLOCKS):
+            part = slice(first, first + PIECE_BLOCKS)
+            speeds_rpm = self.speed_rpm[part], self.lowest_rpm[part], self.highest_rpm[part]
+            yield OrderBlocks(self.turns, len(self.order), *speeds_rpm, self.power[part], self.trusted_Hz,
+                              self.sweep_rpm_per_s)
 
     def passes(self, order, low_Hz, high_Hz):
         """[block]: whether an order is in a band of frequencies at some time of the block."""
@@ -313,18 +341,20 @@ class OrderBlocks:
         """
         middle = int(round(order * self.turns))
 
-        # Bins that tell the noise.
+        # Bins that tell the noise, counted from the first of all that are needed.
+        first = max(0, middle - FLOOR_FAR)
         beside = np.arange(FLOOR_NEAR, FLOOR_FAR + 1)
         around = np.r_[middle - beside, middle + beside]
-        around = around[(around > 0) & (around < self.power.shape[1])]
+        around = around[(around > 0) & (around < len(self.order))] - first
 
         # Blocks that count.
         frequency_Hz = order * self.speed_rpm / 60.0
         counts = (frequency_Hz > above_Hz) & (frequency_Hz < self.trusted_Hz)
         counts = counts & ~np.broadcast_to(left_out, counts.shape)
-        power = self.power[counts]
+        power = self.power[:][:, first : middle + FLOOR_FAR + 1][counts]
 
         # The line, and what is under it.
+        middle -= first
         line = power[:, middle - 1 : middle + 2].sum(axis=1) / 1.5
         floor = np.median(power[:, around], axis=1) / np.log(2.0) * 2.0
         slope = 2.0 * np.sqrt(power[:, middle - 2] * power[:, middle + 2])
@@ -336,11 +366,13 @@ class OrderBlocks:
 
         NaN where there is no such block.
         """
-        frequency_Hz = np.outer(self.speed_rpm / 60.0, self.order)
-        counts = (frequency_Hz >= above_Hz) & (frequency_Hz < self.trusted_Hz)
-        count = counts.sum(axis=0)
-        mean = np.where(counts, self.power, 0.0).sum(axis=0) / np.maximum(count, 1)
-        return np.where(count > 0, np.sqrt(mean), np.nan)
+        count, total = np.zeros((2, len(self.order)))
+        for piece in self.pieces():
+            for speed_rpm, power in zip(piece.speed_rpm, piece.power):
+                counts = slice(*np.searchsorted(speed_rpm / 60.0 * self.order, (above_Hz, self.trusted_Hz)))
+                count[counts] += 1
+                total[counts] += power[counts]
+        return np.where(count > 0, np.sqrt(total / np.maximum(count, 1)), np.nan)
 
 
 def block_turns(pinion_teeth, wheel_teeth):
@@ -357,20 +389,32 @@ def block_turns(pinion_teeth, wheel_teeth):
     return turns if turns * pinion_teeth >= LINE_BINS * wheel_teeth else turns + hunting_turns
 
 
-def block_starts(run, turn, turns):
+def fast_stretches(run):
+    """(first row, row behind it) of each stretch that is fast enough for blocks throughout."""
+    least_rpm = BLOCK_MIN_SHARE_OF_SPEED * run.speed_rpm.max()
+    edges, was_fast = [], False
+    for first, speed_rpm in stored.blocks(run.speed_rpm):
+        fast = speed_rpm >= least_rpm
+        edges.extend(first + np.flatnonzero(np.diff(fast, prepend=was_fast)))
+        was_fast = fast[-1]
+    if was_fast:
+        edges.append(len(run.speed_rpm))
+    return list(zip(edges[::2], edges[1::2]))
+
+
+def block_starts(run, turns):
     """Turns at which blocks begin, half a block apart: each lies in a stretch that is fast enough throughout."""
-    fast = run.speed_rpm >= BLOCK_MIN_SHARE_OF_SPEED * run.speed_rpm.max()
-    edges = np.flatnonzero(np.diff(np.concatenate([[False], fast, [False]]).astype(int)))
-    parts = [
-        np.arange(turn[first], turn[last - 1] - turns, turns / 2.0) for first, last in zip(edges[::2], edges[1::2])
-    ]
+
+    def turn(row):
+        return run.angle_rad[row] / (2.0 * np.pi)
+
+    parts = [np.arange(turn(first), turn(behind - 1) - turns, turns / 2.0) for first, behind in fast_stretches(run)]
     return np.concatenate(parts)
 
 
 def order_blocks(run, turns, highest_order):
     """Spectra of blocks of `turns` pinion turns, Hann, overlapping by half; None if the run has none."""
-    turn = run.angle_rad / (2.0 * np.pi)
-    starts = block_starts(run, turn, turns)
+    starts = block_starts(run, turns)
     if not len(starts):
         return None
 
@@ -379,14 +423,14 @@ def order_blocks(run, turns, highest_order):
     # Each block over even steps of the angle, so many that it holds the whole bandwidth and nothing is aliased, and its
     # spectrum up to the highest order.
     bins = int(highest_order * turns) + 1
-    power, speeds_rpm = np.empty((len(starts), bins), dtype=np.float32), np.empty((3, len(starts)))
+    power, speeds_rpm = stored.Rows(bins, np.float32), np.empty((3, len(starts)))
     for i, start in enumerate(starts):
-        first, last = np.searchsorted(turn, (start, start + turns))
+        first, last = over_angle.rows(start, turns)
         inside_rpm = run.speed_rpm[first:last]
         speeds_rpm[:, i] = inside_rpm.mean(), inside_rpm.min(), inside_rpm.max()
         samples = math.ceil(turns * over_angle.samples_per_turn(highest_order, inside_rpm.min()))
         samples = fft.next_fast_len(samples, real=True)
-        weight = signal.get_window("hann", samples)
-        spectrum = fft.rfft(over_angle.piece(start, turns, samples) * weight)[:bins]
-        power[i] = np.abs(2.0 * spectrum / weight.sum()) ** 2
-    return OrderBlocks(turns, *speeds_rpm, power, run.trusted_Hz, run.sweep_rpm_per_s())
+        weight = tracking.window_of("hann", samples)
+        spectrum = fft.rfft(over_angle.overlapping_piece(start, turns, samples) * weight)[:bins] * (2.0 / weight.sum())
+        power.append((spectrum.real**2 + spectrum.imag**2)[None])
+    return OrderBlocks(turns, bins, *speeds_rpm, power, run.trusted_Hz, run.sweep_rpm_per_s())

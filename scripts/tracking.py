@@ -14,7 +14,7 @@ So the passband is the same in orders at all speeds, and the equations are well 
 import math
 
 import numpy as np
-from scipy import fft, interpolate, linalg, signal
+from scipy import fft, linalg
 
 from results import RunError
 
@@ -28,6 +28,8 @@ BANDWIDTH_TURNS, LEAST_BANDWIDTH = 4.0, 0.1  # of a Vold-Kalman filter, times th
 MOST_BANDWIDTH = 0.5  # of what is 1 order away, as the sidebands of a gear are, 1 % leaks in then
 BESIDE = 24  # rows to each side of a piece: more than the low-pass of a doubled rate reaches, and a spline feels
 POINTS = 600  # frames in a record, at most
+DOUBLING_REACH = 20  # half rows to each side
+WINDOWS = {"hann": (0.5, 0.5), "flattop": (0.21557895, 0.41663158, 0.277263158, 0.083578947, 0.006947368)}
 PADDING = 8  # between two bins of a map a Hann window then loses 0.3 % at most
 STEPS_OF_BANDWIDTH = 16  # steps of an envelope of the Vold-Kalman filter in 1 / bandwidth
 
@@ -39,27 +41,68 @@ class OverAngle:
     """
 
     def __init__(self, run):
-        self.turn = run.angle_rad / (2.0 * np.pi)
+        self.angle_rad = run.angle_rad
         self.rate_Hz = run.rate_Hz
         self.values, self.mean = run.force_N, run.force_N.mean()
+        self._kept = None  # where a half begins, and its spline
+
+    def rows(self, start, turns):
+        """The first row in so many turns from a turn on, and that behind the last one."""
+        return np.searchsorted(self.angle_rad, (2.0 * np.pi * start, 2.0 * np.pi * (start + turns)))
 
     def piece(self, start, turns, samples):
         """So many samples at even steps of the angle."""
-        first, last = np.searchsorted(self.turn, (start, start + turns))
+        return self._spline(start, turns)(start + np.arange(samples) * (turns / samples))
+
+    def overlapping_piece(self, start, turns, samples):
+        """The same, where pieces are half of one apart: each has a half in common with the one before."""
+        half = 0.5 * turns
+        if self._kept is None or abs(self._kept[0] - start) > 1e-9 * turns:
+            self._kept = start, self._spline(start, half)
+        at = start + np.arange(samples) * (turns / samples)
+        behind = np.searchsorted(at, start + half)
+        first, self._kept = self._kept[1](at[:behind]), (start + half, self._spline(start + half, half))
+        return np.concatenate([first, self._kept[1](at[behind:])])
+
+    def _spline(self, start, turns):
+        from scipy import interpolate  # pylint: disable=import-outside-toplevel  (takes its time to load)
+
+        first, last = self.rows(start, turns)
         part = slice(max(0, first - BESIDE), last + BESIDE)
 
         # At twice the rate. The angle half-way between two rows is their mean.
-        values = signal.resample_poly(self.values[part] - self.mean, 2, 1)
-        turn = np.repeat(self.turn[part], 2)
-        turn[1:-1:2] += 0.5 * np.diff(self.turn[part])
+        values, rows_turn = doubled(self.values[part] - self.mean), self.angle_rad[part] / (2.0 * np.pi)
+        turn = np.repeat(rows_turn, 2)
+        turn[1:-1:2] += 0.5 * np.diff(rows_turn)
 
-        growing = np.flatnonzero(np.diff(turn, prepend=-np.inf) > 0)  # it may stand still beside the piece
-        spline = interpolate.CubicSpline(turn[growing], values[growing])
-        return spline(start + np.arange(samples) * (turns / samples))
+        growing = np.diff(turn, prepend=-np.inf) > 0  # it may stand still beside the piece
+        if not growing.all():
+            turn, values = turn[growing], values[growing]
+        return interpolate.CubicSpline(turn, values)
 
     def samples_per_turn(self, highest_order, lowest_rpm):
         """So many that the slowest stretch holds the whole bandwidth: nothing is aliased."""
         return max(2.2 * highest_order, 1.1 * self.rate_Hz * 60.0 / lowest_rpm)
+
+
+def window_of(name, length):
+    """Weights of a Hann or a flat-top window, a sum of cosines over a period; the flat one is that of scipy and of Matlab."""
+    coefficients = WINDOWS[name]
+    turn = 2.0 * np.pi / length * np.arange(length)
+    return sum((-1) ** k * value * np.cos(k * turn) for k, value in enumerate(coefficients))
+
+
+def doubled(values):
+    """A signal at twice its rate: a sinc under a Kaiser window (beta 5), ten rows to each side; its weights have the sum 2."""
+    away = np.arange(-DOUBLING_REACH, DOUBLING_REACH + 1)
+    weights = np.sinc(away / 2.0) * np.kaiser(len(away), 5.0)
+    weights *= 2.0 / weights.sum()
+
+    # Of the weights at rows the sinc leaves the middle one alone; the others are at the places between two rows.
+    found = np.empty(2 * len(values))
+    found[::2] = weights[DOUBLING_REACH] * values
+    found[1::2] = np.convolve(values, weights[1::2])[DOUBLING_REACH // 2 : DOUBLING_REACH // 2 + len(values)]
+    return found
 
 
 class Frames:
@@ -163,7 +206,7 @@ def spectra(frames, over_angle, highest_order, window="hann", padding=PADDING):
     """(order, squared peak amplitude [frame, order]) of all frames, NaN where the rate does not hold the order."""
     power = None
     for i, piece in enumerate(frames.pieces(over_angle, highest_order)):
-        weight = signal.get_window(window, len(piece))
+        weight = window_of(window, len(piece))
         bins = int(highest_order * frames.turns * padding) + 1
         spectrum = fft.rfft(piece * weight, padding * len(piece))[:bins]
         if power is None:
@@ -187,16 +230,22 @@ def even_weight(length):
     A Hann window times a + b u^2, u from -1/2 to 1/2, has the sum 1 and the second moment 0 with
     b = -1 / (m4 / m2 - m2), a = 1 - b m2, where m2 and m4 are the moments of the Hann window.
     """
-    u = (np.arange(length) + 0.5) / length - 0.5
-    hann = 1.0 + np.cos(2.0 * np.pi * u)
-    hann /= hann.sum()
-    m2, m4 = (hann * u**2).sum(), (hann * u**4).sum()
+    half = np.arange((length + 1) // 2)
+    u = (half + 0.5) / length - 0.5
+    hann, square = 1.0 + np.cos(2.0 * np.pi * u), u * u
+
+    # Half of it, and what is on the other side: all but the middle of an odd number.
+    count = np.where(half == length - 1 - half, 1.0, 2.0)
+    hann /= count @ hann
+    both = count * hann
+    m2, m4 = both @ square, both @ (square * square)
     b = -1.0 / (m4 / m2 - m2)
-    return hann * (1.0 - b * m2 + b * u**2)
+    weight = hann * (1.0 - b * m2 + b * square)
+    return np.concatenate([weight, weight[: length // 2][::-1]])
 
 
 def _hann_weight(length):
-    weight = signal.get_window("hann", length)
+    weight = window_of("hann", length)
     return weight / weight.sum()
 
 

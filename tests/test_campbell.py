@@ -7,7 +7,9 @@ import re
 import subprocess
 import sys
 import tempfile
+import tracemalloc
 import unittest
+from unittest import mock
 
 sys.dont_write_bytecode = True
 SCRIPTS = os.path.join(os.path.dirname(os.path.abspath(__file__)), os.pardir, "scripts")
@@ -23,6 +25,8 @@ from scipy import signal  # noqa: E402
 import indicators  # noqa: E402
 import runup  # noqa: E402
 import script_case  # noqa: E402
+import stored  # noqa: E402
+import tracking  # noqa: E402
 
 MEAN_N = 524.0
 EIGENFREQUENCY_HZ = 1979.16
@@ -405,6 +409,126 @@ class Indicators(unittest.TestCase):
         self.assertEqual(indicators.loss_of_contact(run), 0.01)
 
 
+class Stored(unittest.TestCase):
+    def column(self, values):
+        column = stored.Column()
+        for part in np.array_split(values, 7):
+            column.append(part)
+        return column
+
+    def test_a_column_is_as_its_array(self):
+        values = np.cumsum(np.random.default_rng(1).uniform(0.0, 1.0, 5000))
+        with mock.patch.object(stored, "BLOCK_ROWS", 300), mock.patch.object(stored, "INDEX_STEP", 64):
+            column = self.column(values)
+            self.assertEqual((len(column), column.min(), column.max()), (5000, values[0], values[-1]))
+            self.assertAlmostEqual(column.mean(), values.mean(), delta=1e-9)
+            self.assertEqual((column[0], column[4711], column[-1]), (values[0], values[4711], values[-1]))
+            for part in (slice(0, 0), slice(7, 3), slice(10, 20), slice(4990, 6000), slice(None)):
+                np.testing.assert_array_equal(column[part], values[part])
+            rows = np.array([0, 3, 299, 300, 301, 302, 2000, 4999])
+            np.testing.assert_array_equal(column[rows], values[rows])
+            for before in (0, 1):
+                for (first, part), expected in zip(stored.blocks(column, before), range(0, 5000, 300)):
+                    np.testing.assert_array_equal(part, values[max(0, expected - before) : expected + 300])
+                    self.assertEqual(first, max(0, expected - before))
+
+            # At values themselves, between them, and beyond both ends.
+            wanted = np.concatenate([values[::37], values[::41] + 1e-3, [-1.0, values[64], values[128], 1e9]])
+            np.testing.assert_array_equal(np.searchsorted(column, wanted), np.searchsorted(values, wanted))
+            np.testing.assert_array_equal(np.searchsorted(column, wanted, "right"), np.searchsorted(values, wanted, "right"))
+
+    def test_a_number_that_is_none_is_seen(self):
+        for bad in (np.nan, np.inf, -np.inf):
+            values = np.arange(100.0)
+            values[50] = bad
+            column = self.column(values)
+            self.assertFalse(np.isfinite(column.min()) and np.isfinite(column.max()))
+
+    def test_rows_of_several_numbers(self):
+        rows = stored.Rows(3, np.float32)
+        rows.append(np.arange(6).reshape(2, 3))
+        rows.append(np.arange(6, 12).reshape(2, 3))
+        np.testing.assert_array_equal(rows[1:3], [[3, 4, 5], [6, 7, 8]])
+        np.testing.assert_array_equal(rows[3], [9, 10, 11])
+
+    def test_analysis_of_columns_is_that_of_arrays(self):
+        """Backwards and reversing, in small blocks."""
+        for start_rpm, end_rpm in ((-2000.0, -6000.0), (3000.0, -3000.0)):
+            whole = run_up(lambda t, a: np.cos(45 * a) + noise(t), start_rpm, end_rpm)
+            slope = (end_rpm - start_rpm) / 10.0
+            angle_rad = (start_rpm * whole.time_s + slope * whole.time_s**2 / 2.0) * np.pi / 30.0
+            with mock.patch.object(stored, "BLOCK_ROWS", 5000):
+                columns = [self.column(values) for values in (whole.time_s, start_rpm + slope * whole.time_s, angle_rad,
+                                                              whole.force_N)]
+                run = runup.Run(*columns)
+                np.testing.assert_allclose(run.speed_rpm[:], whole.speed_rpm, rtol=1e-12)
+                np.testing.assert_allclose(run.angle_rad[:], whole.angle_rad, rtol=1e-9, atol=1e-7)
+                for one, other in ((runup.speed_map(run, rows=40).amplitude_N, runup.speed_map(whole, rows=40).amplitude_N),
+                                   (blocks_of(run).power[:], blocks_of(whole).power[:]),
+                                   *zip(runup.order_cuts(run, 45, (1, 2), 45), runup.order_cuts(whole, 45, (1, 2), 45))):
+                    np.testing.assert_allclose(one, other, rtol=1e-5, atol=1e-6)
+                self.assertEqual(indicators.loss_of_contact(run), indicators.loss_of_contact(whole))
+
+    def test_blocks_in_pieces_say_the_same(self):
+        blocks = blocks_of(run_up(lambda t, a: np.cos(45 * a) + 0.1 * np.cos(46 * a) + noise(t), 3000.0, 6000.0))
+        self.assertGreater(len(blocks.speed_rpm), 10)
+        whole = indicators.order_indicators(blocks, gears()), blocks.mean_amplitude_N(2000.0)
+        with mock.patch.object(runup, "PIECE_BLOCKS", 3):
+            in_pieces = indicators.order_indicators(blocks, gears()), blocks.mean_amplitude_N(2000.0)
+        self.assertEqual(in_pieces[0].keys(), whole[0].keys())
+        np.testing.assert_allclose(list(in_pieces[0].values()), list(whole[0].values()), rtol=1e-6)
+        np.testing.assert_allclose(in_pieces[1], whole[1], rtol=1e-6)
+
+    def test_memory_does_not_grow_with_the_run(self):
+        """A million rows, 32 MB, and their spectra: some blocks of them."""
+        rows = 1 << 20
+        time_s = np.arange(rows) / 25600.0
+        with tempfile.TemporaryDirectory() as folder:
+            path = os.path.join(folder, "run.h5")
+            with h5py.File(path, "w") as file:
+                for name, values in zip(COLUMNS.split(","), (time_s, 1000.0 + time_s, 110.0 * time_s, np.sin(time_s))):
+                    file[name] = values
+            tracemalloc.start()
+            try:
+                run = runup.read_run(path)
+                spectra = runup.short_time_spectra(run)
+                indicators.energy_shares(spectra, gears())
+                peak = tracemalloc.get_traced_memory()[1]
+            finally:
+                tracemalloc.stop()
+        self.assertEqual(len(run.force_N), rows)
+        self.assertLess(peak, 12e6)
+
+
+class Signals(unittest.TestCase):
+    """What tracking.py does itself, as loading scipy.signal takes longer: against scipy."""
+
+    def test_windows_are_those_of_scipy(self):
+        for name in ("hann", "flattop"):
+            for length in (16, 17, 2048):
+                np.testing.assert_allclose(tracking.window_of(name, length), signal.get_window(name, length), atol=1e-15)
+
+    def test_twice_the_rate_is_that_of_scipy(self):
+        for rows in (1, 5, 40, 41, 1000):
+            values = np.random.default_rng(rows).normal(size=rows)
+            np.testing.assert_allclose(tracking.doubled(values), signal.resample_poly(values, 2, 1), atol=1e-14)
+
+    def test_even_weight_has_no_second_moment(self):
+        for length in (8, 9, 1000, 1001):
+            weight = tracking.even_weight(length)
+            place = (np.arange(length) + 0.5) / length - 0.5
+            np.testing.assert_allclose(weight, weight[::-1], atol=1e-16)
+            self.assertAlmostEqual(weight.sum(), 1.0, delta=1e-14)
+            self.assertAlmostEqual((weight * place**2).sum(), 0.0, delta=1e-15)
+
+    def test_pieces_that_overlap_are_those_alone(self):
+        run = run_up(lambda t, a: np.cos(45 * a) + noise(t))
+        together, alone = tracking.OverAngle(run), tracking.OverAngle(run)
+        for start, samples in ((20.0, 5000), (25.0, 5001), (30.0, 4500), (47.0, 5000), (52.0, 5003)):
+            np.testing.assert_allclose(together.overlapping_piece(start, 10.0, samples), alone.piece(start, 10.0, samples),
+                                       rtol=0.0, atol=1e-7)
+
+
 HEAD = "# gearsim\n# gears.pinion_teeth = 45\n# gears.wheel_teeth = 41\n# output.oversampling = 4\n"
 COLUMNS = "time_s,pinion_speed_rpm,pinion_angle_rad,contact_force_N"
 
@@ -542,6 +666,22 @@ class CommandLine(unittest.TestCase):
             with open(path, encoding="utf-8") as file:
                 rows = len(file.read().splitlines()) - len(tail.splitlines())
             self.assert_input_error(self.campbell(path), f":{rows + line + 1}: must have {COLUMNS.count(',') + 1} columns")
+
+    def test_rows_that_all_lack_a_field_are_named(self):
+        """Beside a column that is read, and beside one that is not."""
+        for name in ("pairs_in_contact", "other"):
+            self.assert_input_error(self.campbell(self.write(columns=f"{COLUMNS},{name}")), ":6: must have 5 columns")
+
+    def test_columns_that_are_not_read_may_stand_between(self):
+        path = self.write(columns="other,pinion_speed_rpm,time_s,contact_force_N")
+        with open(path, encoding="ascii") as file:
+            lines = file.read().splitlines()
+        with open(path, "w", encoding="ascii") as file:
+            file.write(lines[0] + "\n" + ",".join(("other", *COLUMNS.split(",")[::-1])) + "\n")
+            file.writelines(f"text,{','.join(line.split(',')[::-1])}\n" for line in lines[5:])
+        run = runup.read_run(path)
+        np.testing.assert_allclose(run.force_N[:], self.run.force_N, rtol=1e-9)
+        np.testing.assert_allclose(run.time_s[:], self.run.time_s, rtol=1e-9)
 
     def test_incomplete_run_is_drawn_with_a_warning(self):
         path = self.write(tail="# incomplete: interrupted\n")
