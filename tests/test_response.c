@@ -66,11 +66,10 @@ static void it_is_smooth_across_the_noise_values(void) {
 }
 
 /*
- * What spring and damper carry is what the noise has given x' less p', within and across noise values and parts of their
- * intervals. The series leaves out 1e-15 of gain * 10 / w0^2 a segment, which times w0 makes 2e-11 m/s of it; sums of up to
- * 1 m/s are rounded by 1e-16 in each of 1200 segments.
+ * What the noise has given x' is the gain times its integral, within and across noise values and parts of their intervals:
+ * sums of up to 1 m/s, rounded by 1e-16 in each of 1200 segments.
  */
-static void it_tells_what_the_mesh_has_carried(void) {
+static void it_tells_what_the_noise_has_given(void) {
     const double intervals[] = {2e-6, 1e-5, 1e-4};
 
     for (int i = 0; i < 3; ++i) {
@@ -81,22 +80,21 @@ static void it_tells_what_the_mesh_has_carried(void) {
 
         for (int k = 0; k < 300; ++k) {
             const double times[] = {from + 0.3 * intervals[i], from + 1.7 * intervals[i]};
-            double carried[2], alone[2];
-            response_value values[2];
-            response_carried(linear, 2, times, carried, values);
-            response_carried(linear, 2, times, alone, NULL);
+            response_sum sums[2], alone[2];
+            response_given(linear, 2, times, 1, sums);
+            response_given(linear, 2, times, 0, alone);
             for (int n = 0; n < 2; ++n) {
                 const response_value at = response_at(linear, times[n]);
 
                 given += gain * load_noise_integral(&load, from, times[n], 1.0, 1.0, &piece);
                 gm_test_context("interval %g, time %.12g", intervals[i], times[n]);
-                GM_ASSERT_ABS(carried[n], given - at.rate, 1e-11);
-                GM_ASSERT(alone[n] == carried[n] && values[n].offset == at.offset &&
-                          values[n].rate == at.rate);
+                GM_ASSERT_ABS(sums[n].given, given, 1e-12);
+                GM_ASSERT(alone[n].given == sums[n].given && sums[n].value.offset == at.offset &&
+                          sums[n].value.rate == at.rate && alone[n].value.rate == at.rate);
                 from = times[n];
             }
-            GM_ASSERT(carried[1] != before);
-            before = carried[1];
+            GM_ASSERT(sums[1].given != before);
+            before = sums[1].given;
         }
         response_free(linear);
     }
@@ -143,7 +141,7 @@ int main(int argc, char **argv) {
     static const gm_test tests[] = {
         GM_TEST(it_solves_its_equation),
         GM_TEST(it_is_smooth_across_the_noise_values),
-        GM_TEST(it_tells_what_the_mesh_has_carried),
+        GM_TEST(it_tells_what_the_noise_has_given),
         GM_TEST(it_starts_at_rest),
         GM_TEST(it_may_be_asked_in_any_order),
         GM_TEST(useful_only_with_noise_that_is_not_too_dense),

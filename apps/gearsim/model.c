@@ -273,21 +273,21 @@ void model_edges(const gear_model *model, int count, const double times[],
                  const double *const states[], int wanted, model_edge edges[]) {
     const double speed_unit = model_speed_unit(model);
     const int is_with_offset = wanted & (EDGE_OFFSET | EDGE_PINION);
-    double carried[MODEL_EDGES_MAX];
-    response_value noise[MODEL_EDGES_MAX];
+    response_sum sums[MODEL_EDGES_MAX];
 
     if (model->noise != NULL) {
-        response_carried(model->noise, count, times, carried, is_with_offset ? noise : NULL);
+        response_given(model->noise, count, times, is_with_offset, sums);
     }
     for (int k = 0; k < count; ++k) {
         const double rate = states[k][STATE_OFFSET_RATE] * speed_unit;
-        const double known = model->noise != NULL ? carried[k] : 0.0;
+        const response_sum none = {.given = 0.0};
+        const response_sum noise = model->noise != NULL ? sums[k] : none;
+        const response_value more = noise.value;
 
-        edges[k].momentum = rate - known;
+        edges[k].momentum = rate - (noise.given - more.rate);
+        edges[k].given = noise.given;
         edges[k].motion = (gear_motion){.offset = 0.0};
         if (is_with_offset) {
-            const response_value none = {0.0, 0.0};
-            const response_value more = model->noise != NULL ? noise[k] : none;
             const drive_motion none_known = {.angle = 0.0};
             const drive_motion pinion =
                 wanted & EDGE_PINION ? pinion_motion(model, times[k], states[k]) : none_known;

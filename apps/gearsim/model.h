@@ -97,6 +97,7 @@ gear_motion model_motion(const gear_model *model, double time, const double stat
  */
 typedef struct model_edge {
     double momentum;
+    double given; /* x' by the load's noise so far, 0 where it has no response (m/s) */
     gear_motion motion;
 } model_edge;
 

@@ -28,11 +28,13 @@ enum { TERMS = 20 };
 /* Below, there are as many segments as steps of a solver that follows the noise itself. */
 static const double shortest_interval = 1e-2; /* rad of the frequency */
 
-/* Over the share of a segment, from the power 0 up; an even number of terms. */
+enum { GIVEN = 5 }; /* terms of the integral of a cubic */
+
+/* Over the share of a segment, from the power 0 up; an even number of terms of p. */
 typedef struct segment {
-    double offset[TERMS];  /* p */
-    double rate[TERMS];    /* p' */
-    double carried[TERMS]; /* what has been carried, see response_carried() */
+    double offset[TERMS]; /* p */
+    double rate[TERMS];   /* p' */
+    double given[GIVEN];  /* what the noise has given, see response_given() */
 } segment;
 
 /* What a segment starts with: p and p' there, and the four coefficients of its noise. */
@@ -44,21 +46,18 @@ struct response {
     double length, per_length; /* of a segment (s, 1/s) */
     int terms;
     double by_noise[4], by_offset[TERMS],
-        by_rate[TERMS];        /* what makes a power from those below it */
-    double to_rate[TERMS];     /* from p to p' (1/s) */
-    double decay;              /* 2 zeta w0: what is carried by p, */
-    double by_integral[TERMS]; /* and by the integral of the power before (1/s) */
-    double to_end
-        [3]
-        [STARTS]; /* p, p' and what is carried at the end of a segment, from what it starts with */
-    int64_t next; /* first segment that has not been computed, */
-    int64_t interval;     /* the noise's interval that it lies in, */
-    int part;             /* which of its parts it is, */
-    noise_values values;  /* the values about it, */
-    double noise[4];      /* and the noise there, over the share of the interval */
-    response_value start; /* p and p' at its start */
-    double start_carried; /* likewise */
-    segment kept[KEPT];   /* segment k at k mod KEPT */
+        by_rate[TERMS];         /* what makes a power from those below it */
+    double to_rate[TERMS];      /* from p to p' (1/s) */
+    double to_given[GIVEN - 1]; /* from the noise to what it gives (m/s per N m) */
+    double to_end[2][STARTS];   /* p and p' where a segment ends, from what it starts with */
+    int64_t next;               /* first segment that has not been computed, */
+    int64_t interval;           /* the noise's interval that it lies in, */
+    int part;                   /* which of its parts it is, */
+    noise_values values;        /* the values about it, */
+    double noise[4];            /* and the noise there, over the share of the interval */
+    response_value start;       /* p and p' at its start */
+    double start_given;         /* likewise */
+    segment kept[KEPT];         /* segment k at k mod KEPT */
 };
 
 int response_is_useful(const load_signal *load, double frequency) {
@@ -70,7 +69,7 @@ static void restart(response *linear) {
     linear->interval = -1;
     linear->part = linear->parts - 1;
     linear->start = (response_value){0.0, 0.0};
-    linear->start_carried = 0.0;
+    linear->start_given = 0.0;
     linear->values.is_known = 0;
 }
 
@@ -99,13 +98,11 @@ static void set_recurrence(response *linear, double gain, double frequency, doub
         linear->by_rate[k] = 2.0 * damping_ratio * x / (double)(k + 2);
         if (k < 4) {
             linear->by_noise[k] = gain * linear->length * linear->length / both;
+            linear->to_given[k] = gain * linear->length / (double)(k + 1);
         }
     }
-
-    linear->decay = 2.0 * damping_ratio * frequency;
     for (int k = 1; k < TERMS; ++k) {
         linear->to_rate[k] = (double)k / linear->length;
-        linear->by_integral[k] = frequency * x / (double)k;
     }
 }
 
@@ -131,7 +128,7 @@ static void next_noise(response *linear, double noise[4]) {
     noise[3] = share * share * share * c[3];
 }
 
-/* The powers of p, each from the two below it, and what follows from p: its derivative, and what is carried. */
+/* The powers of p, each from the two below it, and those of its derivative. */
 static void set_series(const response *linear, const double start[STARTS], segment *series) {
     const int terms = linear->terms;
     const double *noise = start + 2;
@@ -149,10 +146,8 @@ static void set_series(const response *linear, const double start[STARTS], segme
 
     for (int k = 1; k < terms; ++k) {
         series->rate[k - 1] = linear->to_rate[k] * p[k];
-        series->carried[k] = linear->decay * p[k] + linear->by_integral[k] * p[k - 1];
     }
     series->rate[terms - 1] = 0.0;
-    series->carried[0] = 0.0;
 }
 
 static double sum_of(const double coefficients[], int terms) {
@@ -173,7 +168,6 @@ static void set_ends(response *linear) {
         set_series(linear, start, &series);
         linear->to_end[0][i] = sum_of(series.offset, linear->terms);
         linear->to_end[1][i] = sum_of(series.rate, linear->terms);
-        linear->to_end[2][i] = sum_of(series.carried, linear->terms);
     }
 }
 
@@ -182,18 +176,28 @@ static double end_of(const double row[STARTS], const double start[STARTS]) {
            (row[4] * start[4] + row[5] * start[5]);
 }
 
+static double given_in(const segment *part, double share) {
+    const double *given = part->given;
+
+    return given[0] +
+           share * (given[1] + share * (given[2] + share * (given[3] + share * given[4])));
+}
+
 /* Computes one more segment, from where the one before has ended. */
-static void extend(response *linear) {
+APART void extend(response *linear) {
     segment *added = &linear->kept[(uint64_t)linear->next % KEPT];
     double start[STARTS] = {linear->start.offset, linear->start.rate};
 
     next_noise(linear, start + 2);
     set_series(linear, start, added);
-    added->carried[0] = linear->start_carried;
+    added->given[0] = linear->start_given;
+    for (int k = 0; k + 1 < GIVEN; ++k) {
+        added->given[k + 1] = linear->to_given[k] * start[2 + k];
+    }
 
     linear->start.offset = end_of(linear->to_end[0], start);
     linear->start.rate = end_of(linear->to_end[1], start);
-    linear->start_carried += end_of(linear->to_end[2], start);
+    linear->start_given = given_in(added, 1.0);
     ++linear->next;
 }
 
@@ -236,16 +240,16 @@ APART void evaluate_motion(const segment *part, int terms, double square, double
     ends[3] = rate[1];
 }
 
-/* And what has been carried. */
-APART void evaluate_carried(const segment *part, int terms, double square, double ends[2]) {
-    double carried[2] = {0.0, 0.0};
+/* p' alone. */
+APART void evaluate_rate(const segment *part, int terms, double square, double ends[2]) {
+    double rate[2] = {0.0, 0.0};
 
     for (int k = terms - 2; k >= 0; k -= 2) {
-        carried[0] = part->carried[k] + square * carried[0];
-        carried[1] = part->carried[k + 1] + square * carried[1];
+        rate[0] = part->rate[k] + square * rate[0];
+        rate[1] = part->rate[k + 1] + square * rate[1];
     }
-    ends[0] = carried[0];
-    ends[1] = carried[1];
+    ends[0] = rate[0];
+    ends[1] = rate[1];
 }
 
 static response_value motion_in(const segment *part, int terms, double share) {
@@ -255,10 +259,10 @@ static response_value motion_in(const segment *part, int terms, double share) {
     return (response_value){.offset = ends[0] + share * ends[1], .rate = ends[2] + share * ends[3]};
 }
 
-static double carried_in(const segment *part, int terms, double share) {
+static double rate_in(const segment *part, int terms, double share) {
     double ends[2];
 
-    evaluate_carried(part, terms, share * share, ends);
+    evaluate_rate(part, terms, share * share, ends);
     return ends[0] + share * ends[1];
 }
 
@@ -290,8 +294,8 @@ static int is_within(const response *linear, double time, double begin, double *
     return *share >= 0.0 && *share < 1.0;
 }
 
-void response_carried(response *linear, int count, const double times[], double carried[],
-                      response_value values[]) {
+void response_given(response *linear, int count, const double times[], int with_offset,
+                    response_sum sums[]) {
     const int terms = linear->terms;
     const segment *part = NULL;
     double begin = -1.0, share;
@@ -301,9 +305,11 @@ void response_carried(response *linear, int count, const double times[], double 
             part = segment_at(linear, times[i], &share);
             begin = (double)(int64_t)(times[i] > 0.0 ? times[i] * linear->per_length : 0.0);
         }
-        carried[i] = carried_in(part, terms, share);
-        if (values != NULL) {
-            values[i] = motion_in(part, terms, share);
+        sums[i].given = given_in(part, share);
+        if (with_offset) {
+            sums[i].value = motion_in(part, terms, share);
+        } else {
+            sums[i].value = (response_value){.rate = rate_in(part, terms, share)};
         }
     }
 }

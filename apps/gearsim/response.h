@@ -37,10 +37,15 @@ int response_is_useful(const load_signal *load, double frequency);
 response_value response_at(response *linear, double time);
 
 /*
- * What spring and damper of the linear mesh have carried of the noise up to some times (m/s): the integral of
- * 2 zeta w0 p' + w0^2 p, or what the noise has given x' less p'. With p and p', if values are wanted: NULL = they are not.
+ * What the noise has given x' up to some times (m/s), the integral of gain * noise, with p', and p if it is wanted. What
+ * spring and damper of the linear mesh have carried, the integral of 2 zeta w0 p' + w0^2 p, is that less p'.
  */
-void response_carried(response *linear, int count, const double times[], double carried[],
-                      response_value values[]);
+typedef struct response_sum {
+    double given;
+    response_value value;
+} response_sum;
+
+void response_given(response *linear, int count, const double times[], int with_offset,
+                    response_sum sums[]);
 
 #endif

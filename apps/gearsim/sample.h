@@ -22,7 +22,8 @@ typedef struct means_state {
     int is_started; /* there is a sample before */
     double edge_time;
     gear_motion edge;
-    double edge_momentum; /* of boxes alone */
+    double edge_momentum; /* of boxes alone, */
+    double edge_given;    /* and what the noise has given up to there */
     gear_motion next;     /* at the next sample, where a triangle has ended */
 
     /* See integrator_point: where the mean begins, and up to where it is known. */

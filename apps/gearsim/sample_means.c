@@ -193,15 +193,15 @@ static model_torques mean_following(const sampling *s, double begin, double end,
 }
 
 /* Means of force and load over a box in which nothing but the noise changes what acts. */
-static void set_plain_means(sampling *s, double end, double momentum) {
-    const double begin = s->means.edge_time, weight = 1.0 / (end - begin);
-    const double change = momentum - s->means.edge_momentum;
+static void set_plain_means(sampling *s, double end, const model_edge *edge) {
+    const double weight = 1.0 / (end - s->means.edge_time);
+    const double change = edge->momentum - s->means.edge_momentum;
 
     s->sample.mean_force = model_mean_force(s->model, &s->means.steady, change * weight);
     if (s->shows_load) {
-        s->sample.mean_load =
-            s->means.steady.load +
-            load_noise_integral(&s->model->load, begin, end, weight, weight, &s->means.noise);
+        /* What the noise has given x' tells its integral. */
+        s->sample.mean_load = s->means.steady.load + (edge->given - s->means.edge_given) * weight /
+                                                         s->model->torque_to_offset;
     }
 }
 
@@ -240,7 +240,7 @@ int sample_means_set_box(sampling *s, enum column_need seen, double end, const m
 
     /* Force and load, then the overlap from the force. */
     if (s->is_plain_box && s->means.is_started) {
-        set_plain_means(s, end, edge->momentum);
+        set_plain_means(s, end, edge);
     } else if (s->shows_means) {
         set_box(s, end, edge);
     }
@@ -252,6 +252,7 @@ int sample_means_set_box(sampling *s, enum column_need seen, double end, const m
     s->means.edge_time = end;
     s->means.edge = *motion;
     s->means.edge_momentum = edge->momentum;
+    s->means.edge_given = edge->given;
     s->behind.time = end;
     s->behind.motion = *motion;
     return failed;
