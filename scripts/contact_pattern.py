@@ -211,6 +211,11 @@ def largest_by_place(maps, flanks, name):
     return max(part[rows:-rows].max() for part in drawn), max(max(part[:rows].max(), part[-rows:].max()) for part in drawn)
 
 
+def four_digits(value):
+    """A number above 0 as people write it: with four digits, and all of those before the point."""
+    return f"{value:.0f}" if value >= 1000 else f"{value:.4g}"
+
+
 def pattern_values(loads, flanks, maps, folder):
     """Maps of both gears, without colour where nothing touches; its edge is where the overlap of the flanks ends."""
     values = {"nodes": NODES}
@@ -221,7 +226,7 @@ def pattern_values(loads, flanks, maps, folder):
         top = elsewhere if stands_out else max(elsewhere, at_edges)
         step = loaded_te.round_step(top, 8)
         values |= {f"name_{k}": name, f"unit_{k}": unit, f"step_{k}": step, f"top_{k}": whole_steps(top, step),
-                   f"note_{k}": f"tip edges: up to {at_edges:.4g}" if stands_out else ""}
+                   f"note_{k}": f"tip edges: up to {four_digits(at_edges)}" if stands_out else ""}
         for i, flank in enumerate(flanks):
             drawn = maps[flank.gear, name]
             drawn.astype("<f4").tofile(f"{folder}/values_{i}_{k}.bin")

@@ -143,7 +143,7 @@ def settings_of(values):
 
 def command_of(gearsim, path, values, *options):
     path = os.path.join(".", path) if path.startswith("-") else path  # or it were an option
-    return [gearsim, path, "--quiet", *options, *(f"--set={setting}" for setting in settings_of(values))]
+    return [gearsim, path, *options, *(f"--set={setting}" for setting in settings_of(values))]
 
 
 def check(status, text):
@@ -160,7 +160,7 @@ def check(status, text):
 
 def call(gearsim, path, values, *options):
     """Call gearsim with {section.key: value}; returns what it prints."""
-    command = command_of(gearsim, path, values, *options)
+    command = command_of(gearsim, path, values, "--quiet", *options)
     result = subprocess.run(command, capture_output=True, text=True, check=False, stdin=subprocess.DEVNULL)
     check(result.returncode, result.stderr)
     return result.stdout
@@ -188,9 +188,13 @@ class Runs:
         except BrokenPipeError:
             pass  # it has ended, and what it has said of that is read below
         lines, rows, status = self._answer()
-        said = [line.removeprefix(self.MESSAGE) for line in lines if line.startswith(self.MESSAGE)]
-        check(status, b"".join(said).decode(errors="replace"))
+        check(status, "".join(self.messages_of(lines)))
         return lines, rows
+
+    @classmethod
+    def messages_of(cls, lines):
+        """What gearsim has said of a run, among its lines of comments."""
+        return [line.removeprefix(cls.MESSAGE).decode(errors="replace") for line in lines if line.startswith(cls.MESSAGE)]
 
     def _answer(self):
         """Lines of comments that a run prints, its rows and its exit status."""
@@ -252,6 +256,7 @@ class Gears:
             raise InputError(f"{path}: there is no such file")
         self.settings = dict(self._setting(text) for text in settings)
         self.positions = None  # as the file says
+        self.warnings = set()  # that have been passed on
         self.folder = tempfile.TemporaryDirectory(prefix="gearmesh_")
         self.pool = concurrent.futures.ThreadPoolExecutor(os.cpu_count() or 1)
         self.own, self.all_runs = threading.local(), []
@@ -286,6 +291,7 @@ class Gears:
         names = "pinion_angle_rad,te_um"
         lines, table = self._run({"output.columns": names, "analysis.loads": 1})
         self.parameters = _head(lines)
+        self._pass_on_warnings(lines)
         self.mean_Nm = float(self.parameters["load.mean_Nm"])
         self.flank, self.other_flank = ("drive", "coast") if self.mean_Nm > 0 else ("coast", "drive")
         if self.differs_by_tooth() and self.parameters["analysis.period"] == "mesh":
@@ -294,6 +300,14 @@ class Gears:
                 "take --set analysis.period=pinion --set analysis.positions=N, N some 50 for each"
             )
         self.mesh_cycles = table[:, 0] * int(self.parameters["gears.pinion_teeth"]) / (2 * math.pi)
+
+    def _pass_on_warnings(self, lines):
+        """What gearsim warns of in a run of the file as it is; not that the static run leaves keys unused."""
+        for message in Runs.messages_of(lines):
+            words = re.sub(r"\d", "", message)  # once, whatever number a later run has
+            if ": warning: " in message and ": warning: not used with " not in message and words not in self.warnings:
+                self.warnings.add(words)
+                print(program.shown(message.rstrip("\n")), file=sys.stderr)
 
     # ------------------------------------------------------------------------------------------------
     # Runs
@@ -324,7 +338,8 @@ class Gears:
     def load_distribution(self):
         """The CSV with the loads along the lines of contact at mean_Nm; it goes with close()."""
         path = os.path.join(self.folder.name, "load.csv")
-        self._run({"analysis.loads": 1, "output.columns": "te_um", "output.load_distribution": path})
+        lines, _ = self._run({"analysis.loads": 1, "output.columns": "te_um", "output.load_distribution": path})
+        self._pass_on_warnings(lines)
         return path
 
     def curves(self, torques_Nm, values, columns):

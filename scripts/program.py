@@ -232,8 +232,11 @@ def first_line_of(error):
 
 
 def stem_of(output, source):
-    """Beginning of the names to write: as asked for, or the name of the input without its suffix, here."""
-    stem = output or os.path.splitext(os.path.basename(source))[0]
+    """Beginning of the names to write: as asked for, or the name of the input without its suffix, here.
+
+    Who asks for x.png gets the pictures as x.png and not as x.png.png.
+    """
+    stem = re.sub(r"(?<=[^/])\.(png|svg|pdf)$", "", output) if output else os.path.splitext(os.path.basename(source))[0]
     folder = os.path.dirname(stem)
     if folder and not os.path.isdir(folder):
         raise InputError(f"{folder}: there is no such folder (--output)")

@@ -184,7 +184,7 @@ class Pattern(unittest.TestCase):
         self.known(lambda tooth, z, rho: 50.0, teeth=1)
         loads = contact_pattern.Loads(self.path("load.csv"), lambda head: contact_pattern.geometry_of(GEARSIM, head))
         pattern = contact_pattern.Pattern(loads)
-        for at_edges, lowest_top, note in ((7, 7, ""), (10, 10, ""), (1234, 7, "tip edges: up to 1234")):
+        for at_edges, lowest_top, note in ((7, 7, ""), (10, 10, ""), (1234, 7, "tip edges: up to 1234"), (12345.6, 7, "tip edges: up to 12346")):
             for gear, rows in (("pinion", slice(0, 3)), ("wheel", slice(-3, None))):  # as it is where the wheel's tip enters
                 pattern.maps[gear, "pressure"][rows] = at_edges
             _, values = contact_pattern.pattern_values(loads, pattern.flanks, pattern.maps, self.folder)
@@ -231,6 +231,15 @@ class Pattern(unittest.TestCase):
         # What was kept can be read again and says the same.
         again = script_case.call("pattern", "a b_load.csv", "--no-pictures", "--gearsim", GEARSIM, folder=inner)
         self.assertEqual(again.stdout.splitlines(), result.stdout.splitlines()[:-1])
+
+    def test_what_gearsim_warns_of_is_told_once(self):
+        elastic = PARAMS.replace("stiffness_N_per_m = 2.8e8", "damping_Ns_per_m = 1").replace(f"{FORCE_N * BASE_MM * 1e-3!r}", "4e4")
+        self.write("run.ini", elastic)
+        result = self.call("run.ini", "--no-pictures", "--output", "it.png")
+        self.assertEqual(result.returncode, 0, result.stderr)
+        self.assertEqual(result.stderr.count("load.mean_Nm: warning: the contact pressure reaches "), 1, result.stderr)
+        self.assertNotIn("damping_Ns_per_m", result.stderr)  # that a static run has no use for it is the script's doing
+        self.assertTrue(os.path.isfile(self.path("it_load.csv")))
 
     def test_what_cannot_be_drawn_is_refused(self):
         self.refused("none.ini", text="none.ini: there is no such file")
