@@ -100,6 +100,37 @@ static void it_tells_what_the_noise_has_given(void) {
     }
 }
 
+/* However many times are asked for at once, and how they lie in the segments: to some roundings what each is alone. */
+static void many_times_at_once_are_those_alone(void) {
+    enum { TIMES = 40 };
+    const double steps[] = {0.05, 0.22, 0.3, 0.9, 2.5}; /* in terms of the interval */
+
+    for (int i = 0; i < 5; ++i) {
+        const load_signal load = noise(1e-5);
+        response *linear = response_create(&load, gain, frequency, 0.05);
+        response_sum together[TIMES], with_offset[TIMES];
+        double times[TIMES];
+
+        for (int n = 0; n < TIMES; ++n) {
+            times[n] =
+                (n - 3 + 0.01) * steps[i] * 1e-5; /* the first ones before the noise begins */
+        }
+        response_given(linear, TIMES, times, 0, together);
+        response_given(linear, TIMES, times, 1, with_offset);
+        for (int n = 0; n < TIMES; ++n) {
+            response_sum alone;
+            response_given(linear, 1, &times[n], 1, &alone);
+            gm_test_context("step %g, time %d", steps[i], n);
+            GM_ASSERT_ABS(together[n].given, alone.given, 1e-15);
+            GM_ASSERT_ABS(together[n].value.rate, alone.value.rate, 1e-16);
+            GM_ASSERT(with_offset[n].given == alone.given &&
+                      with_offset[n].value.offset == alone.value.offset &&
+                      with_offset[n].value.rate == alone.value.rate);
+        }
+        response_free(linear);
+    }
+}
+
 static void it_starts_at_rest(void) {
     const load_signal load = noise(1e-5);
     response *linear = response_create(&load, gain, frequency, 0.05);
@@ -142,6 +173,7 @@ int main(int argc, char **argv) {
         GM_TEST(it_solves_its_equation),
         GM_TEST(it_is_smooth_across_the_noise_values),
         GM_TEST(it_tells_what_the_noise_has_given),
+        GM_TEST(many_times_at_once_are_those_alone),
         GM_TEST(it_starts_at_rest),
         GM_TEST(it_may_be_asked_in_any_order),
         GM_TEST(useful_only_with_noise_that_is_not_too_dense),

@@ -27,7 +27,7 @@ static const double kaiser_beta = 9.1;
 #endif
 
 /* A strip is so many times as long as the filter. The longer, the fewer of its samples are moved to where it begins. */
-enum { STRIP_LENGTHS = 6 };
+enum { STRIP_LENGTHS = 3 };
 
 struct decimator {
     int channels;
@@ -225,6 +225,17 @@ static void begin_again(decimator *filter) {
     filter->next = filter->length;
 }
 
+/* Into the strip of a plain channel; a few without a call. */
+static void put_plain(double *place, int count, const double values[]) {
+    if (count > 8) {
+        memcpy(place, values, (size_t)count * sizeof *values);
+        return;
+    }
+    for (int n = 0; n < count; ++n) {
+        place[n] = values[n];
+    }
+}
+
 /* Into both strips of a channel. */
 static void put(double *strip, int length, int place, int count, const double values[]) {
     double *forward = strip + place, *backward = strip + 2 * length - 1 - place;
@@ -260,9 +271,7 @@ void decimator_push_all(decimator *filter, int count, const double values[], int
             const double *value = values + channel * stride + done;
 
             if (filter->kinds[channel] == SAMPLE_PLAIN) {
-                for (int n = 0; n < some; ++n) {
-                    strip[filter->next + n] = value[n];
-                }
+                put_plain(strip + filter->next, some, value);
             } else {
                 put(strip, filter->strip, filter->next, some, value);
             }

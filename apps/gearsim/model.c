@@ -75,6 +75,7 @@ static void init_bodies(gear_model *model, const config *conf) {
         model->torque_to_pinion = r_bp / conf->pinion_inertia;
         model->states = 4;
     }
+    model->moved_mass = 1.0 / (model->pinion_mobility + model->wheel_mobility);
     model->pinion_drag = conf->pinion_drag;
     model->wheel_drag = conf->wheel_drag;
 }
@@ -405,7 +406,7 @@ model_torques model_applied(const gear_model *model, double time, const gear_mot
 double model_mean_force(const gear_model *model, const model_torques *mean, double acceleration) {
     const double applied = mean->drive + model->torque_to_offset * (mean->load + mean->drag);
 
-    return (applied - acceleration) / mobility(model);
+    return (applied - acceleration) * model->moved_mass;
 }
 
 /* Mean of a table over the time between two weights, or the number that stands in its place. */

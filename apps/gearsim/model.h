@@ -49,6 +49,7 @@ typedef struct gear_model {
     load_signal load;
     double pinion_mobility;   /* r_bp^2 / I_p, 0 if its speed is prescribed (1/kg) */
     double wheel_mobility;    /* r_bw^2 / I_w (1/kg) */
+    double moved_mass;        /* what a force on both accelerates: 1 over the sum of both (kg) */
     double torque_to_offset;  /* r_bw / I_w: from the load to x'' (1/(kg m)) */
     double pinion_inertia;    /* I_p, infinite if its speed is prescribed (kg m2) */
     double torque_to_pinion;  /* r_bp / I_p: from the pinion's torque to x'' (1/(kg m)) */

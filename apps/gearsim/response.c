@@ -288,28 +288,86 @@ response_value response_at(response *linear, double time) {
     return motion_in(part, linear->terms, share);
 }
 
-/* Whether a time is in the segment of the one before, which begins at a whole number of segments; its share there. */
-static int is_within(const response *linear, double time, double begin, double *share) {
-    *share = time * linear->per_length - begin;
-    return *share >= 0.0 && *share < 1.0;
+/*
+ * Four places in a segment at once: a polynomial at all of them, side by side for the same reason as above, and once more by
+ * its even and its odd powers. Places are numbers of their own: an array that has just been filled would be waited for.
+ */
+enum { AT_ONCE = 4 };
+
+typedef struct four {
+    double at[AT_ONCE];
+} four;
+
+static inline void go_on(double sum[AT_ONCE], double coefficient, const double square[AT_ONCE]) {
+    sum[0] = coefficient + square[0] * sum[0];
+    sum[1] = coefficient + square[1] * sum[1];
+    sum[2] = coefficient + square[2] * sum[2];
+    sum[3] = coefficient + square[3] * sum[3];
+}
+
+APART void evaluate_four(const double coefficients[], int terms, double a, double b, double c,
+                         double d, four *values) {
+    const double square[AT_ONCE] = {a * a, b * b, c * c, d * d};
+    double even[AT_ONCE] = {0.0, 0.0, 0.0, 0.0}, odd[AT_ONCE] = {0.0, 0.0, 0.0, 0.0};
+
+    for (int k = terms - 2; k >= 0; k -= 2) {
+        go_on(even, coefficients[k], square);
+        go_on(odd, coefficients[k + 1], square);
+    }
+    values->at[0] = even[0] + a * odd[0];
+    values->at[1] = even[1] + b * odd[1];
+    values->at[2] = even[2] + c * odd[2];
+    values->at[3] = even[3] + d * odd[3];
+}
+
+static void rates_of_four(const segment *part, int terms, const double share[AT_ONCE],
+                          response_sum sums[AT_ONCE]) {
+    four rate;
+
+    evaluate_four(part->rate, terms, share[0], share[1], share[2], share[3], &rate);
+    for (int n = 0; n < AT_ONCE; ++n) {
+        sums[n].given = given_in(part, share[n]);
+        sums[n].value = (response_value){.rate = rate.at[n]};
+    }
+}
+
+/* Shares of the times behind the first one, up to four in all, that lie in its segment as well; how many there are. */
+static int find_more(const response *linear, int count, const double times[],
+                     double share[AT_ONCE]) {
+    const double begin = (double)(int64_t)(times[0] > 0.0 ? times[0] * linear->per_length : 0.0);
+    int found = 1;
+
+    while (found < AT_ONCE && found < count) {
+        share[found] = times[found] * linear->per_length - begin;
+        if (!(share[found] >= 0.0 && share[found] < 1.0)) {
+            break;
+        }
+        ++found;
+    }
+    return found;
 }
 
 void response_given(response *linear, int count, const double times[], int with_offset,
                     response_sum sums[]) {
     const int terms = linear->terms;
-    const segment *part = NULL;
-    double begin = -1.0, share;
 
-    for (int i = 0; i < count; ++i) {
-        if (begin < 0.0 || !is_within(linear, times[i], begin, &share)) {
-            part = segment_at(linear, times[i], &share);
-            begin = (double)(int64_t)(times[i] > 0.0 ? times[i] * linear->per_length : 0.0);
+    for (int i = 0; i < count;) {
+        double share[AT_ONCE];
+        const segment *part = segment_at(linear, times[i], &share[0]);
+        const int found = find_more(linear, count - i, times + i, share);
+
+        if (found == AT_ONCE && !with_offset) {
+            rates_of_four(part, terms, share, sums + i);
+            i += AT_ONCE;
+            continue;
         }
-        sums[i].given = given_in(part, share);
-        if (with_offset) {
-            sums[i].value = motion_in(part, terms, share);
-        } else {
-            sums[i].value = (response_value){.rate = rate_in(part, terms, share)};
+        for (int n = 0; n < found; ++n, ++i) {
+            sums[i].given = given_in(part, share[n]);
+            if (with_offset) {
+                sums[i].value = motion_in(part, terms, share[n]);
+            } else {
+                sums[i].value = (response_value){.rate = rate_in(part, terms, share[n])};
+            }
         }
     }
 }

@@ -41,7 +41,10 @@ typedef struct sampling {
     const gear_model *model;
     integrator *solver;
     decimator *filter;
-    int factor; /* samples per row */
+    int factor; /* samples per row, */
+    double centre_share
+        [MODEL_EDGES_MAX]; /* parts of a row's period from a row to the next samples of a block, */
+    double box_end_share[MODEL_EDGES_MAX]; /* and to where their boxes end */
 
     /* The columns that are asked for: what is taken of a sample, and of which one. */
     int column_count;
@@ -76,8 +79,12 @@ typedef struct sampling {
 } sampling;
 
 /* Time of a sample: divided once, so that k / rate is the time of row k to the last bit. */
+static inline double time_of_share(const sampling *s, double row, double share) {
+    return (row + share) / s->conf->output_rate;
+}
+
 static inline double sample_time(const sampling *s, double row, double sample) {
-    return (row + sample / s->factor) / s->conf->output_rate;
+    return time_of_share(s, row, sample / s->factor);
 }
 
 /*

@@ -127,6 +127,10 @@ static void choose_blocks(sampling *s) {
         s->row_need = larger(s->row_need, NEEDS_MOTION);
     }
     s->takes_blocks = s->mean_kind == SAMPLE_BOX && s->sample_need == NEEDS_TIME && !s->follows;
+    for (int j = 0; j < s->factor && s->takes_blocks; ++j) {
+        s->centre_share[j] = (j + 1.0) / s->factor;
+        s->box_end_share[j] = (j + 1.5) / s->factor;
+    }
     s->is_plain_box = s->takes_blocks && s->means.is_steady &&
                       (model->noise != NULL || model->load.amplitude == 0.0);
     s->is_force_alone = s->is_plain_box && s->filtered_count == 1 && s->shows_means &&
@@ -249,6 +253,7 @@ static int take_sample(sampling *s, double row, int i) {
 typedef struct sample_block {
     int count;
     double centre[MODEL_EDGES_MAX], end[MODEL_EDGES_MAX]; /* of their boxes */
+    double times[2 * MODEL_EDGES_MAX];                    /* of the points below */
     gear_motion of_row;                                   /* at the last centre */
     model_edge edges[MODEL_EDGES_MAX];                    /* at the ends, */
     integrator_point points[2 * MODEL_EDGES_MAX];         /* and what the solver says there, */
@@ -258,14 +263,16 @@ typedef struct sample_block {
 /* The solver only goes forward: centres with the ends, where flanks that do not carry may have to be looked at there. */
 static int see_block(sampling *s, double row, sample_block *block) {
     const int count = s->factor, each = s->shows_overlap ? 2 : 1;
-    double times[2 * MODEL_EDGES_MAX];
+    double *times = block->times;
     const double *states[MODEL_EDGES_MAX];
 
     block->count = count;
     block->each = each;
     for (int j = 0; j < count; ++j) {
-        block->centre[j] = sample_time(s, row, j + 1.0);
-        block->end[j] = sample_time(s, row, j + 1.5);
+        /* A division is dear beside the rest: centres only where somebody looks at them. */
+        const int is_seen = !s->is_force_alone || j == count - 1;
+        block->end[j] = time_of_share(s, row, s->box_end_share[j]);
+        block->centre[j] = is_seen ? time_of_share(s, row, s->centre_share[j]) : block->end[j];
         times[each * j] = block->centre[j];
         times[each * j + each - 1] = block->end[j];
         states[j] = block->points[each * j + each - 1].state;
