@@ -96,14 +96,14 @@ static double_double scaled(double value, int power) {
     return result;
 }
 
-/* floor(log10(value)), or one more or less; log10(2) = 0.30103. */
+/* floor(log10(value)), or one more or less; log10(2) = 0.30103 = 1233 / 4096. */
 static int guess_exponent(double value) {
     uint64_t bits;
     memcpy(&bits, &value, sizeof bits);
     const int binary = (int)(bits >> 52) - 1023; /* of a positive number that is not too small */
 
-    /* The shift by 100 makes truncation a floor. */
-    return (int)(binary * 0.30103 + 100.0) - 100;
+    /* 4096 more, which makes 1233, so that no negative number is shifted: what is cut off makes a floor. */
+    return (int)((unsigned)(binary + 4096) * 1233u >> 12) - 1233;
 }
 
 /* 10^k */
@@ -126,9 +126,10 @@ static const int64_t whole_power_of_ten[] = {1,
                                              10000000000000000,
                                              100000000000000000};
 
-/* So many digits are told by doubles alone: a product or quotient below 10^10 is off by 2e-6 of the last digit at most. */
+/* So many digits are told by doubles alone: a product or quotient below 10^10 is off by 2e-6 of the last digit at most, and
+ * one half added to it by 1e-6 more. */
 enum { FEW_DIGITS = 10 };
-static const double near_tie_of_few = 4e-6;
+static const double near_tie_of_few = 6e-6;
 
 /* The same as decompose() for few digits. */
 static int decompose_few(double value, int digits, int64_t *mantissa, int *exponent) {
@@ -142,16 +143,17 @@ static int decompose_few(double value, int digits, int64_t *mantissa, int *expon
         m = power >= 0 ? value * power_of_ten[power].high : value / power_of_ten[-power].high;
     }
 
-    int64_t n = (int64_t)m;
-    const double rest = m - (double)n;
-    n += rest > 0.5;
+    /* Rounded to the nearest; next to a tie the rest is next to 0 or to 1. */
+    const double higher = m + 0.5;
+    int64_t n = (int64_t)higher;
+    const double rest = higher - (double)n;
     if (n == whole_power_of_ten[digits]) {
         n /= 10;
         ++e;
     }
     *mantissa = n;
     *exponent = e;
-    return fabs(rest - 0.5) >= near_tie_of_few && n >= whole_power_of_ten[digits - 1] &&
+    return fabs(rest - 0.5) <= 0.5 - near_tie_of_few && n >= whole_power_of_ten[digits - 1] &&
            n < whole_power_of_ten[digits];
 }
 
@@ -297,11 +299,9 @@ static int put_number(char *text, int is_negative, int64_t mantissa, int exponen
  * The same of ten digits, from 0.000123 to 1234567890: the first one, a word of eight, and the last one. The word is written
  * from its register, and once more from the point on. Nothing that has been written is read, which would have to wait for it.
  */
-static int put_ten(char *text, int is_negative, uint64_t mantissa, int exponent) {
-    const uint32_t nine = (uint32_t)(mantissa / 10);
+static inline int put_ten(char *text, int is_negative, uint32_t nine, int last, int exponent) {
     const uint32_t first = nine / 100000000;
     const uint64_t word = eight_digits(nine - first * 100000000);
-    const int last = (int)(mantissa - (uint64_t)nine * 10);
 
     /* Without zeros at the end. */
     int count = last != 0 ? 10 : 9;
@@ -361,11 +361,16 @@ int number_format(char text[NUMBER_TEXT_SIZE], double value, int digits) {
     /* Where one way is in doubt the next one, which takes longer. */
     if (digits <= FEW_DIGITS && size >= smallest && size <= largest &&
         decompose_few(size, digits, &mantissa, &exponent)) {
-        return exponent >= -4 && exponent < digits
-                   ? put_ten(text, value < 0.0,
-                             (uint64_t)(mantissa * whole_power_of_ten[FEW_DIGITS - digits]),
-                             exponent)
-                   : put_number(text, value < 0.0, mantissa, exponent, digits);
+        if (exponent < -4 || exponent >= digits) {
+            return put_number(text, value < 0.0, mantissa, exponent, digits);
+        }
+
+        /* Filled up with zeros. */
+        const int is_short = digits < FEW_DIGITS;
+        const int64_t nine =
+            is_short ? mantissa * whole_power_of_ten[FEW_DIGITS - 1 - digits] : mantissa / 10;
+        const int last = is_short ? 0 : (int)(mantissa - 10 * nine);
+        return put_ten(text, value < 0.0, (uint32_t)nine, last, exponent);
     }
     return format_any(text, value, digits);
 }
