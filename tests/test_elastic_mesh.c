@@ -193,7 +193,7 @@ typedef struct variant {
     int has_flanks;
 } variant;
 
-static void variant_make(variant *v, int k) {
+static void variant_make_scaled(variant *v, int k, double deviations) {
     uint64_t seed = 7u + (uint64_t)k;
     const gm_pair_params gears[4] = {spur62(), paper(), nrel3(), ring()};
     gm_pair_params params = gears[k % 4];
@@ -206,7 +206,8 @@ static void variant_make(variant *v, int k) {
 
     v->has_flanks = k >= 4;
     for (int gear = 0; v->has_flanks && gear < 2; ++gear) {
-        random_flanks_make(&v->flanks[gear], &seed, &pair, gear, 1e-3 * params.normal_module);
+        random_flanks_make(&v->flanks[gear], &seed, &pair, gear,
+                           deviations * 1e-3 * params.normal_module);
     }
     if (k >= 8) {
         law.pose.center_distance_change = 5e-3 * params.normal_module;
@@ -226,6 +227,10 @@ static void variant_make(variant *v, int k) {
     GM_ASSERT_INT(make(&v->mesh, &params, &law, v->has_flanks ? v->flanks[0].flanks : NULL,
                        v->has_flanks ? v->flanks[1].flanks : NULL),
                   GM_OK);
+}
+
+static void variant_make(variant *v, int k) {
+    variant_make_scaled(v, k, 1.0);
 }
 
 static void variant_free(variant *v) {
@@ -282,13 +287,16 @@ static void vectors_of_four_give_the_same_bits(void) {
 }
 
 /* Three values of a quantity around a state decide: the middle difference, and whether there is a kink. */
-static void assert_slope(double before, double at, double after, double step, double slope,
-                         double scale, double accuracy) {
+/* Returns 1 where the slope could be compared, 0 next to a kink. */
+static int assert_slope(double before, double at, double after, double step, double slope,
+                        double scale, double accuracy) {
     const double left = (at - before) / step;
     const double right = (after - at) / step;
-    if (fabs(right - left) < 1e-3 * scale) { /* no pair enters or leaves here */
-        GM_ASSERT_ABS(slope, 0.5 * (left + right), accuracy * scale + 0.51 * fabs(right - left));
+    if (fabs(right - left) >= 1e-3 * scale) { /* a pair enters or leaves here */
+        return 0;
     }
+    GM_ASSERT_ABS(slope, 0.5 * (left + right), accuracy * scale + 0.51 * fabs(right - left));
+    return 1;
 }
 
 static void derivatives_are_those_of_differences(void) {
@@ -338,6 +346,55 @@ static void derivatives_are_those_of_differences(void) {
         }
         variant_free(&v);
     }
+}
+
+/*
+ * What more of the same deviations does, tables, pitch and reliefs, to the force: differences between meshes of their own.
+ * Of one gear, of the other, and of both in one call.
+ */
+static void force_by_flanks_is_that_of_differences(void) {
+    int compared = 0, entering = 0;
+    for (int k = 4; k < VARIANTS; ++k) {
+        variant v, beside[2];
+        variant_make(&v, k);
+        elastic_mesh *m = &v.mesh;
+        const double step = 1e-3 / (1e-3 * 1e6 * m->pair.normal_module); /* 1 nm */
+        variant_make_scaled(&beside[0], k, 1.0 - step);
+        variant_make_scaled(&beside[1], k, 1.0 + step);
+        const gm_flanks *pinion[3] = {v.flanks[0].flanks, NULL, v.flanks[0].flanks};
+        const gm_flanks *wheel[3] = {NULL, v.flanks[1].flanks, v.flanks[1].flanks};
+
+        for (int n = 0; n < 24; ++n) {
+            gm_test_context("variant %d, state %d", k, n);
+            const double angle = 0.013 + 0.13 * n / m->pair.pinion.teeth;
+            const gm_state state = pressed_state(m, angle, pressed_offset(m, n % 2, angle));
+            gm_position position;
+            GM_ASSERT_INT(gm_position_from_state(&m->pair, &state, &position), GM_OK);
+            double by[3];
+            GM_ASSERT_INT(
+                gm_mesh_force_by_flanks(m->mesh, &position, pinion, wheel, 3, m->workspace, by),
+                GM_OK);
+            entering += m->workspace->side[n % 2].is_entering;
+
+            const gm_mesh_result here = evaluate(m, &state, GM_WANT_FORCE);
+            gm_mesh_result other[2];
+            for (int sign = 0; sign < 2; ++sign) {
+                GM_ASSERT_INT(gm_mesh_evaluate_at(beside[sign].mesh.mesh, &position, GM_WANT_FORCE,
+                                                  beside[sign].mesh.workspace, &other[sign]),
+                              GM_OK);
+            }
+            const double largest =
+                gm_mesh_touching_stiffness(m->mesh, &here) * 1e-3 * m->pair.normal_module;
+            compared += assert_slope(other[0].force, here.force, other[1].force, step, by[2],
+                                     largest, 2e-5);
+            GM_ASSERT_ABS(by[0] + by[1], by[2], 1e-10 * largest);
+        }
+        variant_free(&v);
+        variant_free(&beside[0]);
+        variant_free(&beside[1]);
+    }
+    GM_ASSERT(compared > 20 * (VARIANTS - 4));
+    GM_ASSERT(entering > 10); /* a wheel's edge, with a force of its own */
 }
 
 /* With x held the force changes by little as the gears roll on, which the derivatives by both angles hide from each other. */
@@ -1281,6 +1338,37 @@ static void bad_input_is_refused(void) {
                   GM_ERR_MEMORY);
     GM_ASSERT_INT(gm_workspace_init(&workspace, m.mesh, NULL, room), GM_ERR_NULL);
     GM_ASSERT_INT(gm_workspace_init(&workspace, NULL, m.workspace_memory, room), GM_ERR_NULL);
+
+    /* Changes of the flanks: what is missing, of other gears, or less than none. */
+    uint64_t seed = 3u;
+    gm_pair_params other_gears = spur62();
+    other_gears.pinion_teeth = 61;
+    other_gears.center_distance = 123e-3;
+    gm_pair other;
+    GM_ASSERT_INT(gm_pair_init(&other, &other_gears), GM_OK);
+    random_flanks flanks;
+    random_flanks_make(&flanks, &seed, &other, 0, 1e-6);
+    gm_position position;
+    GM_ASSERT_INT(gm_position_from_state(&m.pair, &state, &position), GM_OK);
+    const gm_flanks *none[1] = {NULL}, *others[1] = {flanks.flanks};
+    double by = 1.0;
+    GM_ASSERT_INT(gm_mesh_force_by_flanks(m.mesh, &position, none, none, 1, m.workspace, &by),
+                  GM_OK);
+    GM_ASSERT(by == 0.0);
+    GM_ASSERT_INT(gm_mesh_force_by_flanks(m.mesh, &position, others, none, 1, m.workspace, &by),
+                  GM_ERR_TOOTH);
+    GM_ASSERT_NAN(by);
+    by = 1.0;
+    GM_ASSERT_INT(gm_mesh_force_by_flanks(m.mesh, &position, none, none, 1, NULL, &by),
+                  GM_ERR_NULL);
+    GM_ASSERT_NAN(by);
+    GM_ASSERT_INT(gm_mesh_force_by_flanks(m.mesh, &position, NULL, none, 1, m.workspace, &by),
+                  GM_ERR_NULL);
+    GM_ASSERT_INT(gm_mesh_force_by_flanks(m.mesh, &position, none, none, 1, m.workspace, NULL),
+                  GM_ERR_NULL);
+    GM_ASSERT_INT(gm_mesh_force_by_flanks(m.mesh, &position, NULL, NULL, -1, m.workspace, &by),
+                  GM_ERR_PARAMETER);
+    random_flanks_free(&flanks);
     release(&m);
 
     /* Parameters, with the field that is at fault. */
@@ -1409,6 +1497,7 @@ int main(int argc, char **argv) {
     static const gm_test tests[] = {
         GM_TEST(check_values_are_met),
         GM_TEST(derivatives_are_those_of_differences),
+        GM_TEST(force_by_flanks_is_that_of_differences),
         GM_TEST(vectors_of_four_give_the_same_bits),
         GM_TEST(roll_at_held_approach_is_differentiated_exactly),
         GM_TEST(torques_are_the_slopes_of_the_energy),

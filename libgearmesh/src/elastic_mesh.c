@@ -519,6 +519,26 @@ static side_force enter(const side_view *view, gmi_elastic_work *work,
     return entering;
 }
 
+/* Lines, their flanks, and the deflections of all teeth. */
+static int balance(side_view *view, const gm_position *position, int wanted, gmi_elastic_work *work,
+                   gmi_elastic_result *result) {
+    const gm_mesh *mesh = view->mesh;
+    int status = place(view, position, wanted, work);
+    if (status == GM_OK) {
+        gmi_elastic_set_material(mesh, view->side, &view->lines, &view->teeth, work);
+        work->is_entering = view->has_tips &&
+                            gmi_elastic_edges_add(&view->elastic->law, &view->tips, view->approach,
+                                                  mesh->side[view->side].peak, work);
+        status = solve(view->elastic, work, view->gain * view->approach, result);
+    }
+    if (status == GM_NO_CONVERGENCE) {
+        /* Once more without what the last balance suggests. */
+        gmi_elastic_work_reset(work);
+        status = solve(view->elastic, work, view->gain * view->approach, result);
+    }
+    return status;
+}
+
 static int elastic_sum(const gm_mesh *mesh, int side, const gm_position *position, int wanted,
                        gm_workspace *workspace, gmi_side_sum *total) {
     side_view view = {.mesh = mesh,
@@ -527,19 +547,7 @@ static int elastic_sum(const gm_mesh *mesh, int side, const gm_position *positio
                       .softness = workspace->softness[side]};
     gmi_elastic_work *work = &workspace->side[side];
     gmi_elastic_result result;
-    int status = place(&view, position, wanted, work);
-    if (status == GM_OK) {
-        gmi_elastic_set_material(mesh, side, &view.lines, &view.teeth, work);
-        work->is_entering =
-            view.has_tips && gmi_elastic_edges_add(&view.elastic->law, &view.tips, view.approach,
-                                                   mesh->side[side].peak, work);
-        status = solve(view.elastic, work, view.gain * view.approach, &result);
-    }
-    if (status == GM_NO_CONVERGENCE) {
-        /* Once more without what the last balance suggests. */
-        gmi_elastic_work_reset(work);
-        status = solve(view.elastic, work, view.gain * view.approach, &result);
-    }
+    const int status = balance(&view, position, wanted, work, &result);
     if (status != GM_OK) {
         return status;
     }
@@ -600,6 +608,75 @@ int gmi_side_sum_by_law(const gm_mesh *mesh, int side, const gm_position *positi
     }
     gmi_side_sum_3d(mesh->pair, &mesh->engagement, &mesh->side[side], side, position, wanted,
                     total);
+    return GM_OK;
+}
+
+/* ---------------------------------------------------------------------------------------------
+ * Other flanks
+ * ------------------------------------------------------------------------------------------- */
+
+/*
+ * Derivative of the force by the deviation of each point, in work->by_deviation: of F = sum W q, or where an edge enters of
+ * F = sum W q (1 - g), whose adjoint is another one. Bodies of compliance c give way by c times what sum W q grows by.
+ */
+static void weigh_points(const side_view *view, gmi_elastic_work *work,
+                         const gmi_elastic_result *result) {
+    const double compliance = view->elastic->body_compliance;
+    const double share = 1.0 / (1.0 + compliance * result->by_approach);
+    const double *of_force = work->by_deviation;
+    double by_approach = result->by_approach;
+    work->is_entering = work->is_entering && is_entry_loaded(work);
+    if (work->is_entering) {
+        const gmi_elastic_gradient unused = {.by_roll = 0.0};
+        (void)enter(view, work, result, &unused);
+        of_force = work->table[2];
+        by_approach = gmi_elastic_sum(2 * work->slots, of_force);
+    }
+    for (int p = 0; p < 2 * work->slots; ++p) {
+        const double yields = by_approach * share * compliance * work->by_deviation[p];
+        work->by_deviation[p] = of_force[p] - yields;
+    }
+}
+
+/* The same mesh with these flanks alone, so that what they have at the points can be read. */
+static OWN_STACK double effect_of(const side_view *view, const gm_flanks *pinion,
+                                  const gm_flanks *wheel, gmi_elastic_work *work) {
+    gm_mesh other = *view->mesh;
+    other.engagement.is_tilted = 0;
+    gmi_side_init(&other.side[view->side], other.pair, &other.engagement, pinion, wheel,
+                  view->side);
+    gmi_elastic_set_material(&other, view->side, &view->lines, &view->teeth, work);
+
+    double effect = 0.0;
+    for (int p = 0; p < 2 * work->slots; ++p) {
+        effect += work->by_deviation[p] * work->deviation[p];
+    }
+    return effect;
+}
+
+int gmi_elastic_side_by_flanks(const gm_mesh *mesh, int side, const gm_position *position,
+                               const gm_flanks **pinion_changes, const gm_flanks **wheel_changes,
+                               int count, gm_workspace *workspace, double *force_by) {
+    if (gmi_side_is_clear(&mesh->engagement, &mesh->side[side], side, position->offset)) {
+        return GM_OK;
+    }
+    side_view view = {.mesh = mesh,
+                      .elastic = mesh->elastic,
+                      .side = side,
+                      .softness = workspace->softness[side]};
+    gmi_elastic_work *work = &workspace->side[side];
+    gmi_elastic_result result;
+    const int status = balance(&view, position, GMI_SUM, work, &result);
+    if (status != GM_OK || !work->touching) {
+        return status;
+    }
+
+    /* One adjoint for all of them: then each is a sum over the points. */
+    weigh_points(&view, work, &result);
+    for (int k = 0; k < count; ++k) {
+        force_by[k] +=
+            gmi_side_sign(side) * effect_of(&view, pinion_changes[k], wheel_changes[k], work);
+    }
     return GM_OK;
 }
 

@@ -140,6 +140,14 @@ void gmi_wide_set_material(const gm_mesh *mesh, int side, const gmi_lines *lines
 int gmi_side_sum_by_law(const gm_mesh *mesh, int side, const gm_position *position, int wanted,
                         gm_workspace *workspace, gmi_side_sum *total);
 
+/*
+ * Adds to force_by[count] the derivatives of the net force by what is added to the flanks of one side: as
+ * gm_mesh_force_by_flanks(), of a position that has been checked and posed.
+ */
+int gmi_elastic_side_by_flanks(const gm_mesh *mesh, int side, const gm_position *position,
+                               const gm_flanks **pinion_changes, const gm_flanks **wheel_changes,
+                               int count, gm_workspace *workspace, double *force_by);
+
 /* Energy of one side with its bodies, from its last sum in that workspace (J). */
 double gmi_elastic_energy(const gm_mesh *mesh, int side, const gmi_side_sum *total,
                           const gm_workspace *workspace);

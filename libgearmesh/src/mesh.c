@@ -776,6 +776,58 @@ int gm_mesh_pairs_at(const gm_mesh *mesh, const gm_position *position, gm_worksp
 }
 
 /* ---------------------------------------------------------------------------------------------
+ * Other flanks
+ * ------------------------------------------------------------------------------------------- */
+
+/* Whether all changes are flanks of these gears. */
+static int check_changes(const gm_mesh *mesh, const gm_flanks **pinion_changes,
+                         const gm_flanks **wheel_changes, int count) {
+    if (count < 0 || mesh->elastic == NULL || mesh->model == GM_MODEL_SIMPLE) {
+        return GM_ERR_PARAMETER;
+    }
+    if (count > 0 && (pinion_changes == NULL || wheel_changes == NULL)) {
+        return GM_ERR_NULL;
+    }
+    int status = GM_OK;
+    for (int k = 0; k < count && status == GM_OK; ++k) {
+        status = gmi_check_flanks(mesh->pair, pinion_changes[k], wheel_changes[k]);
+    }
+    return status;
+}
+
+int gm_mesh_force_by_flanks(const gm_mesh *mesh, const gm_position *position,
+                            const gm_flanks **pinion_changes, const gm_flanks **wheel_changes,
+                            int count, gm_workspace *workspace, double *force_by) {
+    if (force_by == NULL) {
+        return GM_ERR_NULL;
+    }
+    for (int k = 0; k < count; ++k) {
+        force_by[k] = gmi_nan();
+    }
+    int status = check_evaluation(mesh, position, GM_WANT_FORCE, workspace);
+    if (status == GM_OK) {
+        status = check_changes(mesh, pinion_changes, wheel_changes, count);
+    }
+    if (status != GM_OK) {
+        return status;
+    }
+
+    /* Both sides push against each other. */
+    for (int k = 0; k < count; ++k) {
+        force_by[k] = 0.0;
+    }
+    const gm_position posed = gmi_mesh_posed(mesh, position);
+    for (int side = GM_DRIVE; side <= GM_COAST && status == GM_OK; ++side) {
+        status = gmi_elastic_side_by_flanks(mesh, side, &posed, pinion_changes, wheel_changes,
+                                            count, workspace, force_by);
+    }
+    for (int k = 0; k < count && status != GM_OK; ++k) {
+        force_by[k] = gmi_nan();
+    }
+    return status;
+}
+
+/* ---------------------------------------------------------------------------------------------
  * In a pose of its own at every call
  * ------------------------------------------------------------------------------------------- */
 

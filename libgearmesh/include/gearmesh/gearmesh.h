@@ -1076,6 +1076,32 @@ GM_API int gm_mesh_evaluate_at(const gm_mesh *mesh, const gm_position *position,
 GM_API int gm_mesh_pairs_at(const gm_mesh *mesh, const gm_position *position,
                             gm_workspace *workspace, int pairs[2]);
 
+/**
+ * How the force of elastic teeth grows with other flanks: dF/da, where `a` times a change is added to the flanks of the mesh
+ * and both angles are held. Of any number of changes at once, by one adjoint solution. For the search of modifications: at
+ * a given load the transmission error (the wheel's lead) changes by dF/da over dF/dx, see gm_mesh_touching_stiffness().
+ *
+ * @param[in]     mesh            of GM_LAW_ELASTIC
+ * @param[in]     position        where the gears are; speeds do not matter
+ * @param[in]     pinion_changes  [count] what each adds to the pinion's flanks for a = 1: any prepared flanks, as of one
+ *                                modification by 1 um; NULL = nothing
+ * @param[in]     wheel_changes   [count] likewise
+ * @param[in]     count           of changes, 0 or more
+ * @param[in,out] workspace       of this mesh, one for each thread
+ * @param[out]    force_by        [count] dF/da, F the net force of gm_mesh_result.force without damping (N, a being a number);
+ *                                NaN on an error
+ * @return as gm_mesh_evaluate_at(); GM_ERR_PARAMETER for other laws and a count below 0, GM_ERR_TOOTH for flanks of other
+ * gears
+ *
+ * Accuracy: exact to what the balance of the teeth leaves (1e-8), one-sided where flanks begin to touch.
+ * Source:   adjoint of the balance, docs/elastic.md.
+ * Cost:     an evaluation, and for each change what it takes to read the flanks.
+ */
+GM_API int gm_mesh_force_by_flanks(const gm_mesh *mesh, const gm_position *position,
+                                   const gm_flanks **pinion_changes,
+                                   const gm_flanks **wheel_changes, int count,
+                                   gm_workspace *workspace, double *force_by);
+
 /* ---------------------------------------------------------------------------------------------
  * Gears that move: a pose of its own at every call, and bodies of a multibody code
  * ------------------------------------------------------------------------------------------- */
