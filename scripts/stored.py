@@ -37,7 +37,7 @@ class Rows:
     """Rows of `width` numbers, or of single numbers."""
 
     def __init__(self, width=None, dtype=float):
-        self._file = tempfile.TemporaryFile()  # pylint: disable=consider-using-with  (it goes with its last user)
+        self._file = tempfile.TemporaryFile(buffering=0)  # pylint: disable=consider-using-with  (it goes with its user)
         self._rows, self._shape = 0, () if width is None else (width,)
         self._dtype = np.dtype(dtype)
         self._row_bytes = self._dtype.itemsize * (width or 1)
@@ -50,9 +50,10 @@ class Rows:
 
     def append(self, values):
         values = np.ascontiguousarray(values, self._dtype)
+        rest = memoryview(values).cast("B") if values.size else b""
         try:
-            self._file.write(values)
-            self._file.flush()
+            while len(rest):
+                rest = rest[self._file.write(rest) :]
         except OSError as error:
             raise program.RunFailed(f"{tempfile.gettempdir()}: {error.strerror}") from error
         self._rows += len(values)

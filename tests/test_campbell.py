@@ -2,8 +2,10 @@
 # SPDX-FileCopyrightText: The gearmesh authors
 # SPDX-License-Identifier: BSD-3-Clause
 """scripts/campbell and the modules it is made of, with signals of which everything is known."""
+import errno
 import os
 import re
+import resource
 import subprocess
 import sys
 import tempfile
@@ -653,6 +655,16 @@ class CommandLine(unittest.TestCase):
         self.assert_input_error(result, "run.h5", "python3-h5py")
         result = self.campbell_without("h5py", self.write(), "--no-pictures")
         self.assertEqual(result.returncode, 0, result.stderr)
+
+    def test_no_room_for_temporary_files_is_said_in_a_line(self):
+        limit = 100000  # bytes of a file: half of a column
+        result = subprocess.run(
+            [sys.executable, os.path.join(SCRIPTS, "campbell"), self.write(), "--no-pictures"],
+            preexec_fn=lambda: resource.setrlimit(resource.RLIMIT_FSIZE, (limit, limit)),
+            cwd=self.folder, env={**os.environ, "TMPDIR": self.folder}, capture_output=True, text=True,
+        )
+        self.assertEqual(result.returncode, 1)
+        self.assertEqual(result.stderr, f"campbell: {self.folder}: {os.strerror(errno.EFBIG)}\n")
 
     def test_missing_column_is_named(self):
         path = self.write(columns=COLUMNS.replace("pinion_angle_rad", "wheel_angle_rad"))
