@@ -620,6 +620,127 @@ static void even_material_is_approach(void) {
     free(memory);
 }
 
+/* Flanks of both gears, on both sides: a base, and on one gear an amount of a unit, on all of its teeth or on one. */
+typedef struct changed_flanks {
+    void *memory[2];
+    gm_flanks *flanks[2];
+} changed_flanks;
+
+/* Bilinear in the places on a flank, so that a table of any nodes has it exactly. */
+static double unit_material(double t1, double t2) {
+    return 0.4 + 1.1 * (t1 - 0.5) - 0.9 * (t2 - 0.3) + 0.7 * t1 * t2;
+}
+
+static void change_flanks(changed_flanks *c, const gm_pair *pair, double base, int role, int tooth,
+                          double amount) {
+    for (int gear = 0; gear < 2; ++gear) {
+        const int teeth = abs(gear == GM_PINION ? pair->pinion.teeth : pair->wheel.teeth);
+        const gm_flanks_params sizes = {teeth, teeth, 3, 4, teeth, 3, 4};
+        const size_t size = gm_flanks_size(&sizes);
+        c->memory[gear] = malloc(size);
+        GM_ASSERT_INT(gm_flanks_init(&c->flanks[gear], &sizes, c->memory[gear], size), GM_OK);
+        for (int k = 0; k < teeth; ++k) {
+            const int is_changed = gear == role && (tooth < 0 || tooth == k);
+            double values[12];
+            for (int node = 0; node < 12; ++node) {
+                const double unit = unit_material((node / 4) / 2.0, (node % 4) / 3.0);
+                values[node] = base * sin(1.3 * node + k) + (is_changed ? amount * unit : 0.0);
+            }
+            GM_ASSERT_INT(gm_flanks_set_table(c->flanks[gear], GM_DRIVE, k, values, 1.0), GM_OK);
+            GM_ASSERT_INT(gm_flanks_set_table(c->flanks[gear], GM_COAST, k, values, 1.0), GM_OK);
+        }
+    }
+}
+
+/* Force at one position from undeformed teeth. */
+static double force_with(const gm_pair_params *gears, const gm_mesh_params *law, int role,
+                         int tooth, double amount, double angle, double offset) {
+    elastic_mesh m;
+    changed_flanks c;
+    gm_pair pair;
+    gm_position position;
+    gm_mesh_result result;
+    GM_ASSERT_INT(gm_pair_init(&pair, gears), GM_OK);
+    change_flanks(&c, &pair, 1e-6, role, tooth, amount);
+    GM_ASSERT_INT(make(&m, gears, law, c.flanks[0], c.flanks[1]), GM_OK);
+    GM_ASSERT_INT(gm_position_from_pinion_angle(&m.pair, angle, offset, 0.0, &position), GM_OK);
+    GM_ASSERT_INT(gm_mesh_evaluate_at(m.mesh, &position, GM_WANT_FORCE, m.workspace, &result),
+                  GM_OK);
+    release(&m);
+    free(c.memory[0]);
+    free(c.memory[1]);
+    return result.force;
+}
+
+/* Its derivative by the amount, by differences of two steps, without the third order. */
+static double change_of_force(const gm_pair_params *gears, const gm_mesh_params *law, int role,
+                              int tooth, double angle, double offset) {
+    const double step = 4e-9;
+    double slope[2];
+    for (int k = 0; k < 2; ++k) {
+        const double amount = (k + 1) * step;
+        slope[k] = (force_with(gears, law, role, tooth, amount, angle, offset) -
+                    force_with(gears, law, role, tooth, -amount, angle, offset)) /
+                   (2.0 * amount);
+    }
+    return slope[0] + (slope[0] - slope[1]) / 3.0;
+}
+
+/* The same from the mesh without the change, at once with that of the wheel alone (per m). */
+static double force_by_unit(const gm_pair_params *gears, const gm_mesh_params *law, int role,
+                            int tooth, double angle, double offset) {
+    elastic_mesh m;
+    changed_flanks c, unit;
+    gm_pair pair;
+    gm_position position;
+    double by[2];
+    GM_ASSERT_INT(gm_pair_init(&pair, gears), GM_OK);
+    change_flanks(&c, &pair, 1e-6, role, tooth, 0.0);
+    change_flanks(&unit, &pair, 0.0, role, tooth, 1e-6);
+    GM_ASSERT_INT(make(&m, gears, law, c.flanks[0], c.flanks[1]), GM_OK);
+    GM_ASSERT_INT(gm_position_from_pinion_angle(&m.pair, angle, offset, 0.0, &position), GM_OK);
+    const gm_flanks *pinion[] = {unit.flanks[GM_PINION], NULL};
+    const gm_flanks *wheel[] = {unit.flanks[GM_WHEEL], unit.flanks[GM_WHEEL]};
+    GM_ASSERT_INT(gm_mesh_force_by_flanks(m.mesh, &position, pinion, wheel, 2, m.workspace, by),
+                  GM_OK);
+    GM_ASSERT_REL(by[1], role == GM_WHEEL ? by[0] : 0.0, 1e-12);
+    release(&m);
+    for (int gear = 0; gear < 2; ++gear) {
+        free(c.memory[gear]);
+        free(unit.memory[gear]);
+    }
+    return by[0] / 1e-6;
+}
+
+/* Flanks that differ from tooth to tooth, with edges that enter, bores and tilted axes, a ring among the pairs. */
+static void force_by_flanks_is_that_of_fine_differences(void) {
+    const gm_pair_params gears[] = {spur62(), paper(), nrel3(), ring()};
+    uint64_t seed = 3;
+    for (int k = 0; k < 48; ++k) {
+        gm_pair_params pair = gears[k % 4];
+        gm_mesh_params law = elastic_law();
+        pair.backlash = 20e-6;
+        law.corner_contact = k % 3 == 0 ? GM_CORNER_OFF : GM_CORNER_ON;
+        law.pinion_bore_radius =
+            k % 2 == 1 ? 0.3 * pair.normal_module * pair.pinion_teeth : (double)NAN;
+        law.pose.skew = k >= 24 ? 5e-5 : 0.0;
+        const int role = k % 5 < 3 ? GM_PINION : GM_WHEEL;
+        const double angle = gm_test_uniform(&seed, 0.0, 0.3);
+        const double offset = (k % 7 < 4 ? 1.0 : -1.0) * (10e-6 + 2e-3 * pair.normal_module);
+        gm_test_context("case %d", k);
+
+        /* All teeth of a gear, and for a start single ones. */
+        const double exact = force_by_unit(&pair, &law, role, -1, angle, offset);
+        const double change = change_of_force(&pair, &law, role, -1, angle, offset);
+        GM_ASSERT_REL(exact, change, 1e-6);
+        for (int tooth = 0; k < 8 && tooth < 3; ++tooth) {
+            GM_ASSERT_ABS(force_by_unit(&pair, &law, role, tooth, angle, offset),
+                          change_of_force(&pair, &law, role, tooth, angle, offset),
+                          1e-6 * fabs(exact));
+        }
+    }
+}
+
 /* Tables of some teeth; the others have none, or one of zeros. */
 static gm_flanks *every_other_tooth(int teeth, int has_zeros, void *memory, size_t size,
                                     const gm_flanks_params *sizes) {
@@ -1505,6 +1626,7 @@ int main(int argc, char **argv) {
         GM_TEST(coast_is_drive_in_a_mirror),
         GM_TEST(answer_does_not_depend_on_the_one_before),
         GM_TEST(even_material_is_approach),
+        GM_TEST(force_by_flanks_is_that_of_fine_differences),
         GM_TEST(teeth_without_a_table_are_as_drawn),
         GM_TEST(bodies_wind_up_in_series),
         GM_TEST(soft_tooth_is_softer_in_mesh_alone),
