@@ -307,6 +307,38 @@ class Elastic(unittest.TestCase):
             result = subprocess.run([GEARSIM, "run.ini"], cwd=self.folder, capture_output=True, text=True, check=False)
             self.assertNotIn("stations", result.stderr)
 
+    def test_slopes_by_modifications_are_those_of_differences(self):
+        """Reliefs that are there and one that is not, slopes and twist, of both flanks and of the one that carries."""
+        step_um = 1e-3
+        amounts = {"pinion_tip_relief_um": 8.0, "wheel_drive_root_relief_um": 0.0, "pinion_drive_helix_slope_um": 3.0,
+                   "wheel_twist_um": 0.0, "pinion_profile_slope_um": -2.0}
+        ranges = {"pinion_tip_relief_length_mm": 30, "wheel_drive_root_relief_share": 0.3}
+        columns = ", ".join(["te_um", *(f"te_um_by_{key}" for key in amounts)])
+        for sections, sign in ((NREL | {"mesh": {}}, 1), (NREL | {"load": {"mean_Nm": -100000}, "pose": {"skew_mrad": 0.1}}, -1)):
+            def run(**other):
+                amount = {key: value for key, value in (amounts | other).items() if value}
+                return self.rows(sections | {"modifications": ranges | amount | {"tolerance_um": 1e-3},
+                                             "output": {"columns": columns}})
+            here = run()
+            for key, amount in amounts.items():
+                low = amount if "relief" in key and amount == 0 else amount - step_um
+                after, before = run(**{key: amount + step_um}), run(**{key: low})
+                largest = max(abs(float(row[f"te_um_by_{key}"])) for row in here)
+                self.assertEqual(largest == 0, "drive" in key and sign < 0, key)
+                for at, high_row, low_row in zip(here, after, before):
+                    slope = (float(high_row["te_um"]) - float(low_row["te_um"])) / (amount + step_um - low)
+                    self.assertAlmostEqual(float(at[f"te_um_by_{key}"]), slope, delta=2e-4 * largest + 1e-5, msg=key)
+
+    def test_slopes_are_refused_where_there_are_none(self):
+        told = "output.columns: must name an amount of [modifications] behind te_um_by_"
+        relief = {"columns": "te_um, te_um_by_pinion_tip_relief_um"}
+        self.refused(NREL | {"output": {"columns": "te_um_by_pinion_tip_relief_mm"}}, told, "(got 'te_um_by_pinion_tip_relief_mm')")
+        self.refused(NREL | {"output": {"columns": "te_um_by_"}}, told)
+        self.refused(NREL | {"mesh": {"friction_coefficient": 0.05}, "output": relief}, told, "without friction")
+        self.refused(NREL | {"mesh": {"law": "constant", "stiffness_N_per_m": 1e9}, "output": relief}, told, "of elastic teeth")
+        for arguments in ((), ("--check",)):
+            self.refused(NREL | {"output": relief}, "modifications.pinion_tip_relief_um: must have a range", arguments=arguments)
+
     def test_corner_contact_is_of_elastic_teeth(self):
         self.rows(SPUR62 | {"mesh": {"corner_contact": "on"}})
         self.refused(SPUR62 | {"mesh": {"corner_contact": "maybe"}}, "run.ini:", "mesh.corner_contact: must be off | on (got maybe)")

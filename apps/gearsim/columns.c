@@ -1,6 +1,7 @@
 /* SPDX-FileCopyrightText: The gearmesh authors */
 /* SPDX-License-Identifier: BSD-3-Clause */
 #include "columns.h"
+#include "te_slopes.h"
 #include "wrench_columns.h"
 
 #include <stdio.h>
@@ -67,6 +68,14 @@ static int add(column_list *columns, const config *conf, const char *text, size_
     const int name = find(text, length, names, name_count);
     char known[1024];
 
+    if (name < 0 && strncmp(text, TE_SLOPE_PREFIX, strlen(TE_SLOPE_PREFIX)) == 0) {
+        config_complain(conf, key,
+                        "must name an amount of [modifications] behind " TE_SLOPE_PREFIX
+                        ", as in " TE_SLOPE_PREFIX "pinion_tip_relief_um, of elastic teeth without "
+                        "friction and gap in a static analysis, %d at most (got '%.*s')",
+                        TE_SLOPES_MAX, (int)length, text);
+        return EXIT_BAD_INPUT;
+    }
     if (name < 0) {
         join(known, sizeof known, names, name_count);
         config_complain(conf, key, "must name columns of this analysis, which are %s (got '%.*s')",

@@ -50,7 +50,7 @@ static int perform(const arguments *args, config *conf, const gear_mesh *mesh) {
         status = output_check(conf, names.name, names.count);
     }
     if (status == 0) {
-        status = statics_check(conf);
+        status = statics_check(conf, mesh);
     }
     if (status == 0 && args->task == TASK_CHECK) {
         forecast_print(conf, &names, args->as_json, stdout);

@@ -3,6 +3,7 @@
 
 #include "static_columns.h"
 #include "gear_contact.h"
+#include "te_slopes.h"
 #include "wrench_columns.h"
 
 #include <math.h>
@@ -120,5 +121,6 @@ column_names static_column_names(const config *conf) {
             names.name[names.count++] = static_columns[i].name;
         }
     }
+    te_slopes_add_names(conf, &names);
     return names;
 }

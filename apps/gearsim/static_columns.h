@@ -50,7 +50,7 @@ typedef struct static_column {
 extern const static_column static_columns[];
 extern const int static_column_count; /* at most COLUMNS_MAX */
 
-/* Those of the analysis, in the order of static_columns. */
+/* Those of the analysis, in the order of static_columns, and behind them those of te_slopes.h that are asked for. */
 column_names static_column_names(const config *conf);
 
 /* Whether this one of static_columns is there. */

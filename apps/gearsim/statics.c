@@ -11,6 +11,7 @@
 #include "output.h"
 #include "platform.h"
 #include "static_columns.h"
+#include "te_slopes.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -79,6 +80,8 @@ typedef struct static_results {
     load_file *distribution;    /* NULL = none */
     gm_line_load_point *points; /* of one position */
     int capacity;
+    te_slopes slopes;        /* columns behind those below */
+    int first_slope;         /* their first place */
     int columns;             /* that are asked for */
     int column[COLUMNS_MAX]; /* their rows in static_columns */
     int place[COLUMNS_MAX];  /* where output_row() takes their values from */
@@ -97,7 +100,8 @@ static unsigned need_of(const config *conf, enum static_column_taking taking) {
 /* What of a position goes to the result, and what has to be found for it beyond the equilibrium. */
 static void choose_columns(static_results *results, const config *conf) {
     results->needs = results->distribution != NULL ? 1u << TAKES_FACES : 0;
-    for (int i = 0, place = 0; i < static_column_count; ++i) {
+    int place = 0;
+    for (int i = 0; i < static_column_count; ++i) {
         if (!static_column_is_there(conf, i)) {
             continue;
         }
@@ -108,6 +112,7 @@ static void choose_columns(static_results *results, const config *conf) {
         }
         ++place;
     }
+    results->first_slope = place;
 }
 
 /* The equilibrium itself has neither wrench nor energy nor line loads. */
@@ -137,6 +142,19 @@ static int find_needed(static_results *results, unsigned needs, static_position 
         }
     }
     return status;
+}
+
+/* How the transmission error moves with the modifications that are asked for. */
+static int find_slopes(const static_results *results, const static_position *at, double *te_by) {
+    gm_position position;
+    if (results->slopes.count == 0) {
+        return GM_OK;
+    }
+    const int status = gm_position_from_pinion_angle(&at->gears->pair, at->pinion_angle, at->offset,
+                                                     0.0, &position);
+    return status != GM_OK
+               ? status
+               : te_slopes_find(&results->slopes, at->gears, &position, &at->mesh, te_by);
 }
 
 /* What the cubic through both positions with their slopes is beyond the slope of the last one, by divided differences. */
@@ -201,6 +219,10 @@ static int write_position(const config *conf, const gear_mesh *gears, double ang
         return EXIT_RUN_FAILED;
     }
     double values[COLUMNS_MAX];
+    *status = find_slopes(results, &position, values + results->first_slope);
+    if (*status != GM_OK) {
+        return EXIT_RUN_FAILED;
+    }
     for (int i = 0; i < results->columns; ++i) {
         values[results->place[i]] = static_columns[results->column[i]].value(&position);
     }
@@ -387,8 +409,12 @@ double statics_rows(const config *conf) {
     return (double)loads * conf->positions;
 }
 
-int statics_check(const config *conf) {
-    return load_file_check(conf);
+int statics_check(const config *conf, const gear_mesh *gears) {
+    te_slopes slopes;
+    const int status = te_slopes_open(&slopes, conf, gears);
+
+    te_slopes_close(&slopes);
+    return status != 0 ? status : load_file_check(conf);
 }
 
 int statics_run(const config *conf, const gear_mesh *gears) {
@@ -406,8 +432,12 @@ int statics_run(const config *conf, const gear_mesh *gears) {
     if (exit_code == 0) {
         exit_code = load_block_open(&block, conf, gears);
     }
+    if (exit_code == 0) {
+        exit_code = te_slopes_open(&results.slopes, conf, gears);
+    }
     if (exit_code != 0) {
         load_file_close(results.distribution, "no rows");
+        te_slopes_close(&results.slopes);
         load_block_close(&block);
         free(results.points);
         return exit_code;
@@ -423,6 +453,7 @@ int statics_run(const config *conf, const gear_mesh *gears) {
         load_file_close(results.distribution, "there is no result");
     }
     interrupt_unwatch();
+    te_slopes_close(&results.slopes);
     load_block_close(&block);
     free(results.points);
     return exit_code;

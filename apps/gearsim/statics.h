@@ -7,8 +7,8 @@
 
 #include "gear_mesh.h"
 
-/* Checks that its second file can be written. 0, or EXIT_BAD_INPUT after a message. */
-int statics_check(const config *conf);
+/* Checks that its second file can be written, and its derivatives be made. 0, or EXIT_BAD_INPUT after a message. */
+int statics_check(const config *conf, const gear_mesh *gears);
 
 /* Returns an exit code, after a message if it is not EXIT_DONE. */
 int statics_run(const config *conf, const gear_mesh *gears);
