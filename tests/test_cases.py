@@ -357,7 +357,7 @@ class Script(unittest.TestCase):
                 r"(?m)^  (.*), (.*): mean (\d+) N/mm, ([\d.]+) of it at most, centre ([-\d.]+) mm", result.stdout):
             found[name, teeth] = float(factor), float(centre)
             self.assertIn(f"{factor}, {centre.replace('-0.0', '0.0')} mm |", page)
-            # Torque over base radius and face; 17 stations do not see the ends of a line.
+            # Torque over base radius and face; stations do not see the ends of a line.
             self.assertAlmostEqual(int(mean), 170579 / 633.385 / 360 * 1e3, delta=10)
 
         # The bearings feel the same centre, the largest load is that of slices; elastic teeth gather more of it.
