@@ -742,6 +742,79 @@ static void table_of_the_pair_is_that_of_both_gears(void) {
     }
 }
 
+/* Tip radius of the pinion of a spur pair at which its teeth are as thick as that. */
+static double tip_radius_of(const elastic_gear *g, double thickness) {
+    const double alpha = g->pressure_angle;
+    const double radius = 0.5 * g->normal_module * g->teeth[0];
+    const double half_angle =
+        (0.25 * GMI_PI + g->shift[0] * tan(alpha)) * g->normal_module / radius + tan(alpha) - alpha;
+    double low = radius, high = 1.5 * radius;
+    for (int k = 0; k < 100; ++k) {
+        const double tip = 0.5 * (low + high);
+        const double roll = tan(acos(radius * cos(alpha) / tip));
+        if (2.0 * tip * (half_angle - roll + atan(roll)) > thickness) {
+            low = tip;
+        } else {
+            high = tip;
+        }
+    }
+    return low;
+}
+
+/* Largest relative error of the compliance in the pinion's table: its cubics against the tooth itself. */
+static double error_of_table(const elastic_case *c) {
+    const elastic_gear *g = &c->gear;
+    const gmi_elastic_params params = elastic_params_of(g, 8);
+    const gmi_tooth_params data = {g->teeth[0],
+                                   g->normal_module,
+                                   g->pressure_angle,
+                                   g->shift[0],
+                                   params.gear[0].normal_thickness,
+                                   g->dedendum,
+                                   g->fillet_radius,
+                                   g->youngs_modulus[0],
+                                   g->poisson_ratio[0]};
+    gmi_tooth tooth;
+    GM_ASSERT_INT(gmi_tooth_init(&tooth, &data), GMI_TOOTH_FINE);
+    const gmi_elastic_gear *table = &c->law.gear[0];
+    double largest = 0.0;
+    for (int cell = 0; cell < GMI_ELASTIC_CELLS; ++cell) {
+        for (int k = 0; k < 8; ++k) {
+            const double t = (k + 0.5) / 8.0;
+            gmi_tooth_load load;
+            GM_ASSERT_INT(
+                gmi_tooth_load_at(&tooth, table->start + (cell + t) / table->per_cell, &load),
+                GMI_TOOTH_FINE);
+            const gmi_elastic_cell *cubic = &table->cell[cell + 1];
+            const double value =
+                cubic->value[0][0] +
+                t * (cubic->value[1][0] + t * (cubic->value[2][0] + t * cubic->value[3][0]));
+            largest = fmax(largest, fabs(value / (load.bending + load.foundation) - 1.0));
+        }
+    }
+    return largest;
+}
+
+/* Towards a point the compliance grows as a logarithm, which the cubics of the last cells follow less well. */
+static void tables_are_as_near_as_tips_are_thick(void) {
+    static const double rows[][2] = {
+        {0.6, 1e-6}, {0.5, 2e-6}, {0.3, 3e-5}, {0.2, 1.3e-4}, {0.05, 5e-3}};
+    for (int row = 0; row < (int)(sizeof rows / sizeof rows[0]); ++row) {
+        elastic_gear g = gear_of(0);
+        g.teeth[0] = 14.0;
+        g.teeth[1] = 40.0;
+        g.shift[0] = 0.5;
+        g.center_distance = 55e-3;
+        g.tip_radius[0] = tip_radius_of(&g, rows[row][0] * g.normal_module);
+        g.tip_radius[1] = 42e-3;
+        elastic_case c;
+        GM_ASSERT_INT(elastic_case_make(&c, &g, 8), GM_OK);
+        gm_test_context("%g modules at the tip", rows[row][0]);
+        GM_ASSERT(error_of_table(&c) < rows[row][1]);
+        elastic_case_free(&c);
+    }
+}
+
 /* What does not fit is refused. */
 static void sizes_out_of_range_are_refused(void) {
     GM_ASSERT(gmi_elastic_work_size(1, 4) == 0);
@@ -872,6 +945,7 @@ int main(int argc, char **argv) {
                                     GM_TEST(mirrored_face_gives_the_same),
                                     GM_TEST(soft_tooth_gives_its_load_away),
                                     GM_TEST(table_of_the_pair_is_that_of_both_gears),
+                                    GM_TEST(tables_are_as_near_as_tips_are_thick),
                                     GM_TEST(sizes_out_of_range_are_refused),
                                     GM_TEST(parameters_out_of_range_are_refused),
                                     GM_TEST(many_lines_are_no_other_case),
