@@ -607,6 +607,28 @@ class Parts(unittest.TestCase):
                 amounts = np.abs(search.offset + search.gain * (x + step)).sum()
                 self.assertAlmostEqual(hoped, merit_um + search.price_um * amounts, delta=1e-6)
 
+    def test_slopes_that_gearsim_knows_are_those_of_differences(self):
+        """By the amounts, of the drawing and of what it is off by, through both ways; of other laws none are known."""
+        relief = script_case.module_of("relief")
+        elastic = ["mesh.law=elastic", "analysis.positions=20", "modifications.tolerance_um=1e-4"]
+        for settings, known in ((elastic, [0, 2]), ([*elastic, "mesh.friction_coefficient=0.05"], []), ([], [])):
+            with loaded_te.Gears(SPUR, settings, GEARSIM) as gears:
+                variables = [relief.Variable(gears, f"modifications.{key}", low, high) for key, low, high in (
+                    ("pinion_tip_relief_um", 0, 40), ("pinion_tip_relief_length_mm", 1, 3), ("wheel_helix_slope_um", -9, 9))]
+                tolerances = relief.Tolerances(gears, variables, ["1"])
+                search = relief.Search(gears, variables, np.array([30.0, 60.0]), "worst", 0.0, tolerances)
+                self.assertEqual(search.known, known)
+                if not known:
+                    continue
+                x = np.array([0.31, 0.5, 0.7])
+                (curves,) = search.curves([x])
+                exact, by_steps = (search.slopes(x, curves, 1e-6, keys) for keys in (known, []))
+                np.testing.assert_array_equal(exact[..., 1], by_steps[..., 1])
+                for variable in known:
+                    largest = np.abs(by_steps[..., variable]).max()
+                    self.assertGreater(largest, 0.1)
+                    np.testing.assert_allclose(exact[..., variable], by_steps[..., variable], atol=1e-3 * largest)
+
     def test_two_mesh_cycles_are_no_more(self):
         with loaded_te.Gears(HELICAL, ["analysis.positions=200"], GEARSIM) as gears:
             cycles, te_um = gears.periods(np.arange(200.0)[np.newaxis])
