@@ -14,8 +14,8 @@
  *     c_found = k [18/pi (u/S)^2 + 2 (1 - 2 nu)/(1 - nu) u/S + 4.8/pi (1 + (1 - nu)/2.4 tan(alpha')^2)].
  *
  * Where y_p lies below the foot the integrals go on down the fillet with their sign, and u is negative: the compliance
- * stays smooth. Below the root circle, which only gears of hundreds of teeth reach, the half thickness is that of the
- * end of the fillet.
+ * stays smooth. Below the root circle the half thickness is that of the end of the fillet: lines of action reach it from
+ * some 60 virtual teeth at a pressure angle of 25 degrees, and from some 120 at 20 degrees.
  *
  * ISO 21771 counts the teeth of a ring below 0, and with them its radii and roll lengths. So Y = -|Y| still grows towards
  * the tip, and all of this holds as it is. Only the fillet is another one, as no rack cuts a ring: a circle with the radius
