@@ -815,6 +815,33 @@ static void tables_are_as_near_as_tips_are_thick(void) {
     }
 }
 
+/* Next to a point the rate of the contact law stays between the values at the ends of the cell, and so above 0. */
+static void pointed_tips_keep_their_contact_law(void) {
+    elastic_gear g = gear_of(0);
+    g.teeth[0] = 14.0;
+    g.teeth[1] = 40.0;
+    g.shift[0] = 0.5;
+    g.center_distance = 55e-3;
+    g.tip_radius[0] = tip_radius_of(&g, 0.01 * g.normal_module);
+    g.tip_radius[1] = 42e-3;
+    elastic_case c;
+    GM_ASSERT_INT(elastic_case_make(&c, &g, 8), GM_OK);
+    const gmi_elastic_gear *tables[] = {&c.law.gear[0], &c.law.pair};
+    for (int k = 0; k < 2; ++k) {
+        const gmi_elastic_cell *cubic = &tables[k]->cell[GMI_ELASTIC_CELLS];
+        const double low = cubic->value[0][1];
+        const double high = tables[k]->cell[GMI_ELASTIC_CELLS + 1].value[0][1];
+        for (int step = 1; step < 32; ++step) {
+            const double t = step / 32.0;
+            const double rate =
+                low + t * (cubic->value[1][1] + t * (cubic->value[2][1] + t * cubic->value[3][1]));
+            gm_test_context("table %d, %g of the last cell", k, t);
+            GM_ASSERT(low < rate && rate < high);
+        }
+    }
+    elastic_case_free(&c);
+}
+
 /* What does not fit is refused. */
 static void sizes_out_of_range_are_refused(void) {
     GM_ASSERT(gmi_elastic_work_size(1, 4) == 0);
@@ -946,6 +973,7 @@ int main(int argc, char **argv) {
                                     GM_TEST(soft_tooth_gives_its_load_away),
                                     GM_TEST(table_of_the_pair_is_that_of_both_gears),
                                     GM_TEST(tables_are_as_near_as_tips_are_thick),
+                                    GM_TEST(pointed_tips_keep_their_contact_law),
                                     GM_TEST(sizes_out_of_range_are_refused),
                                     GM_TEST(parameters_out_of_range_are_refused),
                                     GM_TEST(many_lines_are_no_other_case),

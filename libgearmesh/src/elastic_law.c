@@ -82,12 +82,23 @@ static int find_node(const gmi_tooth *tooth, double cosine, double share, double
     return GMI_TOOTH_FINE;
 }
 
+/*
+ * Slope of a cell's end times its length. Where both slopes go the way of the rise, no more than three times that: so the
+ * cubic stays between both values [Fritsch, Carlson 1980]. Beside a pointed tip, where 1 / t grows without bound, it would
+ * fall below 0 and turn a gap into a load.
+ */
+static double bounded(double slope, double other, double rise) {
+    const int same_way = slope * rise > 0.0 && other * rise > 0.0;
+    return same_way && fabs(slope) > 3.0 * fabs(rise) ? 3.0 * rise : slope;
+}
+
 /* Cubic through values and slopes at both ends of a cell. */
 static void set_cell(gmi_elastic_cell *cell, const table_node *from, const table_node *to,
                      double length) {
     for (int k = 0; k < 2; ++k) {
         const double rise = to->value[k] - from->value[k];
-        const double first = from->slope[k] * length, last = to->slope[k] * length;
+        const double first = bounded(from->slope[k] * length, to->slope[k] * length, rise);
+        const double last = bounded(to->slope[k] * length, from->slope[k] * length, rise);
         const double square = 3.0 * rise - 2.0 * first - last, cube = first + last - 2.0 * rise;
         cell->value[0][k] = from->value[k];
         cell->value[1][k] = first;
