@@ -93,7 +93,7 @@ class Pair:
                          - sign * (phi_w + g.direction + (2 * mate + 1) * math.pi / g.teeth[1])) - twist])
         overlap = rho.sum(axis=0) - g.length
 
-        # Each line ends at both tips, a part of a station there; tables end where the profile does as drawn.
+        # Each line ends at both tips, a part of a station there; a tip may reach deeper than a table, whose end goes on there.
         weight = np.full(overlap.shape, step / width)
         for gear in (0, 1):
             from_outer = along - g.faces[0] + g.faces[gear]
@@ -101,7 +101,6 @@ class Pair:
             weight *= np.clip((g.tip[gear] - rho[gear]) / (g.tan_helix * step) + 0.5, 0, 1)
             table = self.tables.get((gear, half, side))
             if table is not None:
-                weight *= np.clip((rho[gear] - g.start[gear]) / (g.tan_helix * step) + 0.5, 0, 1)
                 overlap = overlap + math.hypot(1, g.tan_helix) * bilinear(table, from_outer / g.faces[gear], share)
             pitch = self.pitch.get((gear, half, side))
             if pitch is not None:

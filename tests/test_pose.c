@@ -343,8 +343,8 @@ static gm_flanks *flanks_with(int teeth, int face_nodes, const double *values,
     return flanks;
 }
 
-/* Tables end where the drawing's profile does; pitch deviations have no end: axes that come closer lengthen the path. */
-static void pitch_deviations_leave_the_path_of_closer_axes(void) {
+/* Pitch deviations go on with the tooth: they end no line where axes come closer, nor between tilted ones, as tables do. */
+static void pitch_deviations_end_no_line(void) {
     gm_pair_params params = reference_params(REFERENCE_FACE_WIDTH);
     const gm_pair pair = make_pair(&params);
     const gm_flanks_params sizes = {.teeth = params.pinion_teeth};
@@ -352,14 +352,15 @@ static void pitch_deviations_leave_the_path_of_closer_axes(void) {
     gm_flanks *flanks;
     GM_ASSERT(gm_flanks_size(&sizes) <= sizeof memory);
     GM_ASSERT_INT(gm_flanks_init(&flanks, &sizes, memory, sizeof memory), GM_OK);
-    const gm_pose closer = {-80e-6, 0.0, 0.0, 0.0, 0.0};
-    for (int k = 0; k < 20; ++k) {
+    const gm_pose poses[2] = {{-80e-6, 0.0, 0.0, 0.0, 0.0}, {0.0, 0.0, 0.0, 0.4e-3, -0.3e-3}};
+    for (int k = 0; k < 40; ++k) {
         gm_test_context("position %d", k);
+        const gm_pose *pose = &poses[k / 20];
         gm_position position;
         gm_mesh_result ideal, even;
         GM_ASSERT_INT(gm_position_from_pinion_angle(&pair, 0.01 * k, 60e-6, 0.0, &position), GM_OK);
-        GM_ASSERT_INT(evaluate_posed(&pair, NULL, NULL, &closer, &position, &ideal), GM_OK);
-        GM_ASSERT_INT(evaluate_posed(&pair, flanks, NULL, &closer, &position, &even), GM_OK);
+        GM_ASSERT_INT(evaluate_posed(&pair, NULL, NULL, pose, &position, &ideal), GM_OK);
+        GM_ASSERT_INT(evaluate_posed(&pair, flanks, NULL, pose, &position, &even), GM_OK);
         GM_ASSERT_REL(even.force, ideal.force, 1e-12);
     }
 }
@@ -773,7 +774,7 @@ int main(int argc, char **argv) {
         GM_TEST(transmission_error_is_that_of_displaced_helicoids),
         GM_TEST(changes_of_the_transmission_error_are_those_printed),
         GM_TEST(another_centre_distance_is_another_drawing),
-        GM_TEST(pitch_deviations_leave_the_path_of_closer_axes),
+        GM_TEST(pitch_deviations_end_no_line),
         GM_TEST(axes_in_another_direction_turn_everything),
         GM_TEST(gradient_between_tilted_axes_is_that_of_differences),
         GM_TEST(only_the_common_face_takes_part),

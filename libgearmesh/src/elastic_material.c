@@ -115,6 +115,9 @@ void gmi_elastic_set_material(const gm_mesh *mesh, int side, const gmi_lines *li
     for (int role = GM_PINION; role <= GM_WHEEL; ++role) {
         if (gear[role].tables != NULL) {
             add_tables(&points, &gear[role], &in[role], has_all[role], work);
+            if (gear[role].is_held) {
+                gmi_surface_hold_tables(&points, &gear[role], &in[role], 0, points.count);
+            }
             gmi_surface_add_ramps(&points, &gear[role]);
         }
     }

@@ -27,19 +27,20 @@
 #define gmi_elastic_differentiate_functional gmi_wide_differentiate_functional
 
 /* ... and these are steps of it. */
-#define gmi_corner_gaps        gmi_wide_corner_gaps
-#define gmi_elastic_approach   gmi_wide_approach
-#define gmi_elastic_factor     gmi_wide_factor
-#define gmi_elastic_find_runs  gmi_wide_find_runs
-#define gmi_elastic_follow     gmi_wide_follow
-#define gmi_elastic_gather     gmi_wide_gather
-#define gmi_elastic_load       gmi_wide_load
-#define gmi_elastic_pull       gmi_wide_pull
-#define gmi_elastic_stiffen    gmi_wide_stiffen
-#define gmi_elastic_substitute gmi_wide_substitute
-#define gmi_surface_add_ramps  gmi_wide_surface_add_ramps
-#define gmi_surface_add_tables gmi_wide_surface_add_tables
-#define gmi_surface_add_tilt   gmi_wide_surface_add_tilt
+#define gmi_corner_gaps         gmi_wide_corner_gaps
+#define gmi_elastic_approach    gmi_wide_approach
+#define gmi_elastic_factor      gmi_wide_factor
+#define gmi_elastic_find_runs   gmi_wide_find_runs
+#define gmi_elastic_follow      gmi_wide_follow
+#define gmi_elastic_gather      gmi_wide_gather
+#define gmi_elastic_load        gmi_wide_load
+#define gmi_elastic_pull        gmi_wide_pull
+#define gmi_elastic_stiffen     gmi_wide_stiffen
+#define gmi_elastic_substitute  gmi_wide_substitute
+#define gmi_surface_add_ramps   gmi_wide_surface_add_ramps
+#define gmi_surface_add_tables  gmi_wide_surface_add_tables
+#define gmi_surface_add_tilt    gmi_wide_surface_add_tilt
+#define gmi_surface_hold_tables gmi_wide_surface_hold_tables
 
 #if defined(__clang__)
 #pragma clang attribute push(__attribute__((target("avx2"))), apply_to = function)

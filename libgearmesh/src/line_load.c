@@ -503,11 +503,10 @@ static void find_ends(const gm_mesh *mesh, side_lines *found, side_ends *ends) {
     }
 
     const gmi_lines *lines = &found->lines;
-    const int has_ends = lines->advance != 0.0;
-    const int of_pinion = has_ends && prepared->pinion != NULL ? GMI_ENDS_WITH_PINION_TABLE : 0;
-    const int of_wheel = has_ends && prepared->wheel != NULL ? GMI_ENDS_WITH_WHEEL_TABLE : 0;
     gmi_tilt_cuts_find(mesh->pair, at, found->side, found->delta,
-                       mesh->has_corners ? GMI_FACES_ALONE : of_pinion | of_wheel, &ends->cuts);
+                       mesh->has_corners ? GMI_FACES_ALONE
+                                         : gmi_side_table_ends(mesh->pair, prepared),
+                       &ends->cuts);
 
     /* That may bring a line in that is just outside; where corners touch, widen() knows. */
     if (!mesh->has_corners) {

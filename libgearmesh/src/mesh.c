@@ -749,7 +749,8 @@ static int counts_alone(const gm_mesh *mesh) {
     const int has_tables = drive->pinion != NULL || drive->wheel != NULL;
     return mesh->model == GM_MODEL_3D && has_tables && mesh->elastic == NULL &&
            !mesh->has_corners && !mesh->is_posed && !mesh->engagement.is_tilted &&
-           drive->ramps == 0 && mesh->side[GM_COAST].ramps == 0;
+           drive->ramps == 0 && mesh->side[GM_COAST].ramps == 0 && !drive->starts_deeper &&
+           !mesh->side[GM_COAST].starts_deeper;
 }
 
 int gm_mesh_pairs_at(const gm_mesh *mesh, const gm_position *position, gm_workspace *workspace,

@@ -74,12 +74,15 @@ static inline gm_position gmi_mesh_posed(const gm_mesh *mesh, const gm_position 
     return posed;
 }
 
-/* Whether one walk tells of many depths: flanks of tables between parallel axes, with teeth of a constant stiffness. */
+/*
+ * Whether one walk tells of many depths: flanks between parallel axes that have tables where they touch, with teeth of a
+ * constant stiffness.
+ */
 static inline int gmi_side_has_depths(const gm_mesh *mesh, int side) {
     const gmi_side *prepared = &mesh->side[side];
     return mesh->model != GM_MODEL_SIMPLE && mesh->elastic == NULL && !mesh->has_corners &&
            mesh->pair->face_advance != 0.0 && prepared->ramps == 0 && !prepared->is_tilted &&
-           (prepared->pinion != NULL || prepared->wheel != NULL);
+           !prepared->starts_deeper && (prepared->pinion != NULL || prepared->wheel != NULL);
 }
 
 #endif

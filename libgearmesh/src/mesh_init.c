@@ -235,16 +235,6 @@ static void set_kind(gm_mesh *mesh) {
         mesh->model == GM_MODEL_3D && !mesh->is_special && !mesh->is_posed && !at->is_tilted;
 }
 
-/* Whether flanks have a shape that ends somewhere: pitch deviations go on with the tooth. */
-static int are_tables(const gmi_tables *tables) {
-    return tables != NULL && tables->face_nodes > 0;
-}
-
-static int has_tables(const gm_flanks *flanks) {
-    return flanks != NULL &&
-           (are_tables(&flanks->side[GM_DRIVE]) || are_tables(&flanks->side[GM_COAST]));
-}
-
 static int has_room(const gm_mesh_params *params, const gm_pair *pair, const void *memory,
                     size_t memory_size) {
     return memory_size >= gm_mesh_size(params, pair) && gmi_is_aligned(memory);
@@ -262,14 +252,8 @@ static double compliance_of(const gm_mesh_params *params) {
            (1.0 - nu_w * nu_w) / params->wheel_youngs_modulus;
 }
 
-/* Which flanks each side has; between axes that a pose moves together, tables end the path where they do as drawn. */
+/* Which flanks each side has. */
 static void take_flanks(gm_mesh *made, const gm_flanks *pinion, const gm_flanks *wheel) {
-    if (has_tables(pinion)) {
-        gmi_engagement_keep_tables(made->pair, GM_PINION, &made->engagement);
-    }
-    if (has_tables(wheel)) {
-        gmi_engagement_keep_tables(made->pair, GM_WHEEL, &made->engagement);
-    }
     for (int side = GM_DRIVE; side <= GM_COAST; ++side) {
         gmi_side_init(&made->side[side], made->pair, &made->engagement, pinion, wheel, side);
     }
@@ -467,13 +451,7 @@ static int move_mesh(const gm_mesh *mesh, const gm_pose *pose, gm_mesh *moved) {
         return GM_POSE_OUT_OF_MESH;
     }
 
-    /* Tables end where they did; pitch point and sides follow. */
-    if (are_tables(mesh->side[GM_DRIVE].pinion) || are_tables(mesh->side[GM_COAST].pinion)) {
-        gmi_engagement_keep_tables(mesh->pair, GM_PINION, &moved->engagement);
-    }
-    if (are_tables(mesh->side[GM_DRIVE].wheel) || are_tables(mesh->side[GM_COAST].wheel)) {
-        gmi_engagement_keep_tables(mesh->pair, GM_WHEEL, &moved->engagement);
-    }
+    /* The pitch point and both sides follow. */
     if (mesh->friction.is_on) {
         gmi_friction_place(mesh->pair, &moved->engagement, &moved->friction);
     }

@@ -186,6 +186,7 @@ static void set_drawn(const gm_pair *pair, gmi_engagement *at) {
         at->phase_origin[k] = pair->phase_origin[k];
         at->start_roll_length[k] = gear->start_roll_length;
         at->start_follows[k] = !gear->start_is_given && gear->start_roll_length > 0.0;
+        at->starts_deeper[k] = 0;
         at->tip_roll_length[k] = gear->tip_roll_length;
         at->face_origin[k] = (pair->face_start - gear->face_start) / gear->face_width;
         at->face_scale[k] = pair->face_width / gear->face_width;
@@ -337,16 +338,12 @@ int gmi_engagement_find(const gm_pair *pair, const gm_pose *pose, gmi_engagement
         status = tilt_axis(pair, pose, engagement);
     }
     give_signs(pair, engagement);
-    return status;
-}
 
-void gmi_engagement_keep_tables(const gm_pair *pair, int role, gmi_engagement *at) {
-    const double drawn =
-        role == GM_PINION ? pair->pinion.start_roll_length : at->wheel_profile_start;
-    if (at->start_roll_length[role] < drawn) {
-        at->start_roll_length[role] = drawn;
-        at->start_follows[role] = 0;
-    }
+    /* A start that follows the mate's tip may leave the flank's table behind, whose t2 = 0 does not move. */
+    const double *start = engagement->start_roll_length;
+    engagement->starts_deeper[GM_PINION] = start[GM_PINION] < pair->pinion.start_roll_length;
+    engagement->starts_deeper[GM_WHEEL] = start[GM_WHEEL] < engagement->wheel_profile_start;
+    return status;
 }
 
 /*

@@ -73,6 +73,7 @@ typedef struct gmi_engagement {
     double phase_origin[2];               /* [side] as in gm_pair (m) */
     double start_roll_length[2];          /* [enum gm_role] where the active profile begins (m) */
     int start_follows[2];                 /* 1 where that follows the mate's tip as T changes */
+    int starts_deeper[2];                 /* 1 where that is nearer to the root than as drawn */
     double tip_roll_length[2];            /* [enum gm_role] where it ends (m) */
     double wheel_profile_start;           /* roll length of the wheel's t2 = 0 (m) */
     double face_from, face_to;            /* t1 between which both gears have a face */
@@ -123,8 +124,5 @@ void gmi_rates_find(const gm_pair *pair, const gmi_engagement *at, double offset
 
 /* NULL = no pose. Returns GM_OK, GM_STATE_NOT_FINITE or GM_POSE_OUT_OF_MESH. */
 int gmi_engagement_find(const gm_pair *pair, const gm_pose *pose, gmi_engagement *engagement);
-
-/* A gear with tables: they end where the drawing's profile does, also where that would now begin deeper. */
-void gmi_engagement_keep_tables(const gm_pair *pair, int role, gmi_engagement *at);
 
 #endif

@@ -61,6 +61,7 @@ void gmi_side_init(gmi_side *prepared, const gm_pair *pair, const gmi_engagement
 
 void gmi_side_move(gmi_side *prepared, const gm_pair *pair, const gmi_engagement *at, int side) {
     prepared->is_tilted = at->is_tilted;
+    prepared->starts_deeper = prepared->leaves_tables = 0;
     prepared->tilt_bound = prepared->tilt_reach = 0.0;
     if (at->is_tilted) {
         prepared->tilt_bound = gmi_tilt_bound(pair, at, side, &prepared->tilt_reach);
@@ -70,9 +71,18 @@ void gmi_side_move(gmi_side *prepared, const gm_pair *pair, const gmi_engagement
         return;
     }
 
-    /* The wheel's face lines may no longer be those of the pinion. */
+    /*
+     * A start that follows the mate's tip may have left a table behind. Between tilted axes a line of spur gears may be
+     * beyond a table as a whole, which is read where parallel axes would have the flanks touch.
+     */
     const gmi_grid *pinion = &prepared->pinion_grid;
     gmi_grid *wheel = &prepared->wheel_grid;
+    prepared->starts_deeper = (pinion->face_rate > 0.0 && at->starts_deeper[GM_PINION]) ||
+                              (wheel->face_rate > 0.0 && at->starts_deeper[GM_WHEEL]);
+    prepared->leaves_tables =
+        prepared->starts_deeper || (at->is_tilted && pair->face_advance == 0.0);
+
+    /* The wheel's face lines may no longer be those of the pinion. */
     gmi_grid_move(wheel, at->face_origin[GM_WHEEL]);
     wheel->shares_faces = wheel->last_face == pinion->last_face &&
                           wheel->face_base == pinion->face_base &&
@@ -193,17 +203,13 @@ static inline void add_moments(const gmi_lines *lines, double rho_origin, const 
 }
 
 /*
- * Where lines end between tilted axes. Tables are read where parallel axes would have them touch: a line ends where that
- * leaves one of them.
+ * Where lines end between tilted axes, and what the tilt does to the overlap. Tables are read where parallel axes would have
+ * the flanks touch: a line ends where that leaves one of them, unless it goes on deeper.
  */
 static void find_cuts(side_view *view) {
-    const gmi_side *prepared = view->prepared;
-    const int has_ends = prepared->is_tilted && view->lines.advance != 0.0;
-    const int of_pinion = has_ends && prepared->pinion != NULL ? GMI_ENDS_WITH_PINION_TABLE : 0;
-    const int of_wheel = has_ends && prepared->wheel != NULL ? GMI_ENDS_WITH_WHEEL_TABLE : 0;
-    gmi_tilt_cuts_find(view->pair, view->at, view->side, view->lines.delta, of_pinion + of_wheel,
-                       &view->cuts);
-    if (prepared->is_tilted) {
+    gmi_tilt_cuts_find(view->pair, view->at, view->side, view->lines.delta,
+                       gmi_side_table_ends(view->pair, view->prepared), &view->cuts);
+    if (view->prepared->is_tilted) {
         gmi_tilt_find(view->pair, view->at, view->side, &view->tilt);
     }
 }
@@ -505,8 +511,7 @@ SPECIALIZED void add_line_in_parts(side_view *view, const gmi_line *line, double
             part.tangent = &view->tangent->line;
         }
         gmi_line_sum sum;
-        gmi_flanks_integrate(prepared, &prepared->pinion_grid, &prepared->wheel_grid, &part, wanted,
-                             &sum);
+        gmi_flanks_integrate_line(prepared, &part, wanted, &sum);
 
         side->sum += sum.sum;
         side->contact += sum.contact;
@@ -575,8 +580,7 @@ SPECIALIZED void add_line(side_view *view, const gmi_tilt_motion *motion, const 
     }
 
     gmi_line_sum sum;
-    gmi_flanks_integrate(prepared, &prepared->pinion_grid, &prepared->wheel_grid, &line, wanted,
-                         &sum);
+    gmi_flanks_integrate_line(prepared, &line, wanted, &sum);
 
     /* What it adds to the side. */
     side->sum += sum.sum;

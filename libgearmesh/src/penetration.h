@@ -14,6 +14,7 @@
 #include "line.h"
 #include "meshing.h"
 #include "ramp.h"
+#include "tilt.h"
 
 /* One side of a mesh: what all its evaluations have in common. */
 typedef struct gmi_side {
@@ -23,11 +24,24 @@ typedef struct gmi_side {
     gmi_grid wheel_grid;
     int ramps;         /* of both flanks */
     int is_tilted;     /* the axes are */
+    int starts_deeper; /* than a table begins: the flank then goes on as ramp.c says */
+    int leaves_tables; /* lines may be beyond ends of tables, see there */
     double tilt_bound; /* what tilted axes add to the overlap at most (m) */
     double tilt_reach; /* by what they move the ends of lines at most (m) */
     double flank_peak; /* most material of both flanks (m) */
     double peak;       /* both: nothing touches at a delta <= -peak (m) */
 } gmi_side;
+
+/* Which tables end lines between tilted axes, as gmi_tilt_cuts_find() has it: none of spur gears, along which lines run. */
+static inline int gmi_side_table_ends(const gm_pair *pair, const gmi_side *prepared) {
+    if (!prepared->is_tilted || pair->face_advance == 0.0) {
+        return 0;
+    }
+    const int has_pinion = prepared->pinion != NULL && prepared->pinion_grid.face_rate > 0.0;
+    const int has_wheel = prepared->wheel != NULL && prepared->wheel_grid.face_rate > 0.0;
+    return (has_pinion ? GMI_ENDS_WITH_PINION_TABLE : 0) +
+           (has_wheel ? GMI_ENDS_WITH_WHEEL_TABLE : 0);
+}
 
 void gmi_side_init(gmi_side *prepared, const gm_pair *pair, const gmi_engagement *at,
                    const gm_flanks *pinion_flanks, const gm_flanks *wheel_flanks, int side);
@@ -78,6 +92,22 @@ static inline void gmi_flanks_integrate(const gmi_side *prepared, const gmi_grid
         gmi_line_integrate_squares(line, pinion_grid, wheel_grid, sum);
     } else {
         gmi_line_integrate(line, pinion_grid, wheel_grid, wanted, sum);
+    }
+}
+
+/* The integral along any line of a side; wanted: a constant. */
+SPECIALIZED void gmi_flanks_integrate_line(const gmi_side *prepared, const gmi_line *line,
+                                           int wanted, gmi_line_sum *sum) {
+    const gmi_grid *pinion = &prepared->pinion_grid, *wheel = &prepared->wheel_grid;
+    if (!prepared->leaves_tables || !(gmi_line_leaves_table(pinion, line->pinion_profile, line) ||
+                                      gmi_line_leaves_table(wheel, line->wheel_profile, line))) {
+        gmi_flanks_integrate(prepared, pinion, wheel, line, wanted, sum);
+    } else if (wanted & GMI_TANGENT) {
+        gmi_ramps_integrate_tangent_beyond(line, pinion, wheel, prepared->pinion, prepared->wheel,
+                                           sum);
+    } else {
+        gmi_ramps_integrate_beyond(line, pinion, wheel, prepared->pinion, prepared->wheel, wanted,
+                                   sum);
     }
 }
 

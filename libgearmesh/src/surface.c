@@ -164,6 +164,54 @@ void gmi_surface_add_tables(const gmi_surface_points *at, const gmi_surface_gear
     }
 }
 
+/* By how much a place along the profile is beyond the ends of a table, < 0 towards the root (cells). */
+static double beyond_of(double v2, double cells) {
+    return v2 < 0.0 ? v2 : gmi_larger(v2 - cells, 0.0);
+}
+
+/* The cells at the ends have been read on as they are straight along the profile: their slope tells by how much too far. */
+void gmi_surface_hold_tables(const gmi_surface_points *at, const gmi_surface_gear *gear,
+                             const gmi_surface_tables *in, int from, int to) {
+    const surface_map map = map_of(at, gear);
+    for (int k = from; k < to; ++k) {
+        const double v2 = map.profile_from + map.per_roll * at->roll[k];
+        const double beyond = beyond_of(v2, gear->grid->profile_cells);
+        if (beyond == 0.0 || in->table[k] < 0.0) {
+            continue;
+        }
+        const double v1 = map.face_from + map.per_place * at->place[k];
+        const int face_cell = (int)gmi_cell_of(v1, map.last_face);
+        const int profile_cell = (int)gmi_cell_of(v2, map.last_profile);
+        const double *near = map.values + (ptrdiff_t)in->table[k] + face_cell * map.next_face +
+                             profile_cell * GMI_NODE_DOUBLES;
+        const double *far = near + map.next_face;
+        const double along_profile = near[GMI_NODE_DOUBLES] - near[0];
+        const double twist = far[GMI_NODE_DOUBLES] - far[0] - along_profile;
+        const double slope = along_profile + twist * (v1 - (double)face_cell);
+        at->value[k] -= slope * beyond;
+        at->by_place[k] -= twist * beyond * map.per_place;
+        at->by_roll[k] -= slope * map.per_roll;
+        in->mixed[k] = 0.0;
+    }
+}
+
+/* Of a ramp whose height is read no further than the ends of the table. */
+static void add_held_ramp(const gmi_surface_points *at, const gmi_surface_gear *gear, double from,
+                          double per_place, double per_roll) {
+    const gmi_grid *grid = gear->grid;
+    for (int k = 0; k < at->count; ++k) {
+        const double v2 = (gear->roll_from + gear->per_roll * at->roll[k]) * grid->per_rho;
+        const double beyond =
+            beyond_of(v2, grid->profile_cells) / (gear->per_roll * grid->per_rho); /* of rho_p */
+        const double height = from + per_place * at->place[k] + per_roll * (at->roll[k] - beyond);
+        if (height > 0.0) {
+            at->value[k] -= height;
+            at->by_place[k] -= per_place;
+            at->by_roll[k] -= beyond == 0.0 ? per_roll : 0.0;
+        }
+    }
+}
+
 /* Each takes off what it exceeds zero by. */
 void gmi_surface_add_ramps(const gmi_surface_points *at, const gmi_surface_gear *gear) {
     const gmi_grid *grid = gear->grid;
@@ -176,6 +224,10 @@ void gmi_surface_add_ramps(const gmi_surface_points *at, const gmi_surface_gear 
         const double from = ramp->offset + ramp->per_t1 * grid->face_origin + per_t1 * at->t1_from +
                             per_own_roll * gear->roll_from;
         const double per_place = per_t1 * at->per_place, per_roll = per_own_roll * gear->per_roll;
+        if (gear->is_held) {
+            add_held_ramp(at, gear, from, per_place, per_roll);
+            continue;
+        }
 
         for (int k = 0; k < at->count; ++k) {
             const double height = from + per_place * at->place[k] + per_roll * at->roll[k];
@@ -220,6 +272,9 @@ double gmi_line_flanks_at(const gmi_line_flanks *line, int side, double t1, doub
             table = gmi_surface_table(&gear, role == GM_PINION ? &line->pinion : &line->wheel);
             if (table >= 0.0) {
                 gmi_surface_add_tables(&at, &gear, &in, 0, 1);
+            }
+            if (gear.is_held) {
+                gmi_surface_hold_tables(&at, &gear, &in, 0, 1);
             }
             gmi_surface_add_ramps(&at, &gear);
         }

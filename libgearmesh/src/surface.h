@@ -83,16 +83,18 @@ typedef struct gmi_surface_gear {
     const gmi_tables *tables;
     const gmi_grid *grid;
     double roll_from, per_roll;
+    int is_held; /* points may be beyond the ends of the table, see ramp.c: the flank has the deviation of the end */
 } gmi_surface_gear;
 
 /* reach: rho_p + rho_w of the points (m). tables NULL: an ideal flank. */
 static inline gmi_surface_gear gmi_surface_gear_of(const gm_mesh *mesh, int side, int role,
                                                    double reach) {
     const gmi_side *prepared = &mesh->side[side];
+    const int is_held = prepared->starts_deeper || (prepared->is_tilted && mesh->elastic == NULL);
     const gmi_surface_gear pinion = {prepared->pinion, &prepared->pinion_grid,
-                                     -mesh->pair->pinion.start_roll_length, 1.0};
+                                     -mesh->pair->pinion.start_roll_length, 1.0, is_held};
     const gmi_surface_gear wheel = {prepared->wheel, &prepared->wheel_grid,
-                                    reach - mesh->engagement.wheel_profile_start, -1.0};
+                                    reach - mesh->engagement.wheel_profile_start, -1.0, is_held};
     return role == GM_PINION ? pinion : wheel;
 }
 
@@ -104,6 +106,10 @@ static inline double gmi_surface_table(const gmi_surface_gear *gear, const gmi_f
 /* Adds the tables of a gear at points from .. to - 1, all of which have one. */
 void gmi_surface_add_tables(const gmi_surface_points *at, const gmi_surface_gear *gear,
                             const gmi_surface_tables *in, int from, int to);
+
+/* Takes off what that has read beyond the ends of the tables. */
+void gmi_surface_hold_tables(const gmi_surface_points *at, const gmi_surface_gear *gear,
+                             const gmi_surface_tables *in, int from, int to);
 
 /* How the slope along rho_p of a table changes along the place, in the cell of a point (1 per place). */
 static inline double gmi_surface_twist(const gmi_surface_points *at, const gmi_surface_gear *gear,

@@ -116,6 +116,15 @@ SPECIALIZED double start_of(const gm_gear *gear, const gmi_engagement *at, int r
     return gear->sign < 0.0 ? -BEYOND_ANY_ROOT : 0.0;
 }
 
+/*
+ * Where lines end at the start of a table. Where the path of parallel axes begins deeper, they go on to the mate's tip, which
+ * the tilt moves by some micrometres: the limit is twice as deep as that path, which leaves it this room, so that nothing
+ * jumps as a pose begins to take lines deeper.
+ */
+SPECIALIZED double table_start_of(double drawn, const gmi_engagement *at, int role) {
+    return at->starts_deeper[role] ? 2.0 * at->start_roll_length[role] - drawn : drawn;
+}
+
 SPECIALIZED gmi_interval limits_of(const gm_pair *pair, const gmi_engagement *at, int place) {
     const gm_gear *pinion = &pair->pinion, *wheel = &pair->wheel;
     switch (place) {
@@ -128,9 +137,11 @@ SPECIALIZED gmi_interval limits_of(const gm_pair *pair, const gmi_engagement *at
     case FACE_WHEEL:
         return (gmi_interval){-0.5 * wheel->face_width, 0.5 * wheel->face_width};
     case TABLE_PINION:
-        return (gmi_interval){pinion->start_roll_length, at->tip_roll_length[GM_PINION]};
+        return (gmi_interval){table_start_of(pinion->start_roll_length, at, GM_PINION),
+                              at->tip_roll_length[GM_PINION]};
     default:
-        return (gmi_interval){at->wheel_profile_start, at->tip_roll_length[GM_WHEEL]};
+        return (gmi_interval){table_start_of(at->wheel_profile_start, at, GM_WHEEL),
+                              at->tip_roll_length[GM_WHEEL]};
     }
 }
 
@@ -187,6 +198,10 @@ static void set_end(const gm_pair *pair, const gmi_engagement *at, const tilted 
     place_gradient(line, t1, place, by);
     if (is_lower && !at->is_tilted && (place == ROLL_PINION || place == ROLL_WHEEL)) {
         by[GMI_BY_LENGTH] -= at->start_follows[place == ROLL_PINION ? GM_PINION : GM_WHEEL];
+    }
+    if (is_lower && (place == TABLE_PINION || place == TABLE_WHEEL)) {
+        const int role = place == TABLE_PINION ? GM_PINION : GM_WHEEL;
+        by[GMI_BY_LENGTH] -= 2.0 * (at->starts_deeper[role] && at->start_follows[role]);
     }
     for (int k = 0; k < GMI_COORDINATES; ++k) {
         by[k] /= -per_t1;

@@ -1317,9 +1317,10 @@ GM_API int gm_rolling_equilibrium(const gm_mesh *mesh, double pinion_angle, doub
 
 /**
  * As gm_rolling_equilibrium(), under several loads at one pinion angle: the same equilibria, to the accuracy of each, with
- * less work. Helical gears with tables, a constant stiffness and parallel axes, without corner contact, friction and linear
- * reliefs: three walks along the lines of contact tell of up to 32 loads at once, and each takes one evaluation more. All
- * others: each load is guessed from the one before, so that loads in order save the most.
+ * less work. Helical gears with tables that reach as far to the root as contact, a constant stiffness and parallel axes,
+ * without corner contact, friction and linear reliefs: three walks along the lines of contact tell of up to 32 loads at
+ * once, and each takes one evaluation more. All others: each load is guessed from the one before, so that loads in order
+ * save the most.
  *
  * @param[in]     mesh          the mesh
  * @param[in]     pinion_angle  phi_p (rad)
