@@ -397,6 +397,45 @@ static void force_by_flanks_is_that_of_differences(void) {
     GM_ASSERT(entering > 10); /* a wheel's edge, with a force of its own */
 }
 
+/* A wheel moved along its helix by more than half a base pitch is where it is, not where the angles alone would have it. */
+static void force_by_flanks_and_pairs_know_the_pose(void) {
+    gm_mesh_params law = elastic_law();
+    const gm_pair_params gears = paper();
+    law.pose.axial_shift = 0.3 * gears.face_width;
+    elastic_mesh m;
+    GM_ASSERT_INT(make(&m, &gears, &law, NULL, NULL), GM_OK);
+    GM_ASSERT(fabs(m.mesh->engagement.offset_shift) > 0.5 * m.pair.transverse_base_pitch);
+
+    /* The same place in the coordinates of the drawing. */
+    gm_position position;
+    GM_ASSERT_INT(gm_position_from_pinion_angle(&m.pair, 0.01, 0.0, 0.0, &position), GM_OK);
+    position.offset = pressed_offset(&m, GM_DRIVE, 0.01);
+    gm_mesh_result result;
+    GM_ASSERT_INT(gm_mesh_evaluate_at(m.mesh, &position, GM_WANT_DERIVATIVES, m.workspace, &result),
+                  GM_OK);
+    GM_ASSERT(result.force > 0.0);
+
+    /* Pairs are counted there too. */
+    int pairs[2];
+    GM_ASSERT_INT(gm_mesh_pairs_at(m.mesh, &position, m.workspace, pairs), GM_OK);
+    GM_ASSERT_INT(pairs[GM_DRIVE], result.contact.drive_pairs);
+
+    /* More material all over a flank is approach. */
+    random_flanks even;
+    uint64_t seed = 5u;
+    random_flanks_make(&even, &seed, &m.pair, 0, 0.0);
+    for (int tooth = 0; tooth < m.pair.pinion.teeth; ++tooth) {
+        GM_ASSERT_INT(gm_flanks_set_pitch(even.flanks, GM_DRIVE, tooth, 1e-6), GM_OK);
+    }
+    const gm_flanks *pinion[1] = {even.flanks}, *wheel[1] = {NULL};
+    double by;
+    GM_ASSERT_INT(gm_mesh_force_by_flanks(m.mesh, &position, pinion, wheel, 1, m.workspace, &by),
+                  GM_OK);
+    GM_ASSERT_REL(by, 1e-6 * gm_mesh_touching_stiffness(m.mesh, &result), 1e-3);
+    random_flanks_free(&even);
+    release(&m);
+}
+
 /* With x held the force changes by little as the gears roll on, which the derivatives by both angles hide from each other. */
 static void roll_at_held_approach_is_differentiated_exactly(void) {
     int compared = 0;
@@ -1619,6 +1658,7 @@ int main(int argc, char **argv) {
         GM_TEST(check_values_are_met),
         GM_TEST(derivatives_are_those_of_differences),
         GM_TEST(force_by_flanks_is_that_of_differences),
+        GM_TEST(force_by_flanks_and_pairs_know_the_pose),
         GM_TEST(vectors_of_four_give_the_same_bits),
         GM_TEST(roll_at_held_approach_is_differentiated_exactly),
         GM_TEST(torques_are_the_slopes_of_the_energy),

@@ -381,6 +381,8 @@ static tip_middle middle_of(const gmi_corner_view *v, const gmi_beyond *beyond,
                                beyond->by_origin, beyond->by_delta, 0.0),
         .square = {.value = per_t1 * per_t1 * (contact * contact / 12.0 - apart * apart)},
         .per_t1 = per_t1};
+
+    /* Both by what a solver knows, as load and touching length move. */
     for (int k = 0; k < GMI_MOTIONS; ++k) {
         const double contact_by = part->contact.by[k];
         const double t1_by = (part->force_t1.by[k] - t1 * part->force.by[k]) / part->force.value;

@@ -197,6 +197,8 @@ static gm_penetration mean_of_contacts(const gm_pair *pair, const gm_mesh_result
     const gm_gradient first = {a->d_pinion_angle, a->d_wheel_angle, 0.0, 0.0};
     const gm_gradient second = {b->d_pinion_angle, b->d_wheel_angle, 0.0, 0.0};
     const gm_gradient by = sum_of_gradients(pair, each, &first, &second);
+
+    /* Pairs are counted in both. */
     const gm_penetration mean = {
         .penetration = 0.5 * (a->penetration + b->penetration),
         .rate = 0.5 * (a->rate + b->rate),

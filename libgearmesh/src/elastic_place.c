@@ -113,6 +113,7 @@ static void part_slots(const gmi_elastic *law, gmi_elastic_work *work) {
 }
 
 static void place_slots(const gmi_elastic *law, gmi_elastic_work *work, const span *parts) {
+    /* Whole elements have two points each. */
     for (int half = 0; half < 2; ++half) {
         double *restrict weight = work->weight + half * work->slots;
         double *restrict place = work->place + half * work->slots;
@@ -121,6 +122,8 @@ static void place_slots(const gmi_elastic *law, gmi_elastic_work *work, const sp
             place[s] = gauss[half];
         }
     }
+
+    /* The first and the last one of a line may be cut, and others where lines go on beyond the path. */
     for (int row = 0; row < work->count && !work->at.goes_on; ++row) {
         const gmi_elastic_line *line = &work->line[row];
         const int last = line->elements - 1;

@@ -173,6 +173,8 @@ SPECIALIZED const gmi_side_sum *exact_sum(const gm_mesh *mesh, int side,
     if (gmi_side_is_clear(at, prepared, side, position->offset)) {
         return &no_contact;
     }
+
+    /* By the flanks it is compiled for, or by what the mesh has. */
     if (kind == IDEAL_FLANKS) {
         *memory = gmi_no_contact();
         gmi_sum_ideal(mesh->pair, at, side, position, mask, memory);
@@ -262,6 +264,8 @@ static OWN_STACK void finish_elastic(const gm_mesh *mesh, const gm_position *pos
         gmi_elastic_friction(mesh, side, approach[side], &sliding, &sums[side], mask, workspace,
                              &friction[side]);
     }
+
+    /* Forces, the work of the common roll, and what is stored. */
     set_result(mesh, &sums[GM_DRIVE], &sums[GM_COAST], slides ? friction : NULL, approach, wanted,
                result);
     add_roll(mesh, &sums[GM_DRIVE], &sums[GM_COAST], wanted, result);
@@ -690,6 +694,8 @@ static OWN_STACK int evaluate_checked(const gm_mesh *mesh, const gm_position *po
         posed = gmi_mesh_posed(mesh, position);
         position = &posed;
     }
+
+    /* What is asked for, and where: as posed. */
     int status = check_evaluation(mesh, position, wanted, workspace);
     if (status == GM_OK && mesh->friction.is_on) {
         status = gmi_check_speed(position->pinion_speed);
@@ -698,6 +704,8 @@ static OWN_STACK int evaluate_checked(const gm_mesh *mesh, const gm_position *po
         gmi_mesh_result_set_nan(result);
         return status;
     }
+
+    /* By what the mesh is. */
     if (mesh->is_special) {
         return evaluate_special(mesh, position, wanted, workspace, result);
     }
@@ -759,17 +767,20 @@ int gm_mesh_pairs_at(const gm_mesh *mesh, const gm_position *position, gm_worksp
         return GM_ERR_NULL;
     }
     pairs[GM_DRIVE] = pairs[GM_COAST] = 0;
-    int status = check_evaluation(mesh, position, GM_WANT_PAIRS, workspace);
-    if (status == GM_OK && counts_alone(mesh)) {
-        for (int side = GM_DRIVE; side <= GM_COAST; ++side) {
+    if (mesh != NULL && counts_alone(mesh)) {
+        const int status = check_evaluation(mesh, position, GM_WANT_PAIRS, workspace);
+        for (int side = GM_DRIVE; side <= GM_COAST && status == GM_OK; ++side) {
             pairs[side] = gmi_side_count_pairs(mesh->pair, &mesh->engagement, &mesh->side[side],
                                                side, position);
         }
-    } else if (status == GM_OK) {
-        /* Any evaluation counts them, but that of a cache. */
-        const int wanted = mesh->cache != NULL ? GM_WANT_PAIRS : GM_WANT_FORCE;
-        gm_mesh_result result;
-        status = gm_mesh_evaluate_at(mesh, position, wanted, workspace, &result);
+        return status;
+    }
+
+    /* Any evaluation counts them, but that of a cache. */
+    const int wanted = mesh != NULL && mesh->cache != NULL ? GM_WANT_PAIRS : GM_WANT_FORCE;
+    gm_mesh_result result;
+    const int status = gm_mesh_evaluate_at(mesh, position, wanted, workspace, &result);
+    if (status == GM_OK) {
         pairs[GM_DRIVE] = result.contact.drive_pairs;
         pairs[GM_COAST] = result.contact.coast_pairs;
     }
@@ -805,6 +816,13 @@ int gm_mesh_force_by_flanks(const gm_mesh *mesh, const gm_position *position,
     for (int k = 0; k < count; ++k) {
         force_by[k] = gmi_nan();
     }
+
+    /* What is asked for, and where: as posed. */
+    gm_position posed;
+    if (mesh != NULL && position != NULL) {
+        posed = gmi_mesh_posed(mesh, position);
+        position = &posed;
+    }
     int status = check_evaluation(mesh, position, GM_WANT_FORCE, workspace);
     if (status == GM_OK) {
         status = check_changes(mesh, pinion_changes, wheel_changes, count);
@@ -817,9 +835,8 @@ int gm_mesh_force_by_flanks(const gm_mesh *mesh, const gm_position *position,
     for (int k = 0; k < count; ++k) {
         force_by[k] = 0.0;
     }
-    const gm_position posed = gmi_mesh_posed(mesh, position);
     for (int side = GM_DRIVE; side <= GM_COAST && status == GM_OK; ++side) {
-        status = gmi_elastic_side_by_flanks(mesh, side, &posed, pinion_changes, wheel_changes,
+        status = gmi_elastic_side_by_flanks(mesh, side, position, pinion_changes, wheel_changes,
                                             count, workspace, force_by);
     }
     for (int k = 0; k < count && status != GM_OK; ++k) {

@@ -118,6 +118,8 @@ SPECIALIZED double take_off(gmi_line *part, const traces *ramps, int first, int 
         if (!(height(&ramp, middle) > 0.0)) {
             continue;
         }
+
+        /* Its height where the part begins, and its slopes. */
         part->overlap -= height(&ramp, part->from);
         part->half_slope -= 0.5 * ramp.per_t1;
         if (wanted & (GMI_DERIVATIVES | GMI_TANGENT)) {
@@ -222,10 +224,14 @@ static double add_held_table(const flank_along *flank, const double **values, gm
     if (*values == NULL) {
         return 0.0;
     }
+
+    /* The row of nodes at that end of the table, in the cell of the face that the part is in. */
     const double middle = 0.5 * (part->from + part->to);
     const int cell = gmi_cell_index(grid->face_base + grid->face_rate * middle, grid->last_face);
     const ptrdiff_t node = flank->profile > 0.0 ? grid->row - GMI_NODE_DOUBLES : 0;
     const double *near = *values + cell * grid->row + node;
+
+    /* A straight line across it, and no table any more. */
     const double slope = near[grid->row] - near[0];
     const double gone = grid->face_base + grid->face_rate * part->from - (double)cell;
     part->overlap += near[0] + slope * gone;
@@ -247,6 +253,8 @@ SPECIALIZED void follow_edges(const gmi_line *line, const gmi_grid *pinion, cons
     flank_along flanks[2] = {{pinion_tables, pinion, line->pinion_profile},
                              {wheel_tables, wheel, line->wheel_profile}};
     int held[2] = {0, 0};
+
+    /* The ramps on the way: all of a flank where it may be held, else those that the line comes to. */
     traces ramps;
     ramps.list = list;
     ramps.all = 0;
@@ -269,8 +277,12 @@ SPECIALIZED void follow_edges(const gmi_line *line, const gmi_grid *pinion, cons
         const double gone = from - line->from; /* the parabola as seen from here */
         part.overlap += gone * (2.0 * line->half_slope + gone * line->curvature);
         part.half_slope += gone * line->curvature;
+
+        /* Where it ends: at the next edge of a ramp, or where a flank begins or ends to be held. */
         part.to = holds ? begin_held_part(line, from, flanks, held) : line->to;
         part.to = next_edge(&ramps, flanks, from, part.to, is_kept, holds ? held : NULL);
+
+        /* What the ramps take off, and what held tables have, into its straight line. */
         double pinion_face, wheel_face;
         const double by_pinion = take_off(&part, &ramps, 0, ramps.pinion, &flanks[GM_PINION],
                                           wanted, is_kept, holds && held[GM_PINION], &pinion_face);
@@ -297,6 +309,8 @@ SPECIALIZED void follow_edges(const gmi_line *line, const gmi_grid *pinion, cons
         if (wanted & GMI_TANGENT) {
             add_ramp_slopes(line->tangent, by_pinion, by_wheel, wheel_face);
         }
+
+        /* Their slopes, over what touches and at its ends. */
         if (wanted & GMI_DERIVATIVES) {
             sum.pinion -= by_pinion * sum.contact;
             sum.wheel -= by_wheel * sum.contact;

@@ -179,12 +179,16 @@ void gmi_surface_hold_tables(const gmi_surface_points *at, const gmi_surface_gea
         if (beyond == 0.0 || in->table[k] < 0.0) {
             continue;
         }
+
+        /* The cell that was read on. */
         const double v1 = map.face_from + map.per_place * at->place[k];
         const int face_cell = (int)gmi_cell_of(v1, map.last_face);
         const int profile_cell = (int)gmi_cell_of(v2, map.last_profile);
         const double *near = map.values + (ptrdiff_t)in->table[k] + face_cell * map.next_face +
                              profile_cell * GMI_NODE_DOUBLES;
         const double *far = near + map.next_face;
+
+        /* Its slope along the profile there, times how far it is beyond, is taken back. */
         const double along_profile = near[GMI_NODE_DOUBLES] - near[0];
         const double twist = far[GMI_NODE_DOUBLES] - far[0] - along_profile;
         const double slope = along_profile + twist * (v1 - (double)face_cell);
