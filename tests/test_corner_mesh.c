@@ -164,6 +164,8 @@ static void add_acting(const gm_pair *pair, const gmi_engagement *at, double sig
     const double e[2] = {sin(a), cos(a)}, n[2] = {cos(a), -sin(a)};
     double normal[2] = {e[0], e[1]};
     double place[2] = {r * n[0] + rho * e[0], r * n[1] + rho * e[1]};
+
+    /* A corner that touches acts where it is, across the mate's flank. */
     for (int role = GM_PINION; role <= GM_WHEEL; ++role) {
         if (roll[role] > 0.0) {
             /* The corner, turned about its own axis from where its tip meets the line of action. */
@@ -181,10 +183,12 @@ static void add_acting(const gm_pair *pair, const gmi_engagement *at, double sig
                       fabs(role == GM_PINION ? at->wheel_base_radius : r), place, e, normal);
         }
     }
+
     /* Overlap is on the wheel's side of the pinion's flank: places are those of the pinion's roll. */
     for (int k = 0; k < 2 && b->is_chain && roll[GM_WHEEL] > 0.0; ++k) {
         place[k] += delta * normal[k];
     }
+
     /* The pinion's flank slides over the wheel's, and takes it along. */
     const double omega_p = sign * b->pinion_speed, omega_w = sign * b->wheel_speed;
     const double tangent[2] = {-normal[1], normal[0]};
@@ -197,6 +201,8 @@ static void add_acting(const gm_pair *pair, const gmi_engagement *at, double sig
     b->loss += slid * v_t;
     b->slid += fabs(slid);
     b->turning += sign * slid * (place[0] * tangent[1] - place[1] * tangent[0]);
+
+    /* Force and moment on the wheel; with an axial part of helical gears. */
     const double f[3] = {q * normal[0] + slid * tangent[0],
                          sign * (q * normal[1] + slid * tangent[1]),
                          -sign * q * pair->face_advance / pair->face_width};
@@ -214,6 +220,8 @@ static void brute_side(const random_case *c, const gm_position *position, int si
     gmi_corner corners[2];
     (void)gmi_engagement_find(pair, NULL, &at);
     (void)gmi_corners_init(pair, &at, corners);
+
+    /* Place on the path of contact, and lines that can be on it. */
     const double sign = side == GM_DRIVE ? 1.0 : -1.0;
     const double delta = sign * position->offset - 0.5 * pair->backlash;
     const double p = pair->transverse_base_pitch;
@@ -221,12 +229,15 @@ static void brute_side(const random_case *c, const gm_position *position, int si
         pair->pinion.tip_roll_length - pair->pinion.start_roll_length,
         at.tip_roll_length[GM_WHEEL] - at.wheel_profile_start,
     };
+
     const int lines = 6 + (int)(pair->total_contact_ratio + 1.0);
     for (int k = -lines; k <= lines; ++k) {
         const int steps = side == GM_DRIVE ? k : -k;
         const int z_p = pair->pinion.teeth, z_w = pair->wheel.teeth;
         const int i = ((position->pinion_tooth + steps) % z_p + z_p) % z_p;
         const int j = ((position->wheel_tooth + steps - (side == GM_COAST)) % z_w + z_w) % z_w;
+
+        /* Overlap at each point: that of the axes, and both deviations ... */
         const int points = b->points > 0 ? b->points : POINTS;
         for (int point = 0; point < points; ++point) {
             const double t1 = (point + 0.5) / points;
@@ -240,6 +251,8 @@ static void brute_side(const random_case *c, const gm_position *position, int si
                               (rho - pair->pinion.start_roll_length) / length[0]);
             f += deviation_at(c->model_use[1], side, j, t1,
                               (rho_w - at.wheel_profile_start) / length[1]);
+
+            /* ... less the gap of a tip that is beyond the path. */
             gmi_corner_place place[2];
             int is_off = 0;
             for (int role = GM_PINION; role <= GM_WHEEL; ++role) {
@@ -253,6 +266,7 @@ static void brute_side(const random_case *c, const gm_position *position, int si
             if (!(f > 0.0) || is_off) {
                 continue;
             }
+
             const double share = f / points;
             b->sum += share;
             b->square += share * f;
@@ -262,6 +276,7 @@ static void brute_side(const random_case *c, const gm_position *position, int si
                 b->arm[role] += roll[role] > 0.0 ? share * place[role].by_roll : 0.0;
                 b->beyond += roll[role] > 0.0 ? share : 0.0;
             }
+
             add_acting(pair, &at, sign, share, rho, delta, roll,
                        pair->face_start + t1 * pair->face_width, b);
         }
@@ -299,6 +314,7 @@ static void check_contact(const gm_mesh_result *r, double rate) {
     GM_ASSERT_REL(contact->rate, contact->drive_rate - contact->coast_rate, 1e-15);
     GM_ASSERT_INT(contact->drive_pairs > 0, contact->drive_contact > 0.0);
     GM_ASSERT_INT(contact->coast_pairs > 0, contact->coast_contact > 0.0);
+
     GM_ASSERT_REL(k * contact->penetration, r->force, 1e-14);
     GM_ASSERT_REL(k * contact->d_pinion_angle, r->force_by.pinion_angle, 1e-14);
     GM_ASSERT_REL(k * contact->d_wheel_angle, r->force_by.wheel_angle, 1e-14);
@@ -320,6 +336,8 @@ static void forces_are_sums_over_points(void) {
             gm_mesh_result r;
             const int wanted = GM_WANT_WRENCH | GM_WANT_DERIVATIVES | GM_WANT_ENERGY;
             GM_ASSERT_INT(gm_mesh_evaluate_at(mesh, &position, wanted, NULL, &r), GM_OK);
+
+            /* The same by points. */
             brute b[2] = {{.sum = 0.0}, {.sum = 0.0}};
             brute_side(&c, &position, GM_DRIVE, &b[GM_DRIVE]);
             brute_side(&c, &position, GM_COAST, &b[GM_COAST]);
@@ -332,10 +350,12 @@ static void forces_are_sums_over_points(void) {
             GM_ASSERT_ABS(r.contact.drive, b[GM_DRIVE].sum, e);
             GM_ASSERT_ABS(r.contact.coast, b[GM_COAST].sum, e);
             GM_ASSERT_ABS(r.contact.drive_contact, b[GM_DRIVE].contact, 30.0 / POINTS);
+
             const double square = b[GM_DRIVE].square + b[GM_COAST].square;
             GM_ASSERT_ABS(r.energy, 0.5 * k * square,
                           k * e * fmax(b[GM_DRIVE].largest, b[GM_COAST].largest));
             check_contact(&r, position.offset_rate);
+
             GM_ASSERT_ABS(r.pinion_torque,
                           k * r_bp *
                               (b[0].sum - b[0].arm[GM_PINION] - (b[1].sum - b[1].arm[GM_PINION])),
@@ -344,6 +364,7 @@ static void forces_are_sums_over_points(void) {
                           k * r_bw *
                               (b[0].sum - b[0].arm[GM_WHEEL] - (b[1].sum - b[1].arm[GM_WHEEL])),
                           k * r_bw * e);
+
             const double lever = c.pair.center_distance + c.pair.face_width;
             for (int axis = 0; axis < 3; ++axis) {
                 GM_ASSERT_ABS(r.wrench.wheel_force[axis], k * (b[0].force[axis] + b[1].force[axis]),
@@ -381,11 +402,15 @@ static void friction_is_that_of_the_bodies_at_each_point(void) {
         if (random_corner_case(&c, &seed, i)) {
             gm_test_context("case %d", i);
             const double creep = i % 2 != 0 && c.pair.face_advance == 0.0 ? 0.1 : 1e-6;
+
+            /* The mesh, rolling at a speed. */
             GM_ASSERT_INT(make_rough(&where, &c, 0.0, GM_FRICTION_CONSTANT, creep, &mesh), GM_OK);
             gm_position position = random_place(&seed, &c, i);
             position.pinion_speed = i % 3 == 0 ? -40.0 : 100.0;
             gm_mesh_result r;
             GM_ASSERT_INT(gm_mesh_evaluate_at(mesh, &position, GM_WANT_WRENCH, NULL, &r), GM_OK);
+
+            /* The same by points. */
             const double k = stiffness_of_all, sign = c.pair.wheel.sign;
             const brute rough = {.coefficient = 0.1,
                                  .creep = creep,
@@ -408,6 +433,7 @@ static void friction_is_that_of_the_bodies_at_each_point(void) {
                 GM_ASSERT_ABS(-r.wrench.pinion_moment[axis],
                               k * (b[0].moment[axis] + b[1].moment[axis]), e * lever);
             }
+
             const double fastest = fabs(position.pinion_speed) *
                                    (fabs(c.pair.line_of_action) + c.pair.normal_module) *
                                    (1.0 + c.pair.pinion.base_radius / c.pair.wheel.base_radius);
@@ -420,6 +446,7 @@ static void friction_is_that_of_the_bodies_at_each_point(void) {
             GM_ASSERT_ABS(r.wrench.wheel_moment[2] + d * r.wrench.wheel_force[1] +
                               r.wrench.pinion_moment[2],
                           0.0, 1e-12 * size);
+
             ++met;
             at_corners += b[0].beyond + b[1].beyond > 0.02 * sum;
         }
@@ -528,12 +555,15 @@ static void friction_takes_its_loss_from_the_bodies(void) {
         gm_mesh *rough, *smooth;
         if (random_corner_case(&c, &seed, i)) {
             gm_test_context("case %d", i);
+
+            /* One mesh with friction, one without; nearly always in a pose that changes. */
             const gm_pair *pair = &c.pair;
             const double damping = i % 2 == 0 ? 0.0 : 1e5, m = pair->normal_module;
             GM_ASSERT_INT(make_rough(&rough_room, &c, damping, i % 3, 0.01, &rough), GM_OK);
             GM_ASSERT_INT(
                 make_mesh(&smooth_room, pair, c.use[0], c.use[1], GM_CORNER_ON, damping, &smooth),
                 GM_OK);
+
             gm_motion motion = {.position = random_place(&seed, &c, i)};
             motion.position.pinion_speed = gm_test_uniform(&seed, -100.0, 100.0);
             if (i % 4 != 0) {
@@ -545,6 +575,7 @@ static void friction_takes_its_loss_from_the_bodies(void) {
                               i % 4 < 2 ? 0.0 : gm_test_uniform(&seed, -5.0, 5.0),
                               i % 4 < 2 ? 0.0 : gm_test_uniform(&seed, -5.0, 5.0)};
             }
+
             gm_mesh_result with, without;
             const int wanted = GM_WANT_WRENCH;
             const int status = gm_mesh_evaluate_posed(rough, &motion, wanted, NULL, &with);
@@ -565,6 +596,8 @@ static void friction_takes_its_loss_from_the_bodies(void) {
                 }
                 moment[0] += z * force[1];
                 moment[1] -= z * force[0];
+
+                /* Power of both shafts, and of the wheel's body as it moves. */
                 const double wheel_speed =
                     (pair->pinion.base_radius * motion.position.pinion_speed -
                      motion.position.offset_rate) /
@@ -572,10 +605,12 @@ static void friction_takes_its_loss_from_the_bodies(void) {
                 const double power = pinion[2] * motion.position.pinion_speed -
                                      pair->wheel.sign * moment[2] * wheel_speed +
                                      dot(force, velocity) + dot(moment, turning);
+
                 const double size = (with.drive_force + with.coast_force) *
                                     (fabs(motion.position.pinion_speed) * pair->center_distance +
                                      3.0 + 5.0 * pair->face_width);
                 GM_ASSERT(with.loss >= 0.0);
+
                 GM_ASSERT_ABS(power, -with.loss, 1e-12 * size);
                 lossy += with.loss > 1e-4 * size;
                 ++met;
@@ -619,6 +654,7 @@ static void derivatives_are_those_of_differences(void) {
         room where;
         gm_mesh *mesh;
         if (random_corner_case(&c, &seed, i)) {
+            /* A mesh of each kind, at a place of its own, and nearly always in a pose. */
             const gm_pair *pair = &c.pair;
             const double damping = i % 2 == 0 ? 0.0 : 1e5;
             const int is_rough = i % 4 < 2;
@@ -626,12 +662,14 @@ static void derivatives_are_those_of_differences(void) {
                                    : make_mesh(&where, pair, c.use[0], c.use[1], GM_CORNER_ON,
                                                damping, &mesh),
                           GM_OK);
+
             const double m = pair->normal_module;
             const double tilt =
                 i % 3 == 0 ? 0.02 * pair->transverse_base_pitch / pair->face_width : 0.0;
             gm_motion motion = {.position = random_place(&seed, &c, i)};
             motion.position.offset_rate = gm_test_uniform(&seed, -1e-3, 1e-3) * m;
             motion.position.pinion_speed = is_rough ? 50.0 : 0.0;
+
             if (i % 3 != 1) {
                 motion.pose = (gm_pose){gm_test_uniform(&seed, -0.01, 0.01) * m,
                                         gm_test_uniform(&seed, -0.01, 0.01) * m, 0.0,
@@ -643,6 +681,7 @@ static void derivatives_are_those_of_differences(void) {
                 motion.pose_rate = (gm_pose){0.3, -0.2, 0.1, gm_test_uniform(&seed, -90.0, 90.0),
                                              gm_test_uniform(&seed, -90.0, 90.0)};
             }
+
             gm_mesh_result r, far[2], near[2];
             int status = gm_mesh_evaluate_posed(mesh, &motion, GM_WANT_DERIVATIVES, NULL, &r);
             for (int which = 0; which < 4 && status == GM_OK && r.force != 0.0; ++which) {
@@ -778,9 +817,12 @@ static void friction_of_a_tip_follows_each_motion(void) {
             random_varying(&seed, 0.1, 0.5),  random_varying(&seed, 0.1, 0.5),
             random_varying(&seed, -1.0, 1.0), random_varying(&seed, -1.0, 1.0),
             random_varying(&seed, -1.0, 1.0), random_varying(&seed, -1.0, 1.0)};
+
         gmi_friction_sum at = {.loss = 0.0};
         gmi_tip_friction tip_at = {.versine = 0.0};
         gmi_friction_add_tip(&sliding, advance, &part, &place, &at, &tip_at);
+
+        /* Against the slope between both sides of the place, where all numbers have moved by one motion. */
         for (int which = 0; which < GMI_MOTIONS; ++which) {
             gm_test_context("case %d, by %d", i, which);
             const double h = 1e-5;
@@ -802,6 +844,7 @@ static void friction_of_a_tip_follows_each_motion(void) {
                     moved_by(&place.versine_t1, which, by), moved_by(&place.sine_t1, which, by)};
                 gmi_friction_add_tip(&s, advance, &p, &q, &sums[k], &tips[k]);
             }
+
             GM_ASSERT_ABS(at.force.by[which],
                           (sums[1].force.value - sums[0].force.value) / (2.0 * h), 1e-7);
             GM_ASSERT_ABS(at.moment.by[which],
@@ -825,6 +868,7 @@ static void energy_is_kept_over_a_mesh_cycle(void) {
             room where;
             gm_mesh *mesh;
             GM_ASSERT_INT(make_mesh(&where, &pair, NULL, NULL, corner, 0.0, &mesh), GM_OK);
+
             enum { STEPS = 4000 };
             const double m = pair.normal_module;
             double work = 0.0, turned_over = 0.0;
@@ -834,17 +878,20 @@ static void energy_is_kept_over_a_mesh_cycle(void) {
                 const double x = 0.5 * pair.backlash + m * (5e-3 + 2e-3 * sin(turn));
                 const double x_by = m * 2e-3 * cos(turn);
                 const double roll_by = pair.transverse_base_pitch / 6.283185307179586;
+
                 gm_position position;
                 gm_mesh_result r;
                 (void)gm_position_from_pinion_angle(&pair, roll_by * turn / pair.pinion.base_radius,
                                                     x, 0.0, &position);
                 GM_ASSERT_INT(gm_mesh_evaluate_at(mesh, &position, 0, NULL, &r), GM_OK);
+
                 const double pinion_by = roll_by / pair.pinion.base_radius;
                 const double wheel_by = (roll_by - x_by) / pair.wheel.base_radius;
                 work += (r.pinion_torque * pinion_by - r.wheel_torque * wheel_by) *
                         6.283185307179586 / STEPS;
                 turned_over += fabs(r.force * x_by) * 6.283185307179586 / STEPS;
             }
+
             if (corner == GM_CORNER_ON) {
                 GM_ASSERT_ABS(work, 0.0, 1e-5 * turned_over);
             } else {
@@ -859,6 +906,7 @@ static double largest_difference(const gm_mesh *mesh, const gm_motion *begins, i
                                  double range, int steps, int order) {
     const gm_pair *pair = gm_mesh_pair(mesh);
     double last[2] = {(double)NAN, (double)NAN}, largest = 0.0;
+
     for (int k = 0; k <= steps; ++k) {
         const double by = range * k / steps;
         gm_motion there = *begins;
@@ -870,6 +918,7 @@ static double largest_difference(const gm_mesh *mesh, const gm_motion *begins, i
         } else {
             *places[coordinate - 2] += by;
         }
+
         gm_mesh_result r;
         GM_ASSERT_INT(gm_mesh_evaluate_posed(mesh, &there, 0, NULL, &r), GM_OK);
         const double difference =
@@ -921,6 +970,7 @@ static void nothing_jumps_and_helical_gears_have_no_kinks(void) {
                         there.phase = p * k / steps;
                         gm_mesh_result r;
                         GM_ASSERT_INT(gm_mesh_evaluate_at(with, &there, 0, NULL, &r), GM_OK);
+
                         const double second = fabs(r.force - 2.0 * last[0] + last[1]);
                         if (second > kinks[fine]) {
                             kinks[fine] = second;
@@ -930,6 +980,7 @@ static void nothing_jumps_and_helical_gears_have_no_kinks(void) {
                         }
                         last[1] = last[0];
                         last[0] = r.force;
+
                         GM_ASSERT_INT(gm_mesh_evaluate_at(without, &there, 0, NULL, &r), GM_OK);
                         if (fabs(r.force - last_bare) > bare[fine]) {
                             bare[fine] = fabs(r.force - last_bare);
@@ -937,6 +988,7 @@ static void nothing_jumps_and_helical_gears_have_no_kinks(void) {
                         last_bare = r.force;
                     }
                 }
+
                 GM_ASSERT(jumps[1] < 0.3 * jumps[0]);
                 if (is_helical) {
                     GM_ASSERT(kinks[1] < 0.09 * kinks[0]);
@@ -945,6 +997,7 @@ static void nothing_jumps_and_helical_gears_have_no_kinks(void) {
                 }
                 continue;
             }
+
             const double first[2] = {
                 largest_difference(with, &begins, coordinate, range[coordinate], 1000, 1),
                 largest_difference(with, &begins, coordinate, range[coordinate], 4000, 1)};
@@ -966,8 +1019,10 @@ static void equilibrium_carries_the_torque(void) {
         room where;
         gm_mesh *mesh;
         GM_ASSERT_INT(make_mesh(&where, &pair, NULL, NULL, GM_CORNER_ON, 0.0, &mesh), GM_OK);
+
         const double torque = 5e-3 * pair.normal_module * 1e8 * pair.wheel.base_radius;
         int at_corners = 0;
+
         for (int k = 0; k < 100; ++k) {
             gm_test_context("pair %d, position %d", which, k);
             const double angle = 1e-2 * k * pair.pinion.pitch_angle;
@@ -1062,6 +1117,7 @@ static void lines_are_loaded_as_the_overlap_says(void) {
             GM_ASSERT_INT(make_mesh(&where, pair, c.use[0], c.use[1], GM_CORNER_ON, 0.0, &mesh),
                           GM_OK);
             const gm_position position = random_place(&seed, &c, i);
+
             enum { MOST = 20000 };
             static gm_line_load_point points[MOST];
             gm_line_loads loads;
@@ -1069,6 +1125,7 @@ static void lines_are_loaded_as_the_overlap_says(void) {
             GM_ASSERT_INT(gm_mesh_line_loads(mesh, &position, NULL, points,
                                              gm_mesh_line_load_points(mesh), &loads),
                           GM_OK);
+
             gmi_engagement at;
             gmi_corner corners[2];
             (void)gmi_engagement_find(pair, NULL, &at);
@@ -1081,6 +1138,7 @@ static void lines_are_loaded_as_the_overlap_says(void) {
                 const double sign = point->side == GM_DRIVE ? 1.0 : -1.0;
                 const double delta = sign * position.offset - 0.5 * pair->backlash;
                 const double t1 = (point->z - pair->face_start) / pair->face_width;
+
                 const double first = pair->phase_origin[point->side] + sign * position.phase +
                                      sign * pair->face_advance * t1;
                 const double p = pair->transverse_base_pitch;
@@ -1091,6 +1149,8 @@ static void lines_are_loaded_as_the_overlap_says(void) {
                     f = overlap_at(&c, &at, corners, point, delta, first + (index + step) * p,
                                    &edge);
                 }
+
+                /* The stations of an edge carry load without a pressure. */
                 GM_ASSERT_ABS(point->gap, -f, 1e-12 + 1e-13 * pair->center_distance);
                 GM_ASSERT_REL(point->line_load, fmax(-point->gap, 0.0) * per_width, 1e-14);
                 if (edge >= 0 && point->line_load > 0.0) {
@@ -1103,6 +1163,8 @@ static void lines_are_loaded_as_the_overlap_says(void) {
                 }
                 largest = fmax(largest, point->line_load);
             }
+
+            /* Sums and largest of the points are those of the mesh. */
             gm_mesh_result r;
             GM_ASSERT_INT(gm_mesh_evaluate_at(mesh, &position, 0, NULL, &r), GM_OK);
             GM_ASSERT_REL(loads.touching_width,
@@ -1125,6 +1187,7 @@ static void loads_of_spur_lines_are_the_force(void) {
     gm_mesh *mesh;
     GM_ASSERT_INT(make_mesh(&where, &pair, NULL, NULL, GM_CORNER_ON, 0.0, &mesh), GM_OK);
     int edges = 0, alone = 0;
+
     for (int k = 0; k < 400; ++k) {
         gm_position position;
         gm_line_load_point points[400];
@@ -1135,12 +1198,14 @@ static void loads_of_spur_lines_are_the_force(void) {
                                             &position);
         GM_ASSERT_INT(gm_mesh_evaluate_at(mesh, &position, 0, NULL, &r), GM_OK);
         GM_ASSERT_INT(gm_mesh_line_loads(mesh, &position, NULL, points, 400, &loads), GM_OK);
+
         double force = 0.0;
         for (int n = 0; n < loads.points; n += 17) {
             force += points[n].line_load * pair.face_width;
             edges += isnan(points[n].pressure);
             GM_ASSERT_REL(points[n].line_load, points[n + 16].line_load, 1e-12);
         }
+
         GM_ASSERT_REL(force, r.force, 1e-12);
         if (r.contact.drive_pairs == 1) {
             GM_ASSERT_REL(loads.face_load_factor, 1.0, 1e-12);
@@ -1170,6 +1235,7 @@ static void points_slide_as_friction_has_it(void) {
         gears.face_width = width;
         gears.backlash = 80e-6;
         GM_ASSERT_INT(gm_pair_init(&pair, &gears), GM_OK);
+
         gm_mesh_params params = params_with(corners, 0.0);
         params.friction_coefficient = mu;
         params.friction_speed = creep;
@@ -1189,6 +1255,7 @@ static void points_slide_as_friction_has_it(void) {
         position.pinion_speed = speed;
         GM_ASSERT_INT(gm_mesh_evaluate_at(mesh, &position, 0, NULL, &r), GM_OK);
         GM_ASSERT_INT(gm_mesh_line_loads(mesh, &position, NULL, points, 400, &loads), GM_OK);
+
         double loss = 0.0, largest = 0.0;
         for (int n = 0; n < loads.points; n += 17) {
             const double v = points[n].sliding_speed;
@@ -1216,6 +1283,7 @@ static void loads_of_tilted_spur_lines_are_the_force(void) {
     GM_ASSERT_INT(
         gm_mesh_init(&mesh, &params, &pair, NULL, NULL, where.memory, sizeof where.memory), GM_OK);
     int compared = 0, edges = 0;
+
     for (int k = 0; k < 400; ++k) {
         gm_position position;
         gm_line_load_point points[400];
@@ -1226,6 +1294,7 @@ static void loads_of_tilted_spur_lines_are_the_force(void) {
                                             &position);
         GM_ASSERT_INT(gm_mesh_evaluate_at(mesh, &position, GM_WANT_WRENCH, NULL, &r), GM_OK);
         GM_ASSERT_INT(gm_mesh_line_loads(mesh, &position, NULL, points, 400, &loads), GM_OK);
+
         double force = 0.0, moment = 0.0;
         int is_whole = loads.points % 17 == 0, has_edge = 0;
         for (int n = 0; n < loads.points; ++n) {
@@ -1237,6 +1306,7 @@ static void loads_of_tilted_spur_lines_are_the_force(void) {
             force += points[n].line_load * pair.face_width * weight;
             moment += points[n].line_load * pair.face_width * weight * points[n].z;
         }
+
         if (is_whole) {
             const double moved = 0.8e-4 * pair.wheel.tip_radius / pair.face_width;
             GM_ASSERT_REL(force, r.force, moved);

@@ -57,6 +57,7 @@ static void read_record(record *made, const char *folder, const char *name) {
     if (file == NULL) {
         stop("no such record");
     }
+
     made->count = 0;
     while (fgets(line, sizeof line, file) != NULL) {
         char kind[16];
@@ -65,6 +66,8 @@ static void read_record(record *made, const char *folder, const char *name) {
             sscanf(line, " parameter %15s %63[a-z_]", kind, field) != 2) {
             continue;
         }
+
+        /* ` = value "what it is"`, or ` = derived`, or the text alone. */
         const char *binding = strstr(line, " = ");
         const char *description = strstr(line, " \"");
         const int has_default = binding != NULL && binding < description;
@@ -133,10 +136,12 @@ static gm_mesh *library_mesh(void) {
     params.center_distance = 0.085;
     params.face_width = 0.0175;
     params.backlash = 100e-6;
+
     gm_mesh_params law;
     gm_mesh_params_default(&law);
     law.stiffness = 1.05e8;
     law.damping = 844.361;
+
     gm_pair pair;
     gm_mesh *mesh = NULL;
     if (gm_pair_init(&pair, &params) != GM_OK ||
@@ -152,10 +157,54 @@ static void mesh_is_that_of_the_library(void *mesh) {
     gm_mesh_result expected;
     gm_mesh_evaluate(library_mesh(), &state, GM_WANT_FORCE, NULL, &expected);
     gearmesh_modelica_evaluate(mesh, &state.pinion_angle, 4, result, 3);
+
     expect(expected.force > 100.0, "the flanks touch");
     expect(result[0] == expected.pinion_torque && result[1] == expected.wheel_torque &&
                result[2] == expected.force,
            "torques and force are those of the library");
+}
+
+/* What is refused names the parameter or the file, and leaves nothing behind. */
+static void refusals_say_what_is_wrong(const record *gears, const record *law, const char *flanks) {
+    static record wrong;
+    wrong = *law;
+    set(&wrong, "damping", -1.0);
+    expect(strstr(refusal(gears, &wrong, ""), "damping: must be") != NULL, "a parameter is named");
+    expect(strstr(refusal(gears, law, "nowhere.csv"), "nowhere.csv") != NULL, "a file is named");
+
+    wrong = *law;
+    --wrong.count;
+    expect(strstr(refusal(gears, &wrong, ""), "one version") != NULL, "a value is missing");
+
+    expect(refusal(gears, law, flanks)[0] == '\0', "flanks from a file");
+    expect(strstr(refusal_of_halves(gears, law), "opposite hand") != NULL, "halves between bodies");
+}
+
+/* A record as it is, and one that leaves all but stiffness and damping to the library, are the same mesh. */
+static void defaults_are_those_of_the_library(const record *gears, const record *law) {
+    static record plain;
+    plain = *law;
+    for (size_t k = 0; k < plain.count; ++k) {
+        plain.value[k] = 1e60;
+    }
+    set(&plain, "stiffness", 1.05e8);
+    set(&plain, "damping", 844.361);
+
+    for (int k = 0; k < 2; ++k) {
+        void *mesh = new_mesh(gears, k == 0 ? law : &plain, "");
+        mesh_is_that_of_the_library(mesh);
+        gearmesh_modelica_free(mesh);
+    }
+}
+
+/* An error leaves by ModelicaError(), and the mesh may be freed after it. */
+static void a_skipped_tooth_is_refused(void *mesh) {
+    const double too_far[4] = {0.0, 0.5, 0.0, 0.0};
+    if (setjmp(tool_return) == 0) {
+        double result[3];
+        gearmesh_modelica_evaluate(mesh, too_far, 4, result, 3);
+        expect(0, "a state that skips a tooth is refused");
+    }
 }
 
 /* Step 1e-7: a few nanometres, 1e-5 of the penetration; second differences are below 1e-4 of the slope. */
@@ -171,6 +220,7 @@ static void derivative_is_that_of_the_function(void *mesh) {
         }
         gearmesh_modelica_evaluate(mesh, moved, 4, side[k], 3);
     }
+
     gearmesh_modelica_evaluate_der(mesh, state, 4, rate, 4, found, 3);
     for (int i = 0; i < 3; ++i) {
         const double difference = (side[1][i] - side[0][i]) / (2.0 * step);
@@ -184,14 +234,19 @@ static void loads_on_bodies_are_in_balance(void *mesh) {
     const double x = 52e-6;
     double radii[2];
     gearmesh_modelica_base_radii(mesh, radii, 2);
+
+    /* Position, rotation matrix by rows, velocity and angular velocity of each body. */
     const double turn = x / radii[1];
     const double c = cos(turn), s = sin(turn);
     const double pinion[18] = {0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0, 0, 0, 0};
     const double wheel[18] = {0.085, 0, 0, c, -s, 0, s, c, 0, 0, 0, 1, 0, 0, 0, 0, 0, 0};
     double loads[12], result[3];
     gearmesh_modelica_loads(mesh, pinion, 18, wheel, 18, loads, 12);
+
+    /* The same between shafts. */
     const double state[4] = {0.0, -turn, 0.0, 0.0};
     gearmesh_modelica_evaluate(mesh, state, 4, result, 3);
+
     expect(result[2] > 100.0, "the flanks of the bodies touch");
     expect(fabs(loads[5] + result[0]) <= 1e-9 * result[0], "torque taken from the pinion's body");
     expect(fabs(loads[11] + result[1]) <= 1e-9 * result[1], "torque given to the wheel's body");
@@ -200,7 +255,7 @@ static void loads_on_bodies_are_in_balance(void *mesh) {
     }
 }
 
-/* I phi'' of both bodies, as the equations of Examples.GearPair say: RK4, 1e-6 s. */
+/* I phi'' of both bodies, as the equations of Examples.GearPair say. */
 static void motion_of(void *mesh, const double state[4], double rate[4]) {
     double result[3];
     gearmesh_modelica_evaluate(mesh, state, 4, result, 3);
@@ -210,18 +265,21 @@ static void motion_of(void *mesh, const double state[4], double rate[4]) {
     rate[3] = (result[1] - 20.0) / 2.1e-3;
 }
 
+/* By the classical method of Runge and Kutta in steps of 1e-6 s, from where both bodies are accelerated alike. */
 static void print_motion(void *mesh) {
     double radii[2];
     gearmesh_modelica_base_radii(mesh, radii, 2);
     const double sum = radii[0] * radii[0] + radii[1] * radii[1];
     const double torque = radii[1] * (25.0 * radii[0] + 20.0 * radii[1]) / sum;
     const double offset = gearmesh_modelica_static_offset(mesh, 0.0, torque);
+
     const double speed = 104.71975511965977, step = 1e-6;
     double state[4] = {0.0, -offset / radii[1], speed, speed * radii[0] / radii[1]};
     for (int n = 0; n <= 20000; ++n) {
         if (n % 100 == 0) {
             printf("%.9f,%.12g\n", n * step, 1e6 * (radii[0] * state[0] - radii[1] * state[1]));
         }
+
         double rate[4][4], next[4];
         const double share[4] = {0.0, 0.5, 0.5, 1.0};
         for (int stage = 0; stage < 4; ++stage) {
@@ -267,6 +325,8 @@ static void *read_mesh(FILE *file, const char *folder, int mesh) {
     const double gap = number(file);
     const size_t pair_size = read_values(file, pair);
     const size_t law_size = read_values(file, law);
+
+    /* Numbers of tables are passed over: the binding reads them from their files. */
     const int nodes = (int)number(file) * (int)number(file);
     for (int k = 0; k < TABLES && nodes > 0; ++k) {
         snprintf(path[k], PATH_SIZE, "%s/%d_%d.csv", folder, mesh, k);
@@ -286,6 +346,7 @@ static int print_meshes(const char *path, const char *folder) {
     if (setjmp(tool_return) != 0) {
         stop(tool_message);
     }
+
     const int meshes = (int)number(file);
     for (int mesh = 0; mesh < meshes; ++mesh) {
         void *made = read_mesh(file, folder, mesh);
@@ -304,16 +365,12 @@ static int print_meshes(const char *path, const char *folder) {
     return 0;
 }
 
-int main(int argc, char **argv) {
-    if (argc == 4 && strcmp(argv[1], "--meshes") == 0) {
-        return print_meshes(argv[2], argv[3]);
-    }
-    if (argc != 3) {
-        stop("needs a package and a file of flanks");
-    }
-    static record gears, law, plain;
-    read_record(&gears, argv[1], "PairParameters");
-    read_record(&law, argv[1], "MeshParameters");
+/* ---------------------------------------------------------------------------------------------
+ * Program
+ * ------------------------------------------------------------------------------------------- */
+
+/* The records of a package, filled as Examples.GearPair fills them. */
+static void read_gear_pair(record *gears, record *law, const char *package) {
     static const struct {
         const char *name;
         double value;
@@ -325,50 +382,39 @@ int main(int argc, char **argv) {
                    {"center_distance", 0.085},
                    {"face_width", 0.0175},
                    {"backlash", 100e-6}};
+    read_record(gears, package, "PairParameters");
     for (size_t k = 0; k < sizeof drawing / sizeof drawing[0]; ++k) {
-        set(&gears, drawing[k].name, drawing[k].value);
+        set(gears, drawing[k].name, drawing[k].value);
     }
-    set(&law, "stiffness", 1.05e8);
-    set(&law, "damping", 844.361);
 
-    /* What is refused names the parameter or the file, and leaves nothing behind. */
-    plain = law;
-    set(&plain, "damping", -1.0);
-    expect(strstr(refusal(&gears, &plain, ""), "damping: must be") != NULL, "a parameter is named");
-    expect(strstr(refusal(&gears, &law, "nowhere.csv"), "nowhere.csv") != NULL, "a file is named");
-    plain = law;
-    --plain.count;
-    expect(strstr(refusal(&gears, &plain, ""), "one version") != NULL, "a value is missing");
-    expect(refusal(&gears, &law, argv[2])[0] == '\0', "flanks from a file");
-    expect(strstr(refusal_of_halves(&gears, &law), "opposite hand") != NULL,
-           "halves between bodies");
+    read_record(law, package, "MeshParameters");
+    set(law, "stiffness", 1.05e8);
+    set(law, "damping", 844.361);
+}
 
-    /* A record as it is, and one that leaves all but the stiffness to the library, are the same mesh. */
+int main(int argc, char **argv) {
+    if (argc == 4 && strcmp(argv[1], "--meshes") == 0) {
+        return print_meshes(argv[2], argv[3]);
+    }
+    if (argc != 3) {
+        stop("needs a package and a file of flanks");
+    }
+
+    static record gears, law;
+    read_gear_pair(&gears, &law, argv[1]);
+    refusals_say_what_is_wrong(&gears, &law, argv[2]);
+
+    /* From here on nothing may be refused. */
     if (setjmp(tool_return) != 0) {
         stop(tool_message);
     }
-    plain = law;
-    for (size_t k = 0; k < plain.count; ++k) {
-        plain.value[k] = 1e60;
-    }
-    set(&plain, "stiffness", 1.05e8);
-    set(&plain, "damping", 844.361);
-    for (int k = 0; k < 2; ++k) {
-        void *mesh = new_mesh(&gears, k == 0 ? &law : &plain, "");
-        mesh_is_that_of_the_library(mesh);
-        gearmesh_modelica_free(mesh);
-    }
-
+    defaults_are_those_of_the_library(&gears, &law);
     void *mesh = new_mesh(&gears, &law, "");
     derivative_is_that_of_the_function(mesh);
     loads_on_bodies_are_in_balance(mesh);
     print_motion(mesh);
-    const double too_far[4] = {0.0, 0.5, 0.0, 0.0};
-    if (setjmp(tool_return) == 0) {
-        double result[3];
-        gearmesh_modelica_evaluate(mesh, too_far, 4, result, 3);
-        expect(0, "a state that skips a tooth is refused");
-    }
+
+    a_skipped_tooth_is_refused(mesh);
     gearmesh_modelica_free(mesh);
     gearmesh_modelica_free(NULL);
     return failures != 0;
