@@ -521,17 +521,20 @@ static void torques_are_the_slopes_of_the_energy(void) {
         variant v;
         variant_make(&v, k);
         elastic_mesh *m = &v.mesh;
+
         const double arms[2] = {m->pair.pinion.base_radius, m->pair.wheel.base_radius};
         for (int n = 0; n < 12; ++n) {
             const int side = n % 2;
             const double angle = 0.013 + 0.37 * n / m->pair.pinion.teeth;
             const gm_state state = pressed_state(m, angle, pressed_offset(m, side, angle));
             const gm_mesh_result at = evaluate(m, &state, GM_WANT_ENERGY);
+
             const double gain = m->mesh->engagement.is_tilted
                                     ? gmi_tilt_gain(&m->pair, &m->mesh->engagement, side)
                                     : 1.0;
             const double expected[2] = {at.pinion_torque + (gain - 1.0) * at.force * arms[0],
                                         -gain * at.wheel_torque};
+
             for (int gear = 0; gear < 2; ++gear) {
                 gm_test_context("variant %d, state %d, gear %d", k, n, gear);
                 const double h = 2e-6 * m->pair.normal_module / arms[gear];
@@ -543,6 +546,7 @@ static void torques_are_the_slopes_of_the_energy(void) {
                     forget(m);
                     beside[j] = evaluate(m, &there, GM_WANT_ENERGY).energy;
                 }
+
                 const double slope =
                     (8.0 * (beside[2] - beside[1]) - (beside[3] - beside[0])) / (12.0 * h);
                 GM_ASSERT_ABS(slope, expected[gear], 2e-5 * fabs(expected[gear]));
@@ -1360,8 +1364,10 @@ static void line_loads_are_the_force(void) {
             GM_ASSERT_INT(gm_mesh_init(&m.mesh, &law, &m.pair, NULL, NULL, m.mesh_memory, size),
                           GM_OK);
         }
+
         const gm_state state = pressed_state(&m, 0.01, 6e-6);
         const gm_mesh_result r = evaluate(&m, &state, GM_WANT_FORCE);
+
         gm_position position;
         GM_ASSERT_INT(gm_position_from_state(&m.pair, &state, &position), GM_OK);
         gm_line_load_point points[400];
@@ -1379,20 +1385,24 @@ static void line_loads_are_the_force(void) {
             const int is_end = n % 17 == 0 || n % 17 == 16;
             force += p->line_load * gears.face_width / 16.0 * (is_end ? 0.5 : 1.0);
             largest = fmax(largest, p->line_load);
+
             GM_ASSERT_INT(p->side, GM_DRIVE);
             GM_ASSERT_REL(p->pinion_roll_length + p->wheel_roll_length, m.pair.line_of_action,
                           k == 0 ? 1e-12 : 1e-3);
             GM_ASSERT((p->gap < 0.0) == (p->line_load > 0.0));
+
             const gm_gear *pinion = &m.pair.pinion, *wheel = &m.pair.wheel;
             const double both = 30.0 * (1.0 + pinion->base_radius / wheel->base_radius);
             const double pitch_point = pinion->base_radius * tan(m.pair.working_pressure_angle);
             GM_ASSERT_ABS(p->sliding_speed, both * (p->pinion_roll_length - pitch_point), 1e-12);
+
             const double radius = p->pinion_roll_length * p->wheel_roll_length /
                                   (p->pinion_roll_length + p->wheel_roll_length);
             GM_ASSERT_REL(p->pressure,
                           sqrt(p->line_load * 206e9 / (2.0 * 0.91) / (3.14159265358979 * radius)),
                           1e-9);
         }
+
         GM_ASSERT_REL(force, r.force, 2e-3);
 
         /* With constant stiffness the lines end where the tilted face does: some 2e-4 radii before the last station. */
@@ -1483,23 +1493,42 @@ static void teeth_that_hardly_reach_each_other_are_refused(void) {
     free(memory);
 }
 
-static void bad_input_is_refused(void) {
+/* ---------------------------------------------------------------------------------------------
+ * Bad input
+ * ------------------------------------------------------------------------------------------- */
+
+static void workspaces_that_are_too_small_are_refused(void) {
     const gm_pair_params gears = spur62();
-    gm_mesh_params law = elastic_law();
+    const gm_mesh_params law = elastic_law();
     elastic_mesh m;
-    gm_mesh_result r;
     GM_ASSERT_INT(make(&m, &gears, &law, NULL, NULL), GM_OK);
+
+    /* None at all. */
+    gm_mesh_result r;
     const gm_state state = pressed_state(&m, 0.01, 4e-6);
     GM_ASSERT_INT(gm_mesh_evaluate(m.mesh, &state, GM_WANT_FORCE, NULL, &r), GM_ERR_NULL);
     GM_ASSERT_NAN(r.force);
+
     gm_workspace *workspace;
     const size_t room = gm_workspace_size(m.mesh);
     GM_ASSERT_INT(gm_workspace_init(&workspace, m.mesh, m.workspace_memory, room - 1),
                   GM_ERR_MEMORY);
     GM_ASSERT_INT(gm_workspace_init(&workspace, m.mesh, NULL, room), GM_ERR_NULL);
     GM_ASSERT_INT(gm_workspace_init(&workspace, NULL, m.workspace_memory, room), GM_ERR_NULL);
+    release(&m);
+}
 
-    /* Changes of the flanks: what is missing, of other gears, or less than none. */
+/* What is missing, of other gears, or less than none. */
+static void changes_of_flanks_that_cannot_be_are_refused(void) {
+    const gm_pair_params gears = spur62();
+    const gm_mesh_params law = elastic_law();
+    elastic_mesh m;
+    gm_position position;
+    GM_ASSERT_INT(make(&m, &gears, &law, NULL, NULL), GM_OK);
+    const gm_state state = pressed_state(&m, 0.01, 4e-6);
+    GM_ASSERT_INT(gm_position_from_state(&m.pair, &state, &position), GM_OK);
+
+    /* Flanks of a pinion with one tooth less. */
     uint64_t seed = 3u;
     gm_pair_params other_gears = spur62();
     other_gears.pinion_teeth = 61;
@@ -1508,13 +1537,14 @@ static void bad_input_is_refused(void) {
     GM_ASSERT_INT(gm_pair_init(&other, &other_gears), GM_OK);
     random_flanks flanks;
     random_flanks_make(&flanks, &seed, &other, 0, 1e-6);
-    gm_position position;
-    GM_ASSERT_INT(gm_position_from_state(&m.pair, &state, &position), GM_OK);
+
+    /* No change is one of no force. */
     const gm_flanks *none[1] = {NULL}, *others[1] = {flanks.flanks};
     double by = 1.0;
     GM_ASSERT_INT(gm_mesh_force_by_flanks(m.mesh, &position, none, none, 1, m.workspace, &by),
                   GM_OK);
     GM_ASSERT(by == 0.0);
+
     GM_ASSERT_INT(gm_mesh_force_by_flanks(m.mesh, &position, others, none, 1, m.workspace, &by),
                   GM_ERR_TOOTH);
     GM_ASSERT_NAN(by);
@@ -1522,6 +1552,7 @@ static void bad_input_is_refused(void) {
     GM_ASSERT_INT(gm_mesh_force_by_flanks(m.mesh, &position, none, none, 1, NULL, &by),
                   GM_ERR_NULL);
     GM_ASSERT_NAN(by);
+
     GM_ASSERT_INT(gm_mesh_force_by_flanks(m.mesh, &position, NULL, none, 1, m.workspace, &by),
                   GM_ERR_NULL);
     GM_ASSERT_INT(gm_mesh_force_by_flanks(m.mesh, &position, none, none, 1, m.workspace, NULL),
@@ -1530,8 +1561,9 @@ static void bad_input_is_refused(void) {
                   GM_ERR_PARAMETER);
     random_flanks_free(&flanks);
     release(&m);
+}
 
-    /* Parameters, with the field that is at fault. */
+static void parameters_out_of_range_are_named(void) {
     const struct {
         const char *field;
         size_t place;
@@ -1545,6 +1577,7 @@ static void bad_input_is_refused(void) {
         {"wheel_bore_radius", offsetof(gm_mesh_params, wheel_bore_radius), -1.0},
         {"reference_torque", offsetof(gm_mesh_params, reference_torque), 0.0},
     };
+    gm_mesh_params law;
     const char *field;
     for (size_t k = 0; k < sizeof wrong / sizeof wrong[0]; ++k) {
         law = elastic_law();
@@ -1552,54 +1585,99 @@ static void bad_input_is_refused(void) {
         GM_ASSERT_INT(gm_mesh_params_check(&law, &field, NULL), GM_ERR_PARAMETER);
         GM_ASSERT_STRING(field, wrong[k].field);
     }
+
     law = elastic_law();
     law.stations = 98;
     GM_ASSERT_INT(gm_mesh_params_check(&law, &field, NULL), GM_ERR_PARAMETER);
     GM_ASSERT_STRING(field, "stations");
+}
 
-    /* What belongs to elastic teeth is refused to other laws, and without memory. */
+static void teeth_need_their_memory(void) {
+    const gm_pair_params gears = spur62();
+    const gm_mesh_params law = elastic_law();
     gm_pair pair;
-    gm_mesh_stiffness stiffness;
-    law = elastic_law();
     GM_ASSERT_INT(gm_pair_init(&pair, &gears), GM_OK);
     const size_t size = gm_mesh_size(&law, &pair);
     double *const memory = malloc(size);
+
+    const char *field;
     gm_mesh *mesh;
     GM_ASSERT_INT(gm_mesh_check_teeth(&law, &pair, NULL, NULL, memory, size), GM_OK);
     GM_ASSERT_INT(gm_mesh_check_teeth(&law, &pair, &field, NULL, NULL, size), GM_ERR_NULL);
     GM_ASSERT_INT(gm_mesh_check_teeth(NULL, &pair, &field, NULL, memory, size), GM_ERR_NULL);
     GM_ASSERT_INT(gm_mesh_check_teeth(&law, &pair, &field, NULL, memory, size - 1), GM_ERR_MEMORY);
     GM_ASSERT_INT(gm_mesh_init(&mesh, &law, &pair, NULL, NULL, memory, size - 1), GM_ERR_MEMORY);
+    free(memory);
+}
+
+/* What belongs to elastic teeth is refused to a constant stiffness, which needs no workspace. */
+static void other_laws_have_no_elastic_teeth(void) {
+    const gm_pair_params gears = spur62();
+    gm_mesh_params law;
+    gm_mesh_params_default(&law);
     law.law = GM_LAW_CONSTANT;
     law.stiffness = 1e8;
-    GM_ASSERT_INT(gm_mesh_check_teeth(&law, &pair, &field, NULL, memory, size), GM_ERR_PARAMETER);
-    GM_ASSERT_INT(gm_mesh_init(&mesh, &law, &pair, NULL, NULL, memory, size), GM_OK);
+    gm_pair pair;
+    gm_mesh *mesh;
+    GM_ASSERT_INT(gm_pair_init(&pair, &gears), GM_OK);
+    double memory[512];
+    const char *field;
+    GM_ASSERT_INT(gm_mesh_check_teeth(&law, &pair, &field, NULL, memory, sizeof memory),
+                  GM_ERR_PARAMETER);
+    GM_ASSERT_INT(gm_mesh_init(&mesh, &law, &pair, NULL, NULL, memory, sizeof memory), GM_OK);
+
+    gm_workspace *workspace;
     GM_ASSERT(gm_workspace_size(mesh) == 0 && gm_workspace_size(NULL) == 0);
     GM_ASSERT_INT(gm_workspace_init(&workspace, mesh, NULL, 0), GM_OK);
     GM_ASSERT(workspace == NULL);
     GM_ASSERT_INT(gm_workspace_init(NULL, mesh, NULL, 0), GM_ERR_NULL);
+
+    gm_mesh_stiffness stiffness;
     GM_ASSERT_INT(gm_mesh_elastic_stiffness(mesh, &stiffness), GM_ERR_PARAMETER);
     GM_ASSERT_NAN(stiffness.mesh_mean);
     GM_ASSERT_INT(gm_mesh_elastic_stiffness(NULL, &stiffness), GM_ERR_NULL);
     GM_ASSERT_INT(gm_mesh_elastic_stiffness(mesh, NULL), GM_ERR_NULL);
+}
 
-    /* The simple model has the mean stiffness of elastic teeth, and neither lines nor a workspace. */
-    law = elastic_law();
+/* The simple model has the mean stiffness of elastic teeth, and neither lines nor a workspace. */
+static void the_simple_model_is_as_stiff_and_has_no_lines(void) {
+    const gm_pair_params gears = spur62();
+    gm_mesh_params law = elastic_law();
     law.model = GM_MODEL_SIMPLE;
+    gm_pair pair;
+    gm_mesh *mesh;
+    GM_ASSERT_INT(gm_pair_init(&pair, &gears), GM_OK);
+    const size_t size = gm_mesh_size(&law, &pair);
+    double *const memory = malloc(size);
     GM_ASSERT_INT(gm_mesh_init(&mesh, &law, &pair, NULL, NULL, memory, size), GM_OK);
+
+    gm_mesh_stiffness stiffness;
     GM_ASSERT_INT(gm_mesh_elastic_stiffness(mesh, &stiffness), GM_OK);
     GM_ASSERT_REL(gm_mesh_mean_stiffness(mesh), stiffness.mesh_mean, 1e-12);
-    GM_ASSERT(gm_workspace_size(mesh) == 0);
-    GM_ASSERT_INT(gm_mesh_evaluate(mesh, &state, GM_WANT_FORCE, NULL, &r), GM_OK);
+
+    gm_mesh_result r;
     const gm_position somewhere = {0, 0, 0.0, 1e-6, 0.0, 0.0};
+    GM_ASSERT(gm_workspace_size(mesh) == 0);
+    GM_ASSERT_INT(gm_mesh_evaluate_at(mesh, &somewhere, GM_WANT_FORCE, NULL, &r), GM_OK);
+
     gm_line_loads loads;
-    law.model = GM_MODEL_3D;
     GM_ASSERT_INT(gm_mesh_line_loads(mesh, &somewhere, NULL, NULL, 0, &loads), GM_ERR_NULL);
     GM_ASSERT_INT(gm_mesh_line_loads(mesh, NULL, NULL, NULL, 0, &loads), GM_ERR_NULL);
     GM_ASSERT_INT(gm_mesh_line_loads(mesh, &somewhere, NULL, NULL, 0, NULL), GM_ERR_NULL);
     GM_ASSERT_INT(gm_mesh_line_load_points(NULL), 0);
+    free(memory);
+}
 
-    /* Factors of teeth, a posed pair out of mesh, and more lines than there is room for. */
+/* Factors of single teeth, a pose out of mesh, and more lines than there is room for. */
+static void teeth_poses_and_faces_out_of_range_are_refused(void) {
+    const gm_pair_params gears = spur62();
+    gm_mesh_params law = elastic_law();
+    gm_pair pair;
+    GM_ASSERT_INT(gm_pair_init(&pair, &gears), GM_OK);
+    const size_t size = gm_mesh_size(&law, &pair);
+    double *const memory = malloc(size);
+
+    const char *field;
     double factors[62];
     for (int k = 0; k < 62; ++k) {
         factors[k] = k == 61 ? 101.0 : 1.0;
@@ -1607,12 +1685,15 @@ static void bad_input_is_refused(void) {
     law.wheel_tooth_stiffness = factors;
     GM_ASSERT_INT(gm_mesh_check_teeth(&law, &pair, &field, NULL, memory, size), GM_ERR_GEOMETRY);
     GM_ASSERT_STRING(field, "wheel_tooth_stiffness");
+
+    gm_mesh *mesh;
     law.wheel_tooth_stiffness = NULL;
     law.pose.axial_shift = 1.0;
     GM_ASSERT_INT(gm_mesh_check_teeth(&law, &pair, &field, NULL, memory, size),
                   GM_POSE_OUT_OF_MESH);
     GM_ASSERT_INT(gm_mesh_init(&mesh, &law, &pair, NULL, NULL, memory, size), GM_POSE_OUT_OF_MESH);
     free(memory);
+
     gm_pair_params wide = paper();
     wide.face_width = 0.2;
     law = elastic_law();
@@ -1621,35 +1702,39 @@ static void bad_input_is_refused(void) {
     double little[8];
     GM_ASSERT_INT(gm_mesh_init(&mesh, &law, &pair, NULL, NULL, little, sizeof little),
                   GM_ERR_GEOMETRY);
+}
 
-    /* Teeth that have no fillet, a bore in the rim, and few teeth that are undercut. */
-    gm_pair_params deep = spur62();
-    gm_pair_params few = spur62(), short_ring = ring();
+/* No fillet, a bore in the rim, few teeth that are undercut; of a ring a bore, and a rack that is too short. */
+static void teeth_outside_the_model_are_refused(void) {
+    gm_pair_params deep = spur62(), few = spur62(), short_ring = ring();
     deep.wheel_rack_dedendum = 1.75;
     few.pinion_teeth = 12;
     few.center_distance = 74e-3;
     short_ring.wheel_rack_dedendum = 0.6;
-    const gm_pair_params cases[] = {deep, gears, few, ring(), short_ring};
+
+    const gm_pair_params cases[] = {deep, spur62(), few, ring(), short_ring};
     const char *const fields[] = {"wheel_rack_fillet_radius", "pinion_bore_radius",
                                   "pinion_profile_shift", "wheel_bore_radius",
                                   "wheel_start_radius"};
     for (int k = 0; k < 5; ++k) {
-        const char *requirement;
-        law = elastic_law();
+        gm_mesh_params law = elastic_law();
         law.pinion_bore_radius = k == 1 ? 61e-3 : (double)NAN;
         law.wheel_bore_radius = k == 3 ? 61e-3 : (double)NAN;
+        gm_pair pair;
         GM_ASSERT_INT(gm_pair_init(&pair, &cases[k]), GM_OK);
-        const size_t room_of_case = gm_mesh_size(&law, &pair);
-        void *const memory_of_case = malloc(room_of_case);
-        GM_ASSERT_INT(gm_mesh_init(&mesh, &law, &pair, NULL, NULL, memory_of_case, room_of_case),
-                      GM_ERR_GEOMETRY);
+
+        gm_mesh *mesh;
+        const size_t size = gm_mesh_size(&law, &pair);
+        void *const memory = malloc(size);
+        GM_ASSERT_INT(gm_mesh_init(&mesh, &law, &pair, NULL, NULL, memory, size), GM_ERR_GEOMETRY);
         GM_ASSERT(mesh == NULL);
-        GM_ASSERT_INT(
-            gm_mesh_check_teeth(&law, &pair, &field, &requirement, memory_of_case, room_of_case),
-            GM_ERR_GEOMETRY);
+
+        const char *field, *requirement;
+        GM_ASSERT_INT(gm_mesh_check_teeth(&law, &pair, &field, &requirement, memory, size),
+                      GM_ERR_GEOMETRY);
         GM_ASSERT_STRING(field, fields[k]);
         GM_ASSERT(requirement != NULL);
-        free(memory_of_case);
+        free(memory);
     }
 }
 
@@ -1683,7 +1768,14 @@ int main(int argc, char **argv) {
         GM_TEST(line_loads_are_the_force),
         GM_TEST(doubtful_loads_are_told),
         GM_TEST(teeth_that_hardly_reach_each_other_are_refused),
-        GM_TEST(bad_input_is_refused),
+        GM_TEST(workspaces_that_are_too_small_are_refused),
+        GM_TEST(changes_of_flanks_that_cannot_be_are_refused),
+        GM_TEST(parameters_out_of_range_are_named),
+        GM_TEST(teeth_need_their_memory),
+        GM_TEST(other_laws_have_no_elastic_teeth),
+        GM_TEST(the_simple_model_is_as_stiff_and_has_no_lines),
+        GM_TEST(teeth_poses_and_faces_out_of_range_are_refused),
+        GM_TEST(teeth_outside_the_model_are_refused),
     };
     return gm_test_main("unit.elastic_mesh", tests, GM_TEST_COUNT(tests), argc, argv);
 }
