@@ -12,11 +12,31 @@
 #include "gearmesh/gearmesh.h"
 #include "gm_test.h"
 
-/** Room for any mesh of the constant law. */
+/** Room for any mesh of the constant law, with corners too. */
 typedef union plain_mesh {
     double alignment;
-    char memory[4096];
+    char memory[8192];
 } plain_mesh;
+
+/** Stiffness of plain_law() (N/m). */
+static const double plain_stiffness = 1e8;
+
+/** Constant stiffness without damping, with corners or without. */
+GM_TEST_UNUSED static gm_mesh_params plain_law(int corner) {
+    gm_mesh_params law;
+    gm_mesh_params_default(&law);
+    law.stiffness = plain_stiffness;
+    law.corner_contact = corner;
+    return law;
+}
+
+/** A mesh of any such law between the flanks of both gears, NULL without any. Returns the status of gm_mesh_init(). */
+GM_TEST_UNUSED static int plain_mesh_of(plain_mesh *room, const gm_pair *pair,
+                                        const gm_flanks *const use[2], const gm_mesh_params *law,
+                                        gm_mesh **mesh) {
+    return gm_mesh_init(mesh, law, pair, use != NULL ? use[0] : NULL, use != NULL ? use[1] : NULL,
+                        room->memory, sizeof room->memory);
+}
 
 /** Returns the status of gm_mesh_init(); *mesh is NULL on an error. */
 GM_TEST_UNUSED static int plain_mesh_make(plain_mesh *room, const gm_pair *pair,

@@ -317,6 +317,13 @@ void random_flanks_free(random_flanks *f) {
     free(f->memory);
 }
 
+void random_flanks_grow(const random_flanks *f, int side, double by) {
+    for (int tooth = 0; tooth < gm_flanks_teeth(f->flanks); ++tooth) {
+        GM_ASSERT_INT(gm_flanks_set_pitch(f->flanks, side, tooth, f->model.pitch[side][tooth] + by),
+                      GM_OK);
+    }
+}
+
 /* ---------------------------------------------------------------------------------------------
  * Cases
  * ------------------------------------------------------------------------------------------- */
@@ -375,6 +382,25 @@ int random_mixed_case_make(random_case *c, uint64_t *seed, int i) {
     const int with_flanks = i % 4 != 0;
     return i % 5 == 2 ? random_ring_case_make(c, seed, with_flanks)
                       : random_case_make(c, seed, with_flanks);
+}
+
+gm_position random_pressed(uint64_t *seed, const gm_pair *pair, int i) {
+    gm_position position;
+    const double side = i % 5 == 0 ? -1.0 : 1.0;
+    const double depth = gm_test_uniform(seed, 0.5e-3, 8e-3) * pair->normal_module;
+    (void)gm_position_from_pinion_angle(pair, gm_test_uniform(seed, 0.0, 6.0),
+                                        side * (0.5 * pair->backlash + depth), 0.0, &position);
+    return position;
+}
+
+gm_pose random_pose(uint64_t *seed, const gm_pair *pair, double tilt) {
+    const double m = pair->normal_module;
+    const double tilted = tilt * pair->transverse_base_pitch / pair->face_width;
+    const gm_pose pose = {
+        gm_test_uniform(seed, -5e-3, 5e-3) * m, gm_test_uniform(seed, -1e-3, 1e-3) * m,
+        gm_test_uniform(seed, -1e-2, 1e-2) * m, gm_test_uniform(seed, -tilted, tilted),
+        gm_test_uniform(seed, -tilted, tilted)};
+    return pose;
 }
 
 void random_case_free(random_case *c) {

@@ -46,6 +46,9 @@ void random_flanks_make(random_flanks *f, uint64_t *seed, const gm_pair *pair, i
                         double amplitude);
 void random_flanks_free(random_flanks *f);
 
+/** All flanks of a side of the library's form as they were drawn, and `by` higher. */
+void random_flanks_grow(const random_flanks *f, int side, double by);
+
 /** Draws a whole case; returns the status of gm_pair_init(). Free it in any case. */
 int random_case_make(random_case *c, uint64_t *seed, int with_flanks);
 int random_ring_case_make(random_case *c, uint64_t *seed, int with_flanks);
@@ -56,5 +59,11 @@ void random_case_free(random_case *c);
 
 /** Sets the angles so that x comes out as asked for, up to the rounding of the wheel angle. */
 void random_case_place(random_case *c, double pinion_angle, double offset);
+
+/** Place i of a test: flanks pressed by up to some thousandths of the module, every fifth on the coast side. */
+gm_position random_pressed(uint64_t *seed, const gm_pair *pair, int i);
+
+/** A pose of up to some thousandths of the module; the ends of tilted faces move by up to `tilt` base pitches. */
+gm_pose random_pose(uint64_t *seed, const gm_pair *pair, double tilt);
 
 #endif /* RANDOM_GEARS_H */

@@ -10,17 +10,11 @@
 #include "friction.h"
 #include "gm_test.h"
 #include "meshing.h"
+#include "plain_mesh.h"
 #include "random_gears.h"
 #include "reference_gear.h"
 
 enum { POINTS = 4000 };
-
-static const double stiffness_of_all = 1e8;
-
-typedef union room {
-    double alignment;
-    char memory[8192];
-} room;
 
 /* NREL 5 MW, stage 3, and a helical and a spur pair of the tests. */
 static gm_pair pair_of(int which) {
@@ -46,23 +40,20 @@ static gm_pair pair_of(int which) {
 }
 
 static gm_mesh_params params_with(int corner, double damping) {
-    gm_mesh_params params;
-    gm_mesh_params_default(&params);
-    params.stiffness = stiffness_of_all;
+    gm_mesh_params params = plain_law(corner);
     params.damping = damping;
-    params.corner_contact = corner;
     return params;
 }
 
-static int make_mesh(room *where, const gm_pair *pair, const gm_flanks *pinion,
+static int make_mesh(plain_mesh *where, const gm_pair *pair, const gm_flanks *pinion,
                      const gm_flanks *wheel, int corner, double damping, gm_mesh **mesh) {
     const gm_mesh_params params = params_with(corner, damping);
     return gm_mesh_init(mesh, &params, pair, pinion, wheel, where->memory, sizeof where->memory);
 }
 
 /* With friction, of the law of its index. */
-static int make_rough(room *where, const random_case *c, double damping, int law, double speed,
-                      gm_mesh **mesh) {
+static int make_rough(plain_mesh *where, const random_case *c, double damping, int law,
+                      double speed, gm_mesh **mesh) {
     gm_mesh_params params = params_with(GM_CORNER_ON, damping);
     params.friction_law = law;
     params.friction_coefficient = 0.1;
@@ -295,19 +286,10 @@ static int random_corner_case(random_case *c, uint64_t *seed, int i) {
     return status == GM_OK && fabs(c->pair.face_advance) < 4.0 * c->pair.transverse_base_pitch;
 }
 
-static gm_position random_place(uint64_t *seed, const random_case *c, int i) {
-    gm_position position;
-    const double side = i % 5 == 0 ? -1.0 : 1.0;
-    const double depth = gm_test_uniform(seed, 0.5e-3, 8e-3) * c->pair.normal_module;
-    (void)gm_position_from_pinion_angle(&c->pair, gm_test_uniform(seed, 0.0, 6.0),
-                                        side * (0.5 * c->pair.backlash + depth), 0.0, &position);
-    return position;
-}
-
 /* What both sides are together, and that the overlap times the stiffness is the force. */
 static void check_contact(const gm_mesh_result *r, double rate) {
     const gm_penetration *contact = &r->contact;
-    const double k = stiffness_of_all;
+    const double k = plain_stiffness;
     GM_ASSERT_REL(contact->penetration, contact->drive - contact->coast, 1e-15);
     GM_ASSERT_REL(contact->drive_rate, rate * contact->drive_contact, 1e-15);
     GM_ASSERT_REL(contact->coast_rate, -rate * contact->coast_contact, 1e-15);
@@ -325,13 +307,13 @@ static void forces_are_sums_over_points(void) {
     int met = 0, at_corners = 0;
     for (int i = 0; i < 90; ++i) {
         random_case c;
-        room where;
+        plain_mesh where;
         gm_mesh *mesh;
         if (random_corner_case(&c, &seed, i)) {
             gm_test_context("case %d", i);
             GM_ASSERT_INT(make_mesh(&where, &c.pair, c.use[0], c.use[1], GM_CORNER_ON, 0.0, &mesh),
                           GM_OK);
-            gm_position position = random_place(&seed, &c, i);
+            gm_position position = random_pressed(&seed, &c.pair, i);
             position.offset_rate = 0.01; /* of no force: without damping */
             gm_mesh_result r;
             const int wanted = GM_WANT_WRENCH | GM_WANT_DERIVATIVES | GM_WANT_ENERGY;
@@ -342,7 +324,7 @@ static void forces_are_sums_over_points(void) {
             brute_side(&c, &position, GM_DRIVE, &b[GM_DRIVE]);
             brute_side(&c, &position, GM_COAST, &b[GM_COAST]);
             const double largest = fmax(b[0].sum, b[1].sum);
-            const double k = stiffness_of_all, r_bp = c.pair.pinion.base_radius,
+            const double k = plain_stiffness, r_bp = c.pair.pinion.base_radius,
                          r_bw = c.pair.wheel.base_radius;
 
             /* A few points of so many are all that can be told apart. */
@@ -397,7 +379,7 @@ static void friction_is_that_of_the_bodies_at_each_point(void) {
     int met = 0, at_corners = 0;
     for (int i = 0; i < 90; ++i) {
         random_case c;
-        room where;
+        plain_mesh where;
         gm_mesh *mesh;
         if (random_corner_case(&c, &seed, i)) {
             gm_test_context("case %d", i);
@@ -405,13 +387,13 @@ static void friction_is_that_of_the_bodies_at_each_point(void) {
 
             /* The mesh, rolling at a speed. */
             GM_ASSERT_INT(make_rough(&where, &c, 0.0, GM_FRICTION_CONSTANT, creep, &mesh), GM_OK);
-            gm_position position = random_place(&seed, &c, i);
+            gm_position position = random_pressed(&seed, &c.pair, i);
             position.pinion_speed = i % 3 == 0 ? -40.0 : 100.0;
             gm_mesh_result r;
             GM_ASSERT_INT(gm_mesh_evaluate_at(mesh, &position, GM_WANT_WRENCH, NULL, &r), GM_OK);
 
             /* The same by points. */
-            const double k = stiffness_of_all, sign = c.pair.wheel.sign;
+            const double k = plain_stiffness, sign = c.pair.wheel.sign;
             const brute rough = {.coefficient = 0.1,
                                  .creep = creep,
                                  .pinion_speed = position.pinion_speed,
@@ -473,10 +455,10 @@ static double iso_coefficient(const gm_pair *pair, double force, double pinion_s
 static void compare_friction(int i, double *torque_off, double *loss_off, double *beyond) {
     random_case c = {.pair = pair_of(i % 2 == 0 ? 1 : 3)};
     const gm_pair *pair = &c.pair;
-    const double creep = i % 4 < 2 ? 1.0 : 0.03, k = stiffness_of_all;
+    const double creep = i % 4 < 2 ? 1.0 : 0.03, k = plain_stiffness;
     const int law = i % 3 == 2 ? GM_FRICTION_ISO14179 : GM_FRICTION_CONSTANT;
     gm_test_context("case %d", i);
-    room rough_room, smooth_room;
+    plain_mesh rough_room, smooth_room;
     gm_mesh *rough, *smooth;
     GM_ASSERT_INT(make_rough(&rough_room, &c, 0.0, law, creep, &rough), GM_OK);
     GM_ASSERT_INT(make_mesh(&smooth_room, pair, NULL, NULL, GM_CORNER_ON, 0.0, &smooth), GM_OK);
@@ -551,7 +533,7 @@ static void friction_takes_its_loss_from_the_bodies(void) {
     int met = 0, lossy = 0;
     for (int i = 0; i < 200; ++i) {
         random_case c;
-        room rough_room, smooth_room;
+        plain_mesh rough_room, smooth_room;
         gm_mesh *rough, *smooth;
         if (random_corner_case(&c, &seed, i)) {
             gm_test_context("case %d", i);
@@ -564,7 +546,7 @@ static void friction_takes_its_loss_from_the_bodies(void) {
                 make_mesh(&smooth_room, pair, c.use[0], c.use[1], GM_CORNER_ON, damping, &smooth),
                 GM_OK);
 
-            gm_motion motion = {.position = random_place(&seed, &c, i)};
+            gm_motion motion = {.position = random_pressed(&seed, &c.pair, i)};
             motion.position.pinion_speed = gm_test_uniform(&seed, -100.0, 100.0);
             if (i % 4 != 0) {
                 motion.pose = (gm_pose){gm_test_uniform(&seed, -0.01, 0.01) * m,
@@ -651,7 +633,7 @@ static void derivatives_are_those_of_differences(void) {
     int met = 0, rejected = 0;
     for (int i = 0; i < 300; ++i) {
         random_case c;
-        room where;
+        plain_mesh where;
         gm_mesh *mesh;
         if (random_corner_case(&c, &seed, i)) {
             /* A mesh of each kind, at a place of its own, and nearly always in a pose. */
@@ -666,7 +648,7 @@ static void derivatives_are_those_of_differences(void) {
             const double m = pair->normal_module;
             const double tilt =
                 i % 3 == 0 ? 0.02 * pair->transverse_base_pitch / pair->face_width : 0.0;
-            gm_motion motion = {.position = random_place(&seed, &c, i)};
+            gm_motion motion = {.position = random_pressed(&seed, &c.pair, i)};
             motion.position.offset_rate = gm_test_uniform(&seed, -1e-3, 1e-3) * m;
             motion.position.pinion_speed = is_rough ? 50.0 : 0.0;
 
@@ -735,7 +717,7 @@ static void torques_follow_the_roll_of_tips(void) {
         const gm_pair *pair = &c.pair;
         const double pitch = pair->transverse_base_pitch;
         const double damping = which % 2 == 0 ? 0.0 : 1e5;
-        room where;
+        plain_mesh where;
         gm_mesh *mesh;
         GM_ASSERT_INT(make_rough(&where, &c, damping, GM_FRICTION_CONSTANT, 0.1, &mesh), GM_OK);
         for (int i = 0; i < 200; ++i) {
@@ -865,7 +847,7 @@ static void energy_is_kept_over_a_mesh_cycle(void) {
         for (int corner = GM_CORNER_OFF; corner <= GM_CORNER_ON; ++corner) {
             gm_test_context("pair %d, corner %d", which, corner);
             const gm_pair pair = pair_of(which);
-            room where;
+            plain_mesh where;
             gm_mesh *mesh;
             GM_ASSERT_INT(make_mesh(&where, &pair, NULL, NULL, corner, 0.0, &mesh), GM_OK);
 
@@ -938,7 +920,7 @@ static void nothing_jumps_and_helical_gears_have_no_kinks(void) {
     for (int which = 0; which < 4; ++which) {
         const gm_pair pair = pair_of(which);
         const int is_helical = pair.face_advance != 0.0;
-        room with_room, without_room;
+        plain_mesh with_room, without_room;
         gm_mesh *with, *without;
         GM_ASSERT_INT(make_mesh(&with_room, &pair, NULL, NULL, GM_CORNER_ON, 0.0, &with), GM_OK);
         GM_ASSERT_INT(make_mesh(&without_room, &pair, NULL, NULL, GM_CORNER_OFF, 0.0, &without),
@@ -1016,7 +998,7 @@ static void nothing_jumps_and_helical_gears_have_no_kinks(void) {
 static void equilibrium_carries_the_torque(void) {
     for (int which = 0; which < 4; ++which) {
         const gm_pair pair = pair_of(which);
-        room where;
+        plain_mesh where;
         gm_mesh *mesh;
         GM_ASSERT_INT(make_mesh(&where, &pair, NULL, NULL, GM_CORNER_ON, 0.0, &mesh), GM_OK);
 
@@ -1043,7 +1025,7 @@ static void torques_of_friction_have_no_jumps(void) {
         random_case c = {0};
         c.pair = pair_of(which);
         const gm_pair *pair = &c.pair;
-        room where;
+        plain_mesh where;
         gm_mesh *mesh;
         GM_ASSERT_INT(make_rough(&where, &c, 0.0, GM_FRICTION_CONSTANT, 0.01, &mesh), GM_OK);
         double largest[2][2] = {{0.0, 0.0}, {0.0, 0.0}};
@@ -1109,14 +1091,14 @@ static void lines_are_loaded_as_the_overlap_says(void) {
     int met = 0, edges = 0;
     for (int i = 0; i < 90; ++i) {
         random_case c;
-        room where;
+        plain_mesh where;
         gm_mesh *mesh;
         if (random_corner_case(&c, &seed, i)) {
             gm_test_context("case %d", i);
             const gm_pair *pair = &c.pair;
             GM_ASSERT_INT(make_mesh(&where, pair, c.use[0], c.use[1], GM_CORNER_ON, 0.0, &mesh),
                           GM_OK);
-            const gm_position position = random_place(&seed, &c, i);
+            const gm_position position = random_pressed(&seed, &c.pair, i);
 
             enum { MOST = 20000 };
             static gm_line_load_point points[MOST];
@@ -1130,7 +1112,7 @@ static void lines_are_loaded_as_the_overlap_says(void) {
             gmi_corner corners[2];
             (void)gmi_engagement_find(pair, NULL, &at);
             (void)gmi_corners_init(pair, &at, corners);
-            const double per_width = stiffness_of_all / pair->face_width;
+            const double per_width = plain_stiffness / pair->face_width;
             double largest = 0.0;
             for (int k = 0; k < loads.points; ++k) {
                 /* Which of the parallel lines it is on follows from the teeth. */
@@ -1183,7 +1165,7 @@ static void lines_are_loaded_as_the_overlap_says(void) {
 /* Ideal spur gears: each pair bears the same all along the face, also the one that comes in at an edge. */
 static void loads_of_spur_lines_are_the_force(void) {
     const gm_pair pair = spur_pair();
-    room where;
+    plain_mesh where;
     gm_mesh *mesh;
     GM_ASSERT_INT(make_mesh(&where, &pair, NULL, NULL, GM_CORNER_ON, 0.0, &mesh), GM_OK);
     int edges = 0, alone = 0;
@@ -1239,7 +1221,7 @@ static void points_slide_as_friction_has_it(void) {
         gm_mesh_params params = params_with(corners, 0.0);
         params.friction_coefficient = mu;
         params.friction_speed = creep;
-        room where;
+        plain_mesh where;
         gm_mesh *mesh;
         GM_ASSERT_INT(
             gm_mesh_init(&mesh, &params, &pair, NULL, NULL, where.memory, sizeof where.memory),
@@ -1278,7 +1260,7 @@ static void loads_of_tilted_spur_lines_are_the_force(void) {
     gm_mesh_params params = params_with(GM_CORNER_ON, 0.0);
     params.pose.skew = 0.5e-4;
     params.pose.inclination = -0.3e-4;
-    room where;
+    plain_mesh where;
     gm_mesh *mesh;
     GM_ASSERT_INT(
         gm_mesh_init(&mesh, &params, &pair, NULL, NULL, where.memory, sizeof where.memory), GM_OK);
@@ -1351,7 +1333,7 @@ static void what_corners_do_not_go_with_is_refused(void) {
     cut.center_distance = 70e-3;
     cut.face_width = 10e-3;
     const gm_pair undercut = make_pair(&cut);
-    room where;
+    plain_mesh where;
     gm_mesh *mesh;
     GM_ASSERT_INT(make_mesh(&where, &undercut, NULL, NULL, GM_CORNER_ON, 0.0, &mesh),
                   GM_ERR_GEOMETRY);

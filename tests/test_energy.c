@@ -5,54 +5,10 @@
  * The energy stored in a mesh: against the second model, closed forms, and the forces whose work it is. Of elastic teeth
  * test_elastic_mesh.c has check values, and test_body.c the balance of power between two bodies.
  */
-#include "flank.h"
 #include "gm_test.h"
+#include "plain_mesh.h"
 #include "random_gears.h"
 #include "reference_gear.h"
-
-static const double stiffness_of_all = 1e8;
-
-typedef union room {
-    double alignment;
-    char memory[8192];
-} room;
-
-static gm_mesh_params law_of(int corner, const gm_pose *pose) {
-    gm_mesh_params params;
-    gm_mesh_params_default(&params);
-    params.stiffness = stiffness_of_all;
-    params.corner_contact = corner;
-    if (pose != NULL) {
-        params.pose = *pose;
-    }
-    return params;
-}
-
-static int make_mesh(room *where, const gm_pair *pair, const gm_flanks *const use[2],
-                     const gm_mesh_params *law, gm_mesh **mesh) {
-    return gm_mesh_init(mesh, law, pair, use == NULL ? NULL : use[0], use == NULL ? NULL : use[1],
-                        where->memory, sizeof where->memory);
-}
-
-/* Pressed by up to some thousandths of the module, every fifth on the coast side. */
-static gm_position random_place(uint64_t *seed, const gm_pair *pair, int i) {
-    gm_position position;
-    const double side = i % 5 == 0 ? -1.0 : 1.0;
-    const double depth = gm_test_uniform(seed, 0.5e-3, 8e-3) * pair->normal_module;
-    (void)gm_position_from_pinion_angle(pair, gm_test_uniform(seed, 0.0, 6.0),
-                                        side * (0.5 * pair->backlash + depth), 0.0, &position);
-    return position;
-}
-
-static gm_pose random_pose(uint64_t *seed, const gm_pair *pair, double tilt) {
-    const double m = pair->normal_module;
-    const double tilted = tilt * pair->transverse_base_pitch / pair->face_width;
-    const gm_pose pose = {
-        gm_test_uniform(seed, -5e-3, 5e-3) * m, gm_test_uniform(seed, -1e-3, 1e-3) * m,
-        gm_test_uniform(seed, -1e-2, 1e-2) * m, gm_test_uniform(seed, -tilted, tilted),
-        gm_test_uniform(seed, -tilted, tilted)};
-    return pose;
-}
 
 /* ---------------------------------------------------------------------------------------------
  * Against others
@@ -64,14 +20,14 @@ static void it_is_that_of_the_second_model(void) {
     int touching = 0;
     for (int i = 0; i < 1200; ++i) {
         random_case c;
-        room where;
+        plain_mesh room;
         gm_mesh *mesh;
         gm_mesh_result r;
         gm_test_context("case %d", i);
         GM_ASSERT_INT(random_mixed_case_make(&c, &seed, i), GM_OK);
-        const gm_mesh_params law = law_of(GM_CORNER_OFF, NULL);
+        const gm_mesh_params law = plain_law(GM_CORNER_OFF);
         const gm_state state = {.pinion_angle = c.pinion_angle, .wheel_angle = c.wheel_angle};
-        GM_ASSERT_INT(make_mesh(&where, &c.pair, c.use, &law, &mesh), GM_OK);
+        GM_ASSERT_INT(plain_mesh_of(&room, &c.pair, c.use, &law, &mesh), GM_OK);
         GM_ASSERT_INT(gm_mesh_evaluate(mesh, &state, GM_WANT_ENERGY, NULL, &r), GM_OK);
 
         const double longest = fmax(c.params.center_distance, (double)c.model.reference_radius[1]);
@@ -81,7 +37,7 @@ static void it_is_that_of_the_second_model(void) {
                        -e, &low);
         model_evaluate(&c.model, c.model_use[0], c.model_use[1], c.pinion_angle, c.wheel_angle, e,
                        e, &high);
-        const double half = 0.5 * stiffness_of_all;
+        const double half = 0.5 * plain_stiffness;
         const double least = half * (double)(low.square[0] + low.square[1]);
         const double most = half * (double)(high.square[0] + high.square[1]);
         GM_ASSERT(r.energy >= least * (1.0 - 1e-12));
@@ -98,14 +54,17 @@ static void between_ideal_flanks_it_is_that_of_one_spring(void) {
     uint64_t seed = UINT64_C(302);
     for (int i = 0; i < 300; ++i) {
         random_case c;
-        room where;
+        plain_mesh room;
         gm_mesh *mesh;
         gm_test_context("case %d", i);
         GM_ASSERT_INT((i % 4 == 0 ? random_ring_case_make : random_case_make)(&c, &seed, 0), GM_OK);
         const gm_pose pose = random_pose(&seed, &c.pair, 0.0);
-        const gm_mesh_params law = law_of(GM_CORNER_OFF, i % 2 == 0 ? NULL : &pose);
-        if (make_mesh(&where, &c.pair, NULL, &law, &mesh) == GM_OK) {
-            const gm_position position = random_place(&seed, &c.pair, i);
+        gm_mesh_params law = plain_law(GM_CORNER_OFF);
+        if (i % 2 != 0) {
+            law.pose = pose;
+        }
+        if (plain_mesh_of(&room, &c.pair, NULL, &law, &mesh) == GM_OK) {
+            const gm_position position = random_pressed(&seed, &c.pair, i);
             gm_mesh_result r;
             GM_ASSERT_INT(gm_mesh_evaluate_at(mesh, &position, GM_WANT_ENERGY, NULL, &r), GM_OK);
             double expected = 0.0;
@@ -115,7 +74,7 @@ static void between_ideal_flanks_it_is_that_of_one_spring(void) {
             if (r.coast_force > 0.0) {
                 expected += r.coast_force * r.coast_force / r.contact.coast_contact;
             }
-            GM_ASSERT_REL(r.energy, expected / (2.0 * stiffness_of_all), 1e-13);
+            GM_ASSERT_REL(r.energy, expected / (2.0 * plain_stiffness), 1e-13);
         }
         random_case_free(&c);
     }
@@ -123,12 +82,12 @@ static void between_ideal_flanks_it_is_that_of_one_spring(void) {
 
 static void of_the_simple_model_it_is_that_of_its_spring(void) {
     const gm_pair pair = reference_pair(REFERENCE_FACE_WIDTH);
-    gm_mesh_params law = law_of(GM_CORNER_OFF, NULL);
-    room where;
+    gm_mesh_params law = plain_law(GM_CORNER_OFF);
+    plain_mesh room;
     gm_mesh *mesh;
     law.model = GM_MODEL_SIMPLE;
     law.simple_stiffness = 3e8;
-    GM_ASSERT_INT(make_mesh(&where, &pair, NULL, &law, &mesh), GM_OK);
+    GM_ASSERT_INT(plain_mesh_of(&room, &pair, NULL, &law, &mesh), GM_OK);
     const double depth[3] = {5e-6, -5e-6, 0.02};
     for (int i = 0; i < 3; ++i) {
         const double x = copysign(0.5 * pair.backlash, depth[i]) + depth[i];
@@ -144,15 +103,6 @@ static void of_the_simple_model_it_is_that_of_its_spring(void) {
  * The work of the force
  * ------------------------------------------------------------------------------------------- */
 
-/* All flanks of the pinion's side grow by so much. */
-static void grow(random_case *c, int side, double by) {
-    gmi_tables *tables = &c->flanks[GM_PINION].flanks->side[side];
-    for (int tooth = 0; tooth < c->pair.pinion.teeth; ++tooth) {
-        tables->pitch[tooth] += by;
-    }
-    tables->peak += by;
-}
-
 /*
  * Material that is added evenly moves no line and no place in a table: the energy grows by the force, whatever flanks,
  * reliefs, tilts and edges. By differences of two steps, which agree but where a line or a cell begins to touch.
@@ -167,27 +117,31 @@ static void material_adds_the_force(void) {
         gm_test_context("case %d", i);
         GM_ASSERT_INT(made, GM_OK);
         const gm_pose pose = random_pose(&seed, &c.pair, i % 3 == 0 ? 0.0 : 0.02);
-        const gm_mesh_params law =
-            law_of(i % 2 == 0 ? GM_CORNER_OFF : GM_CORNER_ON, i % 6 < 2 ? NULL : &pose);
-        const gm_position position = random_place(&seed, &c.pair, i);
+        gm_mesh_params law = plain_law(i % 2 == 0 ? GM_CORNER_OFF : GM_CORNER_ON);
+        if (i % 6 >= 2) {
+            law.pose = pose;
+        }
+        const gm_position position = random_pressed(&seed, &c.pair, i);
         const int side = i % 5 == 0 ? GM_COAST : GM_DRIVE;
         const double h = 2e-5 * c.pair.normal_module;
+
+        /* The energy without more material, and with two steps less and more. */
         double energy[5] = {0.0}, force = 0.0;
         int status = c.use[GM_PINION] == NULL ? GM_ERR_NULL : GM_OK;
         for (int k = 0; k < 5 && status == GM_OK; ++k) {
-            room where;
+            plain_mesh room;
             gm_mesh *mesh;
             gm_mesh_result r;
-            const double by = k == 0 ? 0.0 : (k < 3 ? k - 3 : k - 2) * h;
-            grow(&c, side, by);
-            status = make_mesh(&where, &c.pair, c.use, &law, &mesh);
+            random_flanks_grow(&c.flanks[GM_PINION], side,
+                               k == 0 ? 0.0 : (k < 3 ? k - 3 : k - 2) * h);
+            status = plain_mesh_of(&room, &c.pair, c.use, &law, &mesh);
             if (status == GM_OK) {
                 status = gm_mesh_evaluate_at(mesh, &position, GM_WANT_ENERGY, NULL, &r);
             }
-            grow(&c, side, -by);
             energy[k] = r.energy;
             force = k == 0 ? side == GM_DRIVE ? r.drive_force : r.coast_force : force;
         }
+
         const double slope = (energy[3] - energy[2]) / (2.0 * h);
         const double wider = (energy[4] - energy[1]) / (4.0 * h);
         if (status == GM_OK && force > 0.0 && fabs(wider - slope) < 1e-5 * force) {
@@ -237,7 +191,7 @@ static void torques_and_forces_are_its_gradient(void) {
     int compared = 0;
     for (int i = 0; i < 300; ++i) {
         random_case c;
-        room where;
+        plain_mesh room;
         gm_mesh *mesh;
         const int made =
             i % 4 == 0 ? random_ring_case_make(&c, &seed, 0) : random_case_make(&c, &seed, 0);
@@ -247,11 +201,11 @@ static void torques_and_forces_are_its_gradient(void) {
         c.params.wheel_face_width = 1.4 * c.params.face_width;
         GM_ASSERT_INT(gm_pair_init(&c.pair, &c.params), GM_OK);
         const gm_pair *pair = &c.pair;
-        const gm_mesh_params law = law_of(GM_CORNER_ON, NULL);
-        gm_motion motion = {.position = random_place(&seed, pair, i),
+        const gm_mesh_params law = plain_law(GM_CORNER_ON);
+        gm_motion motion = {.position = random_pressed(&seed, pair, i),
                             .pose = random_pose(&seed, pair, 0.0)};
         gm_mesh_result r;
-        int status = make_mesh(&where, pair, NULL, &law, &mesh);
+        int status = plain_mesh_of(&room, pair, NULL, &law, &mesh);
         if (status == GM_OK) {
             status = gm_mesh_evaluate_posed(mesh, &motion, GM_WANT_WRENCH, NULL, &r);
         }
@@ -293,10 +247,10 @@ static void over_a_mesh_cycle_it_is_the_work(void) {
     for (int which = 0; which < 2; ++which) {
         enum { STEPS = 4000 };
         const gm_pair *pair = &pairs[which];
-        const gm_mesh_params law = law_of(GM_CORNER_ON, NULL);
-        room where;
+        const gm_mesh_params law = plain_law(GM_CORNER_ON);
+        plain_mesh room;
         gm_mesh *mesh;
-        GM_ASSERT_INT(make_mesh(&where, pair, NULL, &law, &mesh), GM_OK);
+        GM_ASSERT_INT(plain_mesh_of(&room, pair, NULL, &law, &mesh), GM_OK);
         const double m = pair->normal_module, pitch = pair->transverse_base_pitch;
         double first = 0.0, work = 0.0, largest = 0.0, before = 0.0;
         for (int k = 0; k <= STEPS; ++k) {
@@ -331,11 +285,11 @@ static void over_a_mesh_cycle_it_is_the_work(void) {
 static void it_is_zero_apart_and_nan_unasked(void) {
     const gm_pair pair = reference_pair(REFERENCE_FACE_WIDTH);
     for (int corner = GM_CORNER_OFF; corner <= GM_CORNER_ON; ++corner) {
-        const gm_mesh_params law = law_of(corner, NULL);
-        room where;
+        const gm_mesh_params law = plain_law(corner);
+        plain_mesh room;
         gm_mesh *mesh;
         gm_mesh_result r;
-        GM_ASSERT_INT(make_mesh(&where, &pair, NULL, &law, &mesh), GM_OK);
+        GM_ASSERT_INT(plain_mesh_of(&room, &pair, NULL, &law, &mesh), GM_OK);
         gm_position position = {.phase = 1e-3, .offset = 0.49 * pair.backlash};
         GM_ASSERT_INT(gm_mesh_evaluate_at(mesh, &position, GM_WANT_ENERGY, NULL, &r), GM_OK);
         GM_ASSERT(r.energy == 0.0);
@@ -354,23 +308,23 @@ static void it_depends_on_the_place_alone(void) {
     int compared = 0;
     for (int i = 0; i < 120; ++i) {
         random_case c;
-        room where[2];
+        plain_mesh room[2];
         gm_mesh *mesh[2];
         gm_mesh_result still, busy, unasked;
         gm_test_context("case %d", i);
         GM_ASSERT_INT(random_mixed_case_make(&c, &seed, i), GM_OK);
         const int corner = i % 3 == 0 ? GM_CORNER_ON : GM_CORNER_OFF;
-        gm_mesh_params law = law_of(corner, NULL);
-        gm_motion motion = {.position = random_place(&seed, &c.pair, i),
+        gm_mesh_params law = plain_law(corner);
+        gm_motion motion = {.position = random_pressed(&seed, &c.pair, i),
                             .pose = random_pose(&seed, &c.pair, i % 4 == 0 ? 0.0 : 0.01)};
-        int status = make_mesh(&where[0], &c.pair, c.use, &law, &mesh[0]);
+        int status = plain_mesh_of(&room[0], &c.pair, c.use, &law, &mesh[0]);
         law.damping = 1e3;
         law.friction_coefficient = i % 2 == 0 ? 0.1 : 0.0;
         if (status == GM_OK) {
             status = gm_mesh_evaluate_posed(mesh[0], &motion, GM_WANT_ENERGY, NULL, &still);
         }
         if (status == GM_OK) {
-            GM_ASSERT_INT(make_mesh(&where[1], &c.pair, c.use, &law, &mesh[1]), GM_OK);
+            GM_ASSERT_INT(plain_mesh_of(&room[1], &c.pair, c.use, &law, &mesh[1]), GM_OK);
             motion.position.offset_rate = 0.01;
             motion.position.pinion_speed = 20.0;
             motion.pose_rate.center_distance_change = i % 5 < 2 ? 0.0 : 1e-3;

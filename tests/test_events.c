@@ -4,12 +4,8 @@
 /* Event indicators: their roots are where an evaluation counts other pairs, and there are no others. */
 #include "gearmesh/gearmesh.h"
 #include "gm_test.h"
+#include "plain_mesh.h"
 #include "reference_gear.h"
-
-typedef union room {
-    double alignment;
-    char memory[8192];
-} room;
 
 /* A way of both gears: over four base pitches forwards, in and out of contact. */
 typedef struct way {
@@ -131,7 +127,7 @@ static void roots_are_where_pairs_change(void) {
             gm_mesh_params_default(&params);
             params.stiffness = 1e8;
             params.corner_contact = kind % 2 == 0 ? GM_CORNER_OFF : GM_CORNER_ON;
-            room where;
+            plain_mesh where;
             gm_mesh *mesh;
             GM_ASSERT_INT(
                 gm_mesh_init(&mesh, &params, &pair, NULL, NULL, where.memory, sizeof where.memory),
@@ -174,7 +170,7 @@ static void corners_reach_as_far_as_the_highest_flanks(void) {
     gm_mesh_params_default(&params);
     params.stiffness = 1e8;
     params.corner_contact = GM_CORNER_ON;
-    room places[2];
+    plain_mesh places[2];
     gm_mesh *high, *ideal;
     GM_ASSERT_INT(gm_mesh_init(&high, &params, &pair, flanks, NULL, places[0].memory,
                                sizeof places[0].memory),
@@ -198,7 +194,7 @@ static void lines_of_elastic_teeth_are_those_without_load(void) {
     gm_mesh_params_default(&params);
     params.stiffness = 1e8;
     params.corner_contact = GM_CORNER_OFF;
-    room where;
+    plain_mesh where;
     gm_mesh *stiff, *elastic;
     GM_ASSERT_INT(
         gm_mesh_init(&stiff, &params, &pair, NULL, NULL, where.memory, sizeof where.memory), GM_OK);
@@ -229,7 +225,7 @@ static void contact_is_told_by_the_clearance(void) {
     gm_flanks *flanks;
     GM_ASSERT_INT(gm_flanks_init(&flanks, &sizes, memory, sizeof memory), GM_OK);
     GM_ASSERT_INT(gm_flanks_set_pitch(flanks, GM_DRIVE, 3, 7e-6), GM_OK);
-    room where;
+    plain_mesh where;
     gm_mesh *mesh;
     gm_mesh_params params;
     gm_mesh_params_default(&params);

@@ -5,42 +5,24 @@
  * Line loads with constant stiffness: the largest one, which lies anywhere on a line. Of corners test_corner_mesh.c has the
  * points themselves, of elastic teeth test_elastic_mesh.c.
  */
-#include "flank.h"
 #include "gm_test.h"
+#include "plain_mesh.h"
 #include "random_gears.h"
-
-static const double stiffness_of_all = 1e8;
-
-typedef union room {
-    double alignment;
-    char memory[8192];
-} room;
-
-static int make_mesh(room *where, const random_case *c, int corner, const gm_pose *pose,
-                     gm_mesh **mesh) {
-    gm_mesh_params law;
-    gm_mesh_params_default(&law);
-    law.stiffness = stiffness_of_all;
-    law.corner_contact = corner;
-    law.pose = *pose;
-    return gm_mesh_init(mesh, &law, &c->pair, c->use[0], c->use[1], where->memory,
-                        sizeof where->memory);
-}
 
 /* The second model cuts each line at all grid lines and edges. Not where a line just ends or begins, which rounding moves. */
 static void largest_line_load_is_that_of_the_second_model(void) {
     uint64_t seed = UINT64_C(311);
-    const gm_pose none = {0.0, 0.0, 0.0, 0.0, 0.0};
+    const gm_mesh_params law = plain_law(GM_CORNER_OFF);
     int compared = 0, inside = 0;
     for (int i = 0; i < 800; ++i) {
         random_case c;
-        room where;
+        plain_mesh room;
         gm_mesh *mesh;
         gm_position position;
         gm_line_loads load;
         gm_test_context("case %d", i);
         GM_ASSERT_INT(random_mixed_case_make(&c, &seed, i), GM_OK);
-        GM_ASSERT_INT(make_mesh(&where, &c, GM_CORNER_OFF, &none, &mesh), GM_OK);
+        GM_ASSERT_INT(plain_mesh_of(&room, &c.pair, c.use, &law, &mesh), GM_OK);
         const gm_state state = {.pinion_angle = c.pinion_angle, .wheel_angle = c.wheel_angle};
         GM_ASSERT_INT(gm_position_from_state(&c.pair, &state, &position), GM_OK);
         const int points = gm_mesh_line_load_points(mesh);
@@ -55,7 +37,7 @@ static void largest_line_load_is_that_of_the_second_model(void) {
             model_evaluate(&c.model, c.model_use[0], c.model_use[1], c.pinion_angle, c.wheel_angle,
                            k == 0 ? -e : e, k == 0 ? -e : e, &m);
             bounds[k] =
-                stiffness_of_all / c.pair.face_width * (double)fmaxl(m.largest[0], m.largest[1]);
+                plain_stiffness / c.pair.face_width * (double)fmaxl(m.largest[0], m.largest[1]);
         }
         if (bounds[0] > 0.0) {
             GM_ASSERT(load.largest_line_load >= bounds[0] * (1.0 - 1e-9));
@@ -75,15 +57,6 @@ static void largest_line_load_is_that_of_the_second_model(void) {
     GM_ASSERT(inside > 100); /* stations alone would not do */
 }
 
-/* All flanks of the pinion's side lose so much. */
-static void thin(random_case *c, int side, double by) {
-    gmi_tables *tables = &c->flanks[GM_PINION].flanks->side[side];
-    for (int tooth = 0; tooth < c->pair.pinion.teeth; ++tooth) {
-        tables->pitch[tooth] -= by;
-    }
-    tables->peak -= by;
-}
-
 /*
  * The largest overlap is the material that has to go until nothing touches any more: with a part of 1e-3 less gone there is
  * still a force, with as much more none. Also between tilted axes, and beyond tips.
@@ -97,48 +70,44 @@ static void as_much_material_gone_and_nothing_touches(void) {
             i % 5 == 0 ? random_ring_case_make(&c, &seed, 1) : random_case_make(&c, &seed, 1);
         gm_test_context("case %d", i);
         GM_ASSERT_INT(made, GM_OK);
-        const double m = c.pair.normal_module;
-        const double tilt =
-            i % 3 == 0 ? 0.0 : 0.02 * c.pair.transverse_base_pitch / c.pair.face_width;
-        const gm_pose pose = {
-            gm_test_uniform(&seed, -5e-3, 5e-3) * m, gm_test_uniform(&seed, -1e-3, 1e-3) * m,
-            gm_test_uniform(&seed, -1e-2, 1e-2) * m, gm_test_uniform(&seed, -tilt, tilt),
-            gm_test_uniform(&seed, -tilt, tilt)};
-        const int corner = i % 2 == 0 ? GM_CORNER_OFF : GM_CORNER_ON;
+
+        /* Every third without tilts, every second with corners, every seventh on the coast side. */
+        gm_mesh_params law = plain_law(i % 2 == 0 ? GM_CORNER_OFF : GM_CORNER_ON);
+        law.pose = random_pose(&seed, &c.pair, i % 3 == 0 ? 0.0 : 0.02);
         const int side = i % 7 == 0 ? GM_COAST : GM_DRIVE;
+        const double depth = gm_test_uniform(&seed, 0.5e-3, 5e-3) * c.pair.normal_module;
+        const double x = (side == GM_DRIVE ? 1.0 : -1.0) * (0.5 * c.pair.backlash + depth);
         gm_position position;
-        (void)gm_position_from_pinion_angle(
-            &c.pair, gm_test_uniform(&seed, 0.0, 6.0),
-            (side == GM_DRIVE ? 1.0 : -1.0) *
-                (0.5 * c.pair.backlash + gm_test_uniform(&seed, 0.5e-3, 5e-3) * m),
-            0.0, &position);
-        room where;
+        (void)gm_position_from_pinion_angle(&c.pair, gm_test_uniform(&seed, 0.0, 6.0), x, 0.0,
+                                            &position);
+
+        /* Helical gears whose pinion has a table to take from. */
+        plain_mesh room;
         gm_mesh *mesh;
         gm_line_loads load;
         gm_mesh_result r;
         int status = c.use[GM_PINION] == NULL || c.pair.face_advance == 0.0 ? GM_ERR_NULL : GM_OK;
         if (status == GM_OK) {
-            status = make_mesh(&where, &c, corner, &pose, &mesh);
+            status = plain_mesh_of(&room, &c.pair, c.use, &law, &mesh);
         }
         if (status == GM_OK) {
             (void)gm_mesh_evaluate_at(mesh, &position, GM_WANT_FORCE, NULL, &r);
             status = gm_mesh_line_loads(mesh, &position, NULL, NULL, 0, &load);
         }
-        const double other =
-            status == GM_OK ? side == GM_DRIVE ? r.coast_force : r.drive_force : 1.0;
-        if (other == 0.0 && load.largest_line_load > 0.0) {
-            const double overlap = load.largest_line_load * c.pair.face_width / stiffness_of_all;
+
+        /* Only where the other flanks, which stay as they are, carry nothing. */
+        if (status == GM_OK && (side == GM_DRIVE ? r.coast_force : r.drive_force) == 0.0 &&
+            load.largest_line_load > 0.0) {
+            const double overlap = load.largest_line_load * c.pair.face_width / plain_stiffness;
             for (int k = 0; k < 2; ++k) {
-                const double by = overlap * (k == 0 ? 0.999 : 1.001);
-                thin(&c, side, by);
-                GM_ASSERT_INT(make_mesh(&where, &c, corner, &pose, &mesh), GM_OK);
+                random_flanks_grow(&c.flanks[GM_PINION], side, -overlap * (k == 0 ? 0.999 : 1.001));
+                GM_ASSERT_INT(plain_mesh_of(&room, &c.pair, c.use, &law, &mesh), GM_OK);
                 GM_ASSERT_INT(gm_mesh_evaluate_at(mesh, &position, GM_WANT_FORCE, NULL, &r), GM_OK);
                 GM_ASSERT((r.drive_force + r.coast_force > 0.0) == (k == 0));
-                thin(&c, side, -by);
             }
             ++compared;
-            tilted += tilt > 0.0;
-            cornered += corner == GM_CORNER_ON;
+            tilted += i % 3 != 0;
+            cornered += law.corner_contact == GM_CORNER_ON;
         }
         random_case_free(&c);
     }

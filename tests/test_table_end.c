@@ -9,6 +9,7 @@
  */
 #include "gearmesh/gearmesh.h"
 #include "gm_test.h"
+#include "plain_mesh.h"
 #include "reference_gear.h"
 
 enum { FACE_NODES = 4, CELLS = 24, MOST_MORE = 3, WIDE = CELLS + 1 + MOST_MORE };
@@ -141,11 +142,6 @@ static void compare_results(const gm_mesh_result *got, const gm_mesh_result *exp
                     sizeof(gm_wrench) / sizeof(double), little);
 }
 
-typedef union room {
-    double alignment;
-    char memory[8192];
-} room;
-
 enum { WANT_ALL = GM_WANT_DERIVATIVES | GM_WANT_WRENCH | GM_WANT_PAIRS | GM_WANT_ENERGY };
 
 /* One place: as prepared in the pose, as it moves there, its tangent, its line loads. */
@@ -157,7 +153,7 @@ static void compare_at(const two_drawings *two, const gm_mesh_params *law, doubl
     int pairs[2][2];
     double x = 0.0;
     for (int k = 0; k < 2; ++k) {
-        room rooms[2];
+        plain_mesh rooms[2];
         gm_mesh *posed, *drawn;
         GM_ASSERT_INT(gm_mesh_init(&posed, law, &two->pair[k], two->flanks[k][GM_PINION],
                                    two->flanks[k][GM_WHEEL], &rooms[0], sizeof rooms[0]),
@@ -286,7 +282,7 @@ static void lines_go_deeper_without_a_jump(void) {
         gm_mesh_params law;
         gm_mesh_params_default(&law);
         law.stiffness = 1e8;
-        room memory;
+        plain_mesh memory;
         gm_mesh *mesh;
         GM_ASSERT_INT(gm_mesh_init(&mesh, &law, &two.pair[0], two.flanks[0][GM_PINION],
                                    two.flanks[0][GM_WHEEL], &memory, sizeof memory),
@@ -335,7 +331,7 @@ static void equilibria_and_caches_see_the_same_flanks(void) {
     gm_mesh_params_default(&law);
     law.stiffness = 1e8;
     law.pose.center_distance_change = distance_for(&two.pair[0], -1.7 * two.cell[GM_PINION]);
-    room rooms[2];
+    plain_mesh rooms[2];
     gm_mesh *meshes[2];
     for (int k = 0; k < 2; ++k) {
         GM_ASSERT_INT(gm_mesh_init(&meshes[k], &law, &two.pair[k], two.flanks[k][GM_PINION],
@@ -385,7 +381,7 @@ static void pairs_are_counted_with_the_same_flanks(void) {
     gm_mesh_params_default(&law);
     law.stiffness = 1e8;
     law.pose.center_distance_change = distance_for(&two.pair[0], -2.0 * two.cell[GM_PINION]);
-    room memory;
+    plain_mesh memory;
     gm_mesh *mesh;
     GM_ASSERT_INT(gm_mesh_init(&mesh, &law, &two.pair[0], two.flanks[0][GM_PINION],
                                two.flanks[0][GM_WHEEL], &memory, sizeof memory),
