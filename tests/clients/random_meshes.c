@@ -7,6 +7,8 @@
  *
  *     random_meshes MESHES.txt
  */
+#include "parameter_places.h"
+
 #include <gearmesh/gearmesh.h>
 #include <inttypes.h>
 #include <math.h>
@@ -15,23 +17,6 @@
 #include <string.h>
 
 enum { TABLES = 3, NODES_MAX = 64 };
-
-/* The fields of the parameters in the order of the header, generated from it. */
-typedef struct place {
-    size_t offset;
-    int is_integer;
-} place;
-
-#define REAL(type, field)                                                                          \
-    { offsetof(type, field), 0 }
-#define INTEGER(type, field)                                                                       \
-    { offsetof(type, field), 1 }
-static const place pair_places[] = {
-#include "pair_parameters.inc"
-};
-static const place law_places[] = {
-#include "mesh_parameters.inc"
-};
 
 static void stop(const char *what) {
     fprintf(stderr, "random_meshes: %s\n", what);
@@ -46,16 +31,12 @@ static double number(FILE *file) {
     return value;
 }
 
-static void read_fields(FILE *file, void *params, const place *places, size_t count) {
+static void read_fields(FILE *file, void *params, const parameter_place *places, size_t count) {
     if ((size_t)number(file) != count) {
         stop("not the parameters of this header");
     }
     for (size_t k = 0; k < count; ++k) {
-        const double value = number(file);
-        char *field = (char *)params + places[k].offset;
-        const int integer = places[k].is_integer ? (int)value : 0;
-        memcpy(field, places[k].is_integer ? (const void *)&integer : (const void *)&value,
-               places[k].is_integer ? sizeof integer : sizeof value);
+        parameter_set(params, &places[k], number(file));
     }
 }
 
@@ -107,8 +88,8 @@ static void read_mesh(FILE *file, random_mesh *made) {
     gm_pair_params_default(&drawing);
     gm_mesh_params_default(&law);
     made->gap = number(file);
-    read_fields(file, &drawing, pair_places, sizeof pair_places / sizeof pair_places[0]);
-    read_fields(file, &law, law_places, sizeof law_places / sizeof law_places[0]);
+    read_fields(file, &drawing, pair_places, PAIR_PLACES);
+    read_fields(file, &law, law_places, LAW_PLACES);
 
     /* Of the pinion, of the wheel, and of the pinion's second half, in um. */
     const int rows = (int)number(file), columns = (int)number(file);

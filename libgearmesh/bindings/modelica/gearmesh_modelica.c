@@ -3,6 +3,7 @@
 #include "gearmesh_modelica.h"
 
 #include "file_mesh.h"
+#include "parameter_places.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -16,35 +17,11 @@ enum { MESSAGE_SIZE = 1200 };
 /* Beyond every range of a parameter: not given. */
 static const double derived = 1e60;
 
-/* Where the values of the records belong, in their order. */
-typedef struct place {
-    size_t offset;
-    int is_integer;
-} place;
-
-#define REAL(type, field)                                                                          \
-    { offsetof(type, field), 0 }
-#define INTEGER(type, field)                                                                       \
-    { offsetof(type, field), 1 }
-static const place pair_places[] = {
-#include "pair_parameters.inc"
-};
-static const place law_places[] = {
-#include "mesh_parameters.inc"
-};
-
 /* Values that are given; the others stay what they are, the defaults. */
-static void fill(void *params, const place *places, const double *values, size_t count) {
+static void fill(void *params, const parameter_place *places, const double *values, size_t count) {
     for (size_t k = 0; k < count; ++k) {
-        char *field = (char *)params + places[k].offset;
-        if (values[k] >= derived) {
-            continue;
-        }
-        if (places[k].is_integer) {
-            const int value = (int)values[k];
-            memcpy(field, &value, sizeof value);
-        } else {
-            memcpy(field, &values[k], sizeof values[k]);
+        if (!(values[k] >= derived)) { /* NaN is for the library to refuse */
+            parameter_set(params, &places[k], values[k]);
         }
     }
 }
@@ -67,8 +44,7 @@ void *gearmesh_modelica_new(const double *pair, size_t pair_size, const double *
                             const char *wheel_pitch, const char *pinion_second_half,
                             const char *pinion_second_half_pitch, const char *wheel_second_half,
                             const char *wheel_second_half_pitch) {
-    need(pair_size == sizeof pair_places / sizeof pair_places[0] &&
-             law_size == sizeof law_places / sizeof law_places[0],
+    need(pair_size == PAIR_PLACES && law_size == LAW_PLACES,
          "GearMesh: package and library must be of one version");
 
     file_mesh_params params = {
