@@ -519,6 +519,14 @@ static side_force enter(const side_view *view, gmi_elastic_work *work,
     return entering;
 }
 
+/* Before its lines are known. */
+static void view_init(side_view *view, const gm_mesh *mesh, int side, gm_workspace *workspace) {
+    *view = (side_view){.mesh = mesh,
+                        .elastic = mesh->elastic,
+                        .side = side,
+                        .softness = workspace->softness[side]};
+}
+
 /* Lines, their flanks, and the deflections of all teeth. */
 static int balance(side_view *view, const gm_position *position, int wanted, gmi_elastic_work *work,
                    gmi_elastic_result *result) {
@@ -541,10 +549,8 @@ static int balance(side_view *view, const gm_position *position, int wanted, gmi
 
 static int elastic_sum(const gm_mesh *mesh, int side, const gm_position *position, int wanted,
                        gm_workspace *workspace, gmi_side_sum *total) {
-    side_view view = {.mesh = mesh,
-                      .elastic = mesh->elastic,
-                      .side = side,
-                      .softness = workspace->softness[side]};
+    side_view view;
+    view_init(&view, mesh, side, workspace);
     gmi_elastic_work *work = &workspace->side[side];
     gmi_elastic_result result;
     const int status = balance(&view, position, wanted, work, &result);
@@ -660,10 +666,8 @@ int gmi_elastic_side_by_flanks(const gm_mesh *mesh, int side, const gm_position 
     if (gmi_side_is_clear(&mesh->engagement, &mesh->side[side], side, position->offset)) {
         return GM_OK;
     }
-    side_view view = {.mesh = mesh,
-                      .elastic = mesh->elastic,
-                      .side = side,
-                      .softness = workspace->softness[side]};
+    side_view view;
+    view_init(&view, mesh, side, workspace);
     gmi_elastic_work *work = &workspace->side[side];
     gmi_elastic_result result;
     const int status = balance(&view, position, GMI_SUM, work, &result);
