@@ -378,7 +378,11 @@ class Script(unittest.TestCase):
         for name, pairs, error, force in found:
             row = re.search(rf"\| {name.replace('constant', 'constant stiffness').replace('elastic', 'elastic teeth')} \| "
                             rf"{pairs} \| {error} um \| .* \| (\d+ N|none) \|", page)[1]
-            self.assertEqual(row, "none" if int(force) < 300 else f"{force} N")
+            # The largest step of a vibration: a load that is 1e-14 larger or smaller moves it by 1.4 % to either side.
+            if int(force) < 300:
+                self.assertEqual(row, "none")
+            else:
+                self.assertAlmostEqual(int(row.split()[0]) / int(force), 1.0, delta=0.025)
 
     def test_pictures_show_the_curves(self):
         with tempfile.TemporaryDirectory() as folder:

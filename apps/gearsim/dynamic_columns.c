@@ -93,9 +93,9 @@ WRENCH_COLUMNS(COMPONENT)
 /* Angles, time and the pinion's speed grow steadily, pairs are counts: a filter has nothing to do there. */
 const dynamic_column dynamic_columns[] = {
     {"time_s", 0, NEEDS_TIME, time_of, NULL},
-    {"pinion_speed_rpm", 0, NEEDS_MOTION, pinion_speed, NULL},
+    {"pinion_speed_rpm", 0, NEEDS_PINION, pinion_speed, NULL},
     {"wheel_speed_rpm", 1, NEEDS_MOTION, wheel_speed, NULL},
-    {"pinion_angle_rad", 0, NEEDS_MOTION, pinion_angle, NULL},
+    {"pinion_angle_rad", 0, NEEDS_PINION, pinion_angle, NULL},
     {"wheel_angle_rad", 0, NEEDS_MOTION, wheel_angle, NULL},
     {"dte_um", 1, NEEDS_MOTION, transmission_error, NULL},
     {"penetration_um", 1, NEEDS_MESH, penetration, mean_penetration},

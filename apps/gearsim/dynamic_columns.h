@@ -26,8 +26,9 @@ typedef struct dynamic_sample {
 
 /* What a column takes; the further down, the more time. */
 enum column_need {
-    NEEDS_TIME,   /* alone */
-    NEEDS_MOTION, /* angles, speeds and x at the time */
+    NEEDS_TIME, /* alone */
+    NEEDS_PINION, /* its angle and speed at the time, which a prescribed speed tells without the solver */
+    NEEDS_MOTION, /* all angles and speeds, and x */
     NEEDS_PAIRS,  /* and how many pairs touch */
     NEEDS_FORCE,  /* that of the mesh */
     NEEDS_MESH,   /* and the penetration */

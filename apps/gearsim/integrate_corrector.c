@@ -35,16 +35,28 @@ static int set_residual(SUNNonlinearSolver module, SUNNonlinSolSysFn residual) {
     return SUN_NLS_SUCCESS;
 }
 
-/* Solves (I - gamma J) y = y, in place. J has w0 where a coordinate follows its speed: the speeds remain. */
-static void solve_linear(const integrator *solver, double gamma, double y[]) {
-    const int coordinates = solver->model->states / 2;
+/*
+ * Solve (I - gamma J) y = y, in place. J has w0 where a coordinate follows its speed: the speeds remain. For the two states
+ * of x:
+ */
+static void solve_two(const integrator *solver, double gamma, double y[]) {
     const double follows = gamma * solver->model->natural_frequency;
-    double matrix[2][2] = {{1.0, 0.0}, {0.0, 1.0}}, right[2] = {0.0, 0.0};
+    const double by_place = gamma * solver->tangent.jacobian[STATE_OFFSET][STATE_OFFSET_RATE];
+    const double by_speed = gamma * solver->tangent.jacobian[STATE_OFFSET_RATE][STATE_OFFSET_RATE];
 
-    for (int i = 0; i < coordinates; ++i) {
+    y[1] = (y[1] + by_place * y[0]) / (1.0 - (by_speed + follows * by_place));
+    y[0] += follows * y[1];
+}
+
+/* And for those of the pinion beside them. */
+static void solve_four(const integrator *solver, double gamma, double y[]) {
+    const double follows = gamma * solver->model->natural_frequency;
+    double matrix[2][2] = {{1.0, 0.0}, {0.0, 1.0}}, right[2];
+
+    for (int i = 0; i < 2; ++i) {
         const int row = 2 * i + 1;
         right[i] = y[row];
-        for (int j = 0; j < coordinates; ++j) {
+        for (int j = 0; j < 2; ++j) {
             const double by_place = gamma * solver->tangent.jacobian[2 * j][row];
             const double by_speed = gamma * solver->tangent.jacobian[2 * j + 1][row];
             right[i] += by_place * y[2 * j];
@@ -53,16 +65,27 @@ static void solve_linear(const integrator *solver, double gamma, double y[]) {
     }
 
     /* Cramer's rule. */
-    if (coordinates == 1) {
-        y[1] = right[0] / matrix[0][0];
+    const double determinant = matrix[0][0] * matrix[1][1] - matrix[0][1] * matrix[1][0];
+    y[1] = (right[0] * matrix[1][1] - matrix[0][1] * right[1]) / determinant;
+    y[3] = (matrix[0][0] * right[1] - right[0] * matrix[1][0]) / determinant;
+    y[0] += follows * y[1];
+    y[2] += follows * y[3];
+}
+
+/* Newton's step with the Jacobian of this evaluation: the residual becomes what it changes the correction by. */
+static void correct(const integrator *solver, double gamma, double residual[],
+                    double correction[]) {
+    const int states = solver->model->states;
+
+    if (states == STATES_MAX) {
+        solve_four(solver, gamma, residual);
+        correction[2] -= residual[2];
+        correction[3] -= residual[3];
     } else {
-        const double determinant = matrix[0][0] * matrix[1][1] - matrix[0][1] * matrix[1][0];
-        y[1] = (right[0] * matrix[1][1] - matrix[0][1] * right[1]) / determinant;
-        y[3] = (matrix[0][0] * right[1] - right[0] * matrix[1][0]) / determinant;
+        solve_two(solver, gamma, residual);
     }
-    for (int i = 0; i < coordinates; ++i) {
-        y[2 * i] += follows * y[2 * i + 1];
-    }
+    correction[0] -= residual[0];
+    correction[1] -= residual[1];
 }
 
 /*
@@ -79,19 +102,22 @@ static double left_over(const corrector *own, double gamma, const double change[
                            by_speed[STATE_OFFSET_RATE] * change[STATE_OFFSET_RATE];
     const double pulled = carried * tangent->carried < 0.0 ? fabs(carried) : 0.0;
     const double softer = fabs(by_place[STATE_OFFSET_RATE] - own->stiffness);
-    const double speed = gamma * fmax(softer * fabs(change[STATE_OFFSET]), pulled);
+    const double by_softer = softer * fabs(change[STATE_OFFSET]);
+    const double speed = gamma * (by_softer > pulled ? by_softer : pulled);
     const double place = gamma * own->solver->model->natural_frequency * speed;
+    const double of_place = weights[STATE_OFFSET] * place;
+    const double of_speed = weights[STATE_OFFSET_RATE] * speed;
 
-    return fmax(weights[STATE_OFFSET] * place, weights[STATE_OFFSET_RATE] * speed);
+    return of_place > of_speed ? of_place : of_speed;
 }
 
 /* Whether the step is too long for a kink in it. */
 static int is_beyond_kink(const corrector *own, N_Vector correction, N_Vector weights) {
     const double now = fabs(own->solver->tangent.jacobian[STATE_OFFSET][STATE_OFFSET_RATE]);
     const double before = fabs(own->stiffness);
+    const int has_changed = now < kink_share * before || before < kink_share * now;
 
-    return fmin(now, before) < kink_share * fmax(now, before) &&
-           N_VWrmsNorm(correction, weights) > kink_correction;
+    return has_changed && N_VWrmsNorm(correction, weights) > kink_correction;
 }
 
 static int solve(SUNNonlinearSolver module, N_Vector predicted, N_Vector correction,
@@ -108,10 +134,8 @@ static int solve(SUNNonlinearSolver module, N_Vector predicted, N_Vector correct
             return flag;
         }
 
-        /* Newton's step with the Jacobian of this evaluation. */
         CVodeGetCurrentGamma(cvode, &gamma);
-        solve_linear(solver, gamma, NV_DATA_S(own->change));
-        N_VLinearSum(1.0, correction, -1.0, own->change, correction);
+        correct(solver, gamma, NV_DATA_S(own->change), NV_DATA_S(correction));
 
         /* Good enough? */
         if (is_beyond_kink(own, correction, weights)) {

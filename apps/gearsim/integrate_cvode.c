@@ -9,8 +9,8 @@
 #include "integrate_package.h"
 
 #include <cvode/cvode.h>
+#include <math.h>
 #include <stdlib.h>
-#include <string.h>
 
 /* A step is shortened to a quarter so many times in a row, at most: down to 1e-12 of it. */
 enum { SHORTENINGS = 20 };
@@ -23,11 +23,11 @@ typedef struct cvode_memory {
     SUNNonlinearSolver corrector;
     N_Vector scratch;
     N_Vector reader; /* sees CVODE's polynomial, see read_polynomial() */
-    int known;       /* highest order of which CVODE's vector has been seen, -1: none, */
-    N_Vector vectors[ORDERS + 1]; /* and these vectors */
-    int order;         /* of the polynomial below, -1: that of the last step has not been read */
-    double per_length; /* of the step (1/s) */
-    double polynomial[ORDERS + 1][STATES_MAX]; /* over the share of the step from its end on */
+    int known;       /* highest order of which CVODE's coefficients have been seen, -1: none, */
+    const double *coefficients[ORDERS + 1]; /* and where they are */
+    int order;            /* of the last step's polynomial, -1: nobody has asked yet */
+    double per_length;    /* of the step, which it is over from the end on (1/s) */
+    double longest, stop; /* what CVODE has been told, see step() */
 } cvode_memory;
 
 static int derivative(sunrealtype time, N_Vector state, N_Vector result, void *data) {
@@ -46,7 +46,7 @@ static int note_vectors(int count, sunrealtype *factors, N_Vector *coefficients,
     (void)factors;
 
     for (int k = 0; k < count; ++k) {
-        memory->vectors[count - 1 - k] = coefficients[k];
+        memory->coefficients[count - 1 - k] = NV_DATA_S(coefficients[k]);
     }
     memory->known = count - 1;
     return 0;
@@ -80,6 +80,8 @@ static int create(integrator *solver) {
         return -1;
     }
     memory->order = memory->known = -1;
+    memory->longest = 0.0; /* none, as CVODE begins */
+    memory->stop = HUGE_VAL;
     memory->scratch = N_VClone(solver->state);
     memory->reader = N_VNewEmpty(solver->context);
     if (memory->scratch == NULL || memory->reader == NULL) {
@@ -112,37 +114,29 @@ static int step(integrator *solver, double longest, double stop) {
     cvode_memory *memory = solver->memory;
 
     memory->order = -1;
-    CVodeSetMaxStep(memory->cvode, longest);
-    CVodeSetStopTime(memory->cvode, stop);
-    return CVode(memory->cvode, integrator_first_target(solver), solver->state, &solver->time,
-                 CV_ONE_STEP);
+
+    /* CVODE keeps both, but for a stop that it has reached. */
+    if (longest != memory->longest) {
+        CVodeSetMaxStep(memory->cvode, longest);
+        memory->longest = longest;
+    }
+    if (stop != memory->stop) {
+        CVodeSetStopTime(memory->cvode, stop);
+        memory->stop = stop;
+    }
+    const int flag = CVode(memory->cvode, integrator_first_target(solver), solver->state,
+                           &solver->time, CV_ONE_STEP);
+    if (flag == CV_TSTOP_RETURN) {
+        memory->stop = HUGE_VAL;
+    }
+    return flag;
 }
 
 static int restart(integrator *solver) {
     cvode_memory *memory = solver->memory;
 
+    memory->stop = HUGE_VAL;
     return CVodeReInit(memory->cvode, solver->time, solver->state);
-}
-
-/* Order and length of the last step, and what has been counted so far. */
-typedef struct cvode_statistics {
-    int order;
-    sunrealtype length;
-    integrator_statistics counts;
-} cvode_statistics;
-
-/* By one function of CVODE, as each takes its time to be bound when gearsim starts. */
-static cvode_statistics statistics(const cvode_memory *memory) {
-    cvode_statistics all = {.order = 0};
-    long steps = 0, derivatives = 0, setups, rejected = 0;
-    int next_order;
-    sunrealtype first_length, next_length, time;
-
-    CVodeGetIntegratorStats(memory->cvode, &steps, &derivatives, &setups, &rejected, &all.order,
-                            &next_order, &first_length, &all.length, &next_length, &time);
-    all.counts =
-        (integrator_statistics){.steps = steps, .derivatives = derivatives, .rejected = rejected};
-    return all;
 }
 
 /*
@@ -150,19 +144,23 @@ static cvode_statistics statistics(const cvode_memory *memory) {
  * was given: if it were another one, the others would be too, and they are looked for again.
  */
 static int are_those_of_the_step(const integrator *solver, const cvode_memory *memory, int order) {
-    return order <= memory->known && memcmp(NV_DATA_S(memory->vectors[0]), NV_DATA_S(solver->state),
-                                            (size_t)solver->model->states * sizeof(double)) == 0;
+    const double *state = NV_DATA_S(solver->state), *end = memory->coefficients[0];
+
+    return order <= memory->known && end[STATE_OFFSET] == state[STATE_OFFSET] &&
+           end[STATE_OFFSET_RATE] == state[STATE_OFFSET_RATE];
 }
 
 /*
  * CVODE's polynomial: the value at the end of the step is a sum over its coefficients, which our vector gets to see. CVODE
  * keeps each of them in a vector of its own from its first step to its last, so that they are looked for once and then
- * read without a call. By derivatives it would take a call for each of them.
+ * read where they are. By derivatives it would take a call for each of them.
  */
 static int read_polynomial(const integrator *solver, cvode_memory *memory) {
-    const cvode_statistics all = statistics(memory);
-    const int order = all.order;
+    int order = 0;
+    sunrealtype length = 0.0;
 
+    CVodeGetLastOrder(memory->cvode, &order);
+    CVodeGetLastStep(memory->cvode, &length);
     if (!are_those_of_the_step(solver, memory, order)) {
         memory->known = -1;
         if (CVodeGetDky(memory->cvode, solver->time, 0, memory->reader) != CV_SUCCESS ||
@@ -171,13 +169,22 @@ static int read_polynomial(const integrator *solver, cvode_memory *memory) {
         }
     }
 
-    for (int k = 0; k <= order; ++k) {
-        memcpy(memory->polynomial[k], NV_DATA_S(memory->vectors[k]),
-               (size_t)solver->model->states * sizeof memory->polynomial[0][0]);
-    }
     memory->order = order;
-    memory->per_length = 1.0 / all.length;
+    memory->per_length = 1.0 / length;
     return 0;
+}
+
+/* Two states side by side. Of orders that a compiler does not know, which else writes all of them out. */
+static inline void evaluate_two(const double *const coefficients[], int order, int i, double share,
+                                double state[]) {
+    double first = coefficients[order][i], second = coefficients[order][i + 1];
+
+    for (int k = order - 1; k >= 0; --k) {
+        first = coefficients[k][i] + share * first;
+        second = coefficients[k][i + 1] + share * second;
+    }
+    state[i] = first;
+    state[i + 1] = second;
 }
 
 static int interpolate(integrator *solver, int count, const double times[],
@@ -189,21 +196,26 @@ static int interpolate(integrator *solver, int count, const double times[],
     }
     for (int n = 0; n < count; ++n) {
         const double share = (times[n] - solver->time) * memory->per_length;
-        for (int i = 0; i < solver->model->states; i += 2) {
-            double first = 0.0, second = 0.0;
-            for (int k = memory->order; k >= 0; --k) {
-                first = memory->polynomial[k][i] + share * first;
-                second = memory->polynomial[k][i + 1] + share * second;
-            }
-            points[n].state[i] = first;
-            points[n].state[i + 1] = second;
+        evaluate_two(memory->coefficients, memory->order, STATE_OFFSET, share, points[n].state);
+        if (solver->model->states == STATES_MAX) {
+            evaluate_two(memory->coefficients, memory->order, STATE_PINION_ARC, share,
+                         points[n].state);
         }
     }
     return 0;
 }
 
+/* By one function of CVODE, as each takes its time to be bound when gearsim starts. */
 static integrator_statistics counts(const integrator *solver) {
-    return statistics(solver->memory).counts;
+    const cvode_memory *memory = solver->memory;
+    long steps = 0, derivatives = 0, setups, rejected = 0;
+    int order, next_order;
+    sunrealtype first_length, length, next_length, time;
+
+    CVodeGetIntegratorStats(memory->cvode, &steps, &derivatives, &setups, &rejected, &order,
+                            &next_order, &first_length, &length, &next_length, &time);
+    return (integrator_statistics){
+        .steps = steps, .derivatives = derivatives, .rejected = rejected};
 }
 
 const solver_package cvode_package = {

@@ -8,6 +8,7 @@
 #include <string.h>
 
 static const double micrometre = 1e-6;
+static const double per_micrometre = 1e6;
 static const double two_pi = 6.283185307179586;
 
 /*
@@ -56,6 +57,11 @@ static double square(double value) {
     return value * value;
 }
 
+/* Of numbers, without the call that fmax() is for the sake of NaN. */
+static double larger(double a, double b) {
+    return a > b ? a : b;
+}
+
 static void init_bodies(gear_model *model, const config *conf) {
     const double r_bp = model->gears->pair.pinion.base_radius;
     const double r_bw = model->gears->pair.wheel.base_radius;
@@ -96,6 +102,17 @@ static double mobility(const gear_model *model) {
     return model->pinion_mobility + model->wheel_mobility;
 }
 
+/* What the vibration of the mesh makes of it. */
+static void init_vibration(gear_model *model) {
+    const double stiffness = gear_contact_mean_stiffness(model->gears);
+    const double w0 = sqrt(stiffness * mobility(model));
+
+    model->natural_frequency = w0;
+    model->per_frequency = 1.0 / w0;
+    model->to_state = 1.0 / (w0 * micrometre);
+    model->damping_time = gear_contact_mean_damping(model->gears) / stiffness;
+}
+
 /* Response with the damping of the mesh itself, so that as little as possible is left to the solver. */
 static int init_response(gear_model *model) {
     const double w0 = model->natural_frequency;
@@ -110,6 +127,36 @@ static int init_response(gear_model *model) {
         return model->noise != NULL ? 0 : EXIT_RUN_FAILED;
     }
     return 0;
+}
+
+/* The most that any harmonic goes round in a turn of the pinion. */
+static double highest_order(const gear_model *model) {
+    return fmax(ripple_highest_order(&model->drive.ripple),
+                ripple_highest_order(&model->load.ripple));
+}
+
+/*
+ * Share of a tooth that a step may take. The force of a spur gear jumps twice in a tooth, where a pair comes and where
+ * one leaves: if both are close together, all steps could pass over what lies between.
+ */
+static double tooth_share(const gear_model *model) {
+    const gm_pair *pair = &model->gears->pair;
+    const double usual = 1.0 / steps_per_tooth;
+    const double rest = pair->transverse_contact_ratio - floor(pair->transverse_contact_ratio);
+    const double between = fmin(rest, 1.0 - rest);
+
+    return model->jumps ? fmin(usual, fmax(0.5 * between, least_share)) : usual;
+}
+
+/* Part of a turn that a step may take: of a tooth, which the simple model does not have, and of a ripple. */
+static double step_angle(const gear_model *model) {
+    const gm_pair *pair = &model->gears->pair;
+    const double order = highest_order(model);
+    const double wave = order > 0.0 ? two_pi / order / steps_per_tooth : HUGE_VAL;
+    const double tooth =
+        model->mesh == MODEL_3D ? tooth_share(model) * pair->pinion.pitch_angle : HUGE_VAL;
+
+    return fmin(tooth, wave);
 }
 
 int model_init(gear_model *model, const config *conf, const gear_mesh *gears) {
@@ -130,12 +177,17 @@ int model_init(gear_model *model, const config *conf, const gear_mesh *gears) {
     model->load.per_speed_squared = conf->load_per_speed_squared;
     init_bodies(model, conf);
     init_flanks(model);
-
-    model->natural_frequency = sqrt(gear_contact_mean_stiffness(gears) * mobility(model));
+    init_vibration(model);
     if (init_response(model) != 0 || mesh_cache_create(&model->cache, conf, gears) != 0) {
         model_free(model);
         return EXIT_RUN_FAILED;
     }
+
+    /* What is the same at every step. */
+    model->torques_follow = model_follows_motion(model);
+    model->step_angle = step_angle(model);
+    model->longest_noisy_step =
+        model->noise != NULL ? two_pi / steps_per_vibration * model->per_frequency : 0.0;
     return 0;
 }
 
@@ -269,6 +321,12 @@ gear_motion model_motion(const gear_model *model, double time, const double stat
     return motion_with(model, time, state, &noise);
 }
 
+gear_motion model_prescribed_motion(const gear_model *model, double time) {
+    const drive_motion pinion = drive_at(&model->drive, time);
+
+    return (gear_motion){.pinion_angle = pinion.angle, .pinion_speed = pinion.speed};
+}
+
 /* x' = u' + p', and of p' the noise has made all but what was carried. */
 void model_edges(const gear_model *model, int count, const double times[],
                  const double *const states[], int wanted, model_edge edges[]) {
@@ -356,10 +414,8 @@ static double driven(const gear_model *model, double time, double angle, double 
     const double r_bp = model->gears->pair.pinion.base_radius;
 
     return model->states == STATES_MAX
-               ? r_bp *
-                     (drive_torque(&model->drive, time) + drive_ripple(model, angle) -
-                      model->pinion_drag * speed) /
-                     model->pinion_inertia
+               ? model->torque_to_pinion * (drive_torque(&model->drive, time) +
+                                            drive_ripple(model, angle) - model->pinion_drag * speed)
                : r_bp * drive_acceleration(&model->drive, time);
 }
 
@@ -381,25 +437,22 @@ int model_follows_motion(const gear_model *model) {
            model->wheel_drag != 0.0 || model->torque_to_pinion * model->pinion_drag != 0.0;
 }
 
-/* The most that any harmonic goes round in a turn of the pinion. */
-static double highest_order(const gear_model *model) {
-    return fmax(ripple_highest_order(&model->drive.ripple),
-                ripple_highest_order(&model->load.ripple));
-}
-
 double model_smooth_time(const gear_model *model, const gear_motion *motion) {
     return 1.0 / fmax(model->natural_frequency, highest_order(model) * fabs(motion->pinion_speed));
 }
 
 model_torques model_applied(const gear_model *model, double time, const gear_motion *motion) {
-    const double wheel_speed = model_wheel_speed(model, motion);
-    const model_torques torques = {
+    model_torques torques = {
         .drive = driven(model, time, motion->pinion_angle, motion->pinion_speed),
-        .load = load_steady(&model->load, time) +
-                ripple_value(&model->load.ripple, motion->pinion_angle) +
-                load_at_speed(&model->load, wheel_speed),
-        .drag = model->wheel_drag * wheel_speed,
+        .load = load_steady(&model->load, time),
     };
+
+    if (model->torques_follow) {
+        const double wheel_speed = model_wheel_speed(model, motion);
+        torques.load += ripple_value(&model->load.ripple, motion->pinion_angle) +
+                        load_at_speed(&model->load, wheel_speed);
+        torques.drag = model->wheel_drag * wheel_speed;
+    }
     return torques;
 }
 
@@ -523,17 +576,16 @@ static int evaluate_rates(const gear_model *model, double time, const double sta
     }
 
     const double w0 = model->natural_frequency;
-    const double to_state = 1.0 / (w0 * micrometre);
     const model_torques torques = model_applied(model, time, motion);
     const double applied = applied_acceleration(model, time, &torques, &noise);
 
     derivative[STATE_OFFSET] = w0 * state[STATE_OFFSET_RATE];
-    derivative[STATE_OFFSET_RATE] = (applied - mesh_acceleration(model, mesh)) * to_state;
+    derivative[STATE_OFFSET_RATE] = (applied - mesh_acceleration(model, mesh)) * model->to_state;
 
     if (model->states == STATES_MAX) {
         derivative[STATE_PINION_ARC] = w0 * state[STATE_PINION_SPEED];
         derivative[STATE_PINION_SPEED] =
-            (torques.drive - model->torque_to_pinion * mesh->pinion_torque) * to_state;
+            (torques.drive - model->torque_to_pinion * mesh->pinion_torque) * model->to_state;
     }
     return GM_OK;
 }
@@ -554,14 +606,14 @@ int model_derivative(const gear_model *model, double time, const double state[],
  * Jacobian
  * ------------------------------------------------------------------------------------------- */
 
-/* Adds what the force does to the row of a speed, x' or r_bp phi_p', of which 1 N takes `mobility` (1/kg) off. */
-static void add_force(double jacobian[STATES_MAX][STATES_MAX], int row, const gear_model *model,
-                      double mobility, double stiffness, double damping) {
-    jacobian[STATE_OFFSET][row] -= mobility * stiffness / model->natural_frequency;
-    jacobian[STATE_OFFSET_RATE][row] -= mobility * damping;
+/* What the force does to the row of a speed, x' or r_bp phi_p', of which 1 N takes `mobility` (1/kg) off. */
+static void set_force(double jacobian[STATES_MAX][STATES_MAX], int row, const gear_model *model,
+                      double mobility, double stiffness) {
+    jacobian[STATE_OFFSET][row] = -mobility * stiffness * model->per_frequency;
+    jacobian[STATE_OFFSET_RATE][row] = -mobility * stiffness * model->damping_time;
 }
 
-/* What drag and load do to the rows of the speeds, by x' = r_bp phi_p' - r_bw phi_w'. */
+/* Adds what drag and load do to the rows of the speeds, by x' = r_bp phi_p' - r_bw phi_w'. */
 static void add_torques(double jacobian[STATES_MAX][STATES_MAX], const gear_model *model,
                         const gear_motion *motion) {
     const gm_pair *pair = &model->gears->pair;
@@ -578,10 +630,13 @@ static void add_torques(double jacobian[STATES_MAX][STATES_MAX], const gear_mode
     const double load_ripple_slope =
         model->torque_to_offset * ripple_slope(&model->load.ripple, motion->pinion_angle);
 
+    jacobian[STATE_OFFSET_RATE][STATE_OFFSET_RATE] -= wheel_slope / pair->wheel.base_radius;
+    if (model->states != STATES_MAX) {
+        return;
+    }
     jacobian[STATE_PINION_ARC][STATE_OFFSET_RATE] +=
         to_arc * (drive_ripple_slope + load_ripple_slope);
     jacobian[STATE_PINION_ARC][STATE_PINION_SPEED] += to_arc * drive_ripple_slope;
-    jacobian[STATE_OFFSET_RATE][STATE_OFFSET_RATE] -= wheel_slope / pair->wheel.base_radius;
     jacobian[STATE_PINION_SPEED][STATE_OFFSET_RATE] +=
         (wheel_slope * ratio - pinion_slope) / pair->pinion.base_radius;
     jacobian[STATE_PINION_SPEED][STATE_PINION_SPEED] -= pinion_slope / pair->pinion.base_radius;
@@ -603,21 +658,24 @@ int model_derivative_and_tangent(const gear_model *model, double time, const dou
     /* The flanks that touch are springs and dampers; where they would have to pull they are neither. */
     const double stiffness =
         mesh.force != 0.0 ? gear_contact_touching_stiffness(gears, &mesh) : 0.0;
-    const double damping =
-        stiffness * (gear_contact_mean_damping(gears) / gear_contact_mean_stiffness(gears));
-    const double w0 = model->natural_frequency;
-
     tangent->touching = mesh.contact.drive_contact + mesh.contact.coast_contact;
     tangent->is_spring = (mesh.drive_force > 0.0 || mesh.coast_force > 0.0) &&
                          (mesh.drive_force > 0.0) == (mesh.contact.drive_contact > 0.0) &&
                          (mesh.coast_force > 0.0) == (mesh.contact.coast_contact > 0.0);
-    tangent->carried = mesh_acceleration(model, &mesh) / model_speed_unit(model);
-    memset(jacobian, 0, sizeof tangent->jacobian);
-    jacobian[STATE_OFFSET_RATE][STATE_OFFSET] = w0;
-    jacobian[STATE_PINION_SPEED][STATE_PINION_ARC] = w0;
-    add_force(jacobian, STATE_OFFSET_RATE, model, mobility(model), stiffness, damping);
-    add_force(jacobian, STATE_PINION_SPEED, model, model->pinion_mobility, stiffness, damping);
-    add_torques(jacobian, model, &motion);
+    tangent->carried = mesh_acceleration(model, &mesh) * model->to_state;
+
+    /* The rows and columns of the states that there are: with a prescribed speed those of x alone. */
+    if (model->states == STATES_MAX) {
+        memset(jacobian, 0, sizeof tangent->jacobian);
+        jacobian[STATE_PINION_SPEED][STATE_PINION_ARC] = model->natural_frequency;
+        set_force(jacobian, STATE_PINION_SPEED, model, model->pinion_mobility, stiffness);
+    }
+    jacobian[STATE_OFFSET][STATE_OFFSET] = 0.0;
+    jacobian[STATE_OFFSET_RATE][STATE_OFFSET] = model->natural_frequency;
+    set_force(jacobian, STATE_OFFSET_RATE, model, mobility(model), stiffness);
+    if (model->torques_follow) {
+        add_torques(jacobian, model, &motion);
+    }
     return GM_OK;
 }
 
@@ -625,50 +683,20 @@ int model_derivative_and_tangent(const gear_model *model, double time, const dou
  * Steps and tolerances
  * ------------------------------------------------------------------------------------------- */
 
-/*
- * Share of a tooth that a step may take. The force of a spur gear jumps twice in a tooth, where a pair comes and where
- * one leaves: if both are close together, all steps could pass over what lies between.
- */
-static double tooth_share(const gear_model *model) {
-    const gm_pair *pair = &model->gears->pair;
-    const double usual = 1.0 / steps_per_tooth;
-    const double rest = pair->transverse_contact_ratio - floor(pair->transverse_contact_ratio);
-    const double between = fmin(rest, 1.0 - rest);
-
-    return model->jumps ? fmin(usual, fmax(0.5 * between, least_share)) : usual;
-}
-
-/* Part of a turn that a step may take: of a tooth, which the simple model does not have, and of a ripple. */
-static double step_angle(const gear_model *model) {
-    const gm_pair *pair = &model->gears->pair;
-    const double order = highest_order(model);
-    const double wave = order > 0.0 ? two_pi / order / steps_per_tooth : HUGE_VAL;
-    const double tooth =
-        model->mesh == MODEL_3D ? tooth_share(model) * pair->pinion.pitch_angle : HUGE_VAL;
-
-    return fmin(tooth, wave);
-}
-
-/* Time for it, from the speed at hand and the acceleration without contact; 0 = any. */
+/* Time in which the pinion turns by the angle of a step, from the speed at hand and the acceleration without contact; 0 = any. */
 static double turning_step(const gear_model *model, double time, const double state[]) {
-    const gm_gear *pinion = &model->gears->pair.pinion;
-    const double angle = step_angle(model);
-    if (!isfinite(angle)) {
+    const double angle = model->step_angle;
+    if (angle == HUGE_VAL) {
         return 0.0;
     }
 
     const drive_motion motion = pinion_motion(model, time, state);
     const double speed = fabs(motion.speed);
-    const double acceleration =
-        fabs(driven(model, time, motion.angle, motion.speed)) / pinion->base_radius;
+    const double acceleration = fabs(driven(model, time, motion.angle, motion.speed)) /
+                                model->gears->pair.pinion.base_radius;
     const double reach = speed + sqrt(speed * speed + 2.0 * acceleration * angle);
 
     return reach > 0.0 ? 2.0 * angle / reach : 0.0;
-}
-
-/* Time for a share of a natural vibration. */
-static double vibration_step(const gear_model *model) {
-    return two_pi / (steps_per_vibration * model->natural_frequency);
 }
 
 double model_next_row(const gear_model *model, double time, int *is_kink) {
@@ -708,9 +736,10 @@ double model_before_row(const gear_model *model, double row) {
 
 double model_max_step(const gear_model *model, double time, const double state[]) {
     const double turning = turning_step(model, time, state);
-    const double vibration = model->noise != NULL ? vibration_step(model) : 0.0;
+    const double noisy = model->longest_noisy_step;
+    const int is_noisy_shorter = noisy > 0.0 && (turning == 0.0 || noisy < turning);
 
-    return turning > 0.0 && vibration > 0.0 ? fmin(turning, vibration) : fmax(turning, vibration);
+    return is_noisy_shorter ? noisy : turning;
 }
 
 static double jump_share(const gear_model *model) {
@@ -719,18 +748,18 @@ static double jump_share(const gear_model *model) {
 
 /* A tolerance below what the digits of the value hold would stop the solver. */
 static double weight_of(double tolerance, double value) {
-    return 1.0 / fmax(tolerance, 4.0 * DBL_EPSILON * fabs(value));
+    return 1.0 / larger(tolerance, 4.0 * DBL_EPSILON * fabs(value));
 }
 
 void model_error_weights(const gear_model *model, double relative_tolerance,
                          double absolute_tolerance, const double state[], double weights[]) {
     const double share = jump_share(model);
-    const double offset_tolerance = share * absolute_tolerance / micrometre;
+    const double offset_tolerance = share * absolute_tolerance * per_micrometre;
     const double speed_tolerance = speed_tolerance_factor * offset_tolerance;
-    const double clearance = 0.5 * fabs(model->gears->pair.backlash) / micrometre;
+    const double clearance = 0.5 * fabs(model->gears->pair.backlash) * per_micrometre;
 
     /* Relative to the penetration: half the backlash is a choice of where zero is. */
-    const double depth = fmax(fabs(state[STATE_OFFSET]) - clearance, 0.0);
+    const double depth = larger(fabs(state[STATE_OFFSET]) - clearance, 0.0);
 
     weights[STATE_OFFSET] =
         weight_of(share * relative_tolerance * depth + offset_tolerance, state[STATE_OFFSET]);

@@ -47,21 +47,27 @@ typedef struct gear_model {
     int jumps; /* the force does, where a pair of spur gears comes or goes */
     pinion_drive drive;
     load_signal load;
-    double pinion_mobility;   /* r_bp^2 / I_p, 0 if its speed is prescribed (1/kg) */
-    double wheel_mobility;    /* r_bw^2 / I_w (1/kg) */
-    double moved_mass;        /* what a force on both accelerates: 1 over the sum of both (kg) */
-    double torque_to_offset;  /* r_bw / I_w: from the load to x'' (1/(kg m)) */
-    double pinion_inertia;    /* I_p, infinite if its speed is prescribed (kg m2) */
-    double torque_to_pinion;  /* r_bp / I_p: from the pinion's torque to x'' (1/(kg m)) */
-    double pinion_drag;       /* c_p (N m s) */
-    double wheel_drag;        /* c_w (N m s) */
-    double natural_frequency; /* w0 (rad/s) */
-    double response_decay;    /* zeta w0 of the response (1/s) */
-    response *noise;          /* to the noise; NULL: the load is as it is, and u = x */
-    gm_cache *cache;          /* that the mesh answers from; NULL: exactly */
-    int is_ideal[2];          /* [side] neither flank deviates: the gap depends on x alone */
-    double reach[2];          /* [side] highest points of both flanks together (m) */
-    double slope[2];          /* [side] steepest rise of both along the profile together (m/m) */
+    double pinion_mobility;  /* r_bp^2 / I_p, 0 if its speed is prescribed (1/kg) */
+    double wheel_mobility;   /* r_bw^2 / I_w (1/kg) */
+    double moved_mass;       /* what a force on both accelerates: 1 over the sum of both (kg) */
+    double torque_to_offset; /* r_bw / I_w: from the load to x'' (1/(kg m)) */
+    double pinion_inertia;   /* I_p, infinite if its speed is prescribed (kg m2) */
+    double torque_to_pinion; /* r_bp / I_p: from the pinion's torque to x'' (1/(kg m)) */
+    double pinion_drag;      /* c_p (N m s) */
+    double wheel_drag;       /* c_w (N m s) */
+    int torques_follow; /* load, its drag or a ripple over the pinion's angle follow the motion */
+    double natural_frequency;  /* w0 (rad/s) */
+    double per_frequency;      /* 1 / w0 (s) */
+    double to_state;           /* from x'' to the derivative of its state (s2/m 1/s) */
+    double damping_time;       /* of the mesh, its damping over its stiffness (s) */
+    double step_angle;         /* most that the pinion may turn in a step, HUGE_VAL = any (rad) */
+    double longest_noisy_step; /* beside the response to the noise, 0 = any (s) */
+    double response_decay;     /* zeta w0 of the response (1/s) */
+    response *noise;           /* to the noise; NULL: the load is as it is, and u = x */
+    gm_cache *cache;           /* that the mesh answers from; NULL: exactly */
+    int is_ideal[2];           /* [side] neither flank deviates: the gap depends on x alone */
+    double reach[2];           /* [side] highest points of both flanks together (m) */
+    double slope[2];           /* [side] steepest rise of both along the profile together (m/m) */
     int states;
 } gear_model;
 
@@ -91,6 +97,9 @@ int model_quasi_static_start(const gear_model *model, double state[]);
 double model_speed_unit(const gear_model *model);
 
 gear_motion model_motion(const gear_model *model, double time, const double state[]);
+
+/* The pinion's part of the motion where its speed is prescribed; the rest is 0. */
+gear_motion model_prescribed_motion(const gear_model *model, double time);
 
 /*
  * The edge of a mean: the motion there, with the part of x' that the noise has not made, which changes by the force and the

@@ -21,7 +21,7 @@ enum { KEPT = 512 };
  * static response. An interval is parted into segments of no more than so much of the frequency (rad), so that few terms
  * are enough.
  */
-static const double longest_segment = 0.5;
+static const double longest_segment = 0.65;
 static const double left_out = 1e-15;
 enum { TERMS = 20 };
 
@@ -320,12 +320,14 @@ APART void evaluate_four(const double coefficients[], int terms, double a, doubl
     values->at[3] = even[3] + d * odd[3];
 }
 
-static void rates_of_four(const segment *part, int terms, const double share[AT_ONCE],
-                          response_sum sums[AT_ONCE]) {
+/* Up to four; the last one stands in for those that are missing. */
+static void rates_of_some(const segment *part, int terms, int count, const double share[AT_ONCE],
+                          response_sum sums[]) {
+    const double third = share[count > 2 ? 2 : 1], fourth = share[count - 1];
     four rate;
 
-    evaluate_four(part->rate, terms, share[0], share[1], share[2], share[3], &rate);
-    for (int n = 0; n < AT_ONCE; ++n) {
+    evaluate_four(part->rate, terms, share[0], share[1], third, fourth, &rate);
+    for (int n = 0; n < count; ++n) {
         sums[n].given = given_in(part, share[n]);
         sums[n].value = (response_value){.rate = rate.at[n]};
     }
@@ -356,9 +358,9 @@ void response_given(response *linear, int count, const double times[], int with_
         const segment *part = segment_at(linear, times[i], &share[0]);
         const int found = find_more(linear, count - i, times + i, share);
 
-        if (found == AT_ONCE && !with_offset) {
-            rates_of_four(part, terms, share, sums + i);
-            i += AT_ONCE;
+        if (found > 1 && !with_offset) {
+            rates_of_some(part, terms, found, share, sums + i);
+            i += found;
             continue;
         }
         for (int n = 0; n < found; ++n, ++i) {

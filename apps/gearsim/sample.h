@@ -94,6 +94,11 @@ static inline double sample_time(const sampling *s, double row, double sample) {
 int sample_points(sampling *s, int count, const double times[], integrator_point points[]);
 int sample_motion(sampling *s, double time, gear_motion *motion);
 
+/* Whether the motion of a row takes a state of the solver. */
+static inline int row_needs_state(const sampling *s) {
+    return s->row_need >= NEEDS_MOTION || s->model->states == STATES_MAX;
+}
+
 /* The mesh at the time and motion of the sample; of one that is a row's, what rows need. Both return 0, or EXIT_RUN_FAILED
  * with the reason in `why`. */
 int sample_mesh(sampling *s, enum column_need need);

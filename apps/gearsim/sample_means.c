@@ -19,8 +19,8 @@ void sample_means_prepare(sampling *s) {
         s->means.steady = model_mean_over_time(model, &any, 0.0);
     }
 
-    /* The motion at the edges, if it is only for the display of progress. */
-    if (s->follows || !drive_is_steady || s->row_need < NEEDS_MOTION) {
+    /* The motion at the edges, from which torques that change follow. */
+    if (s->follows || !drive_is_steady) {
         s->edge_wanted |= EDGE_OFFSET | EDGE_PINION;
     }
 

@@ -147,7 +147,7 @@ int sampling_start(sampling *s, const config *conf, const gear_model *model, int
     s->solver = solver;
     s->sample.model = s->behind.model = model;
     s->column_count = count;
-    s->row_need = row_need;
+    s->row_need = larger(row_need, NEEDS_PINION); /* progress shows its speed */
 
     /* Without a column to filter there is a sample for each row. */
     for (int k = 0; k < count; ++k) {
@@ -179,7 +179,10 @@ static int see_sample_motion(sampling *s, enum column_need need) {
         return 0;
     }
     if (s->mean_kind == SAMPLE_BOX && s->means.is_started && need == NEEDS_TIME) {
-        s->sample.motion = s->means.edge; /* near enough for the display of progress */
+        return 0; /* between the rows nobody looks at it */
+    }
+    if (s->means.is_started && !row_needs_state(s)) {
+        s->sample.motion = model_prescribed_motion(s->model, s->sample.time);
         return 0;
     }
     return sample_motion(s, s->sample.time, &s->sample.motion);
@@ -278,23 +281,22 @@ static int see_block(sampling *s, double row, sample_block *block) {
         states[j] = block->points[each * j + each - 1].state;
     }
 
-    /* All ends, and before the last one the row's own time. */
-    int failed = sample_points(s, each * count - 1, times, block->points);
-    if (!failed && each == 2) {
-        block->of_row =
-            model_motion(s->model, block->centre[count - 1], block->points[2 * count - 2].state);
-    } else if (!failed && s->row_need > NEEDS_TIME) {
-        failed = sample_motion(s, block->centre[count - 1], &block->of_row);
-    }
-    if (!failed) {
-        failed = sample_points(s, 1, &block->end[count - 1], &block->points[each * count - 1]);
+    /* All ends, and before the last one the state at the row's own time if it is asked for. */
+    const double row_time = time_of_share(s, row, 1.0);
+    const int is_row_apart = each == 1 && row_needs_state(s);
+    const int last = each * count - 1;
+    int failed = sample_points(s, is_row_apart ? last : last + 1, times, block->points);
+    if (!failed && is_row_apart) {
+        failed = sample_motion(s, row_time, &block->of_row);
+        if (!failed) {
+            failed = sample_points(s, 1, &times[last], &block->points[last]);
+        }
+    } else if (!failed) {
+        block->of_row = each == 2 ? model_motion(s->model, row_time, block->points[last - 1].state)
+                                  : model_prescribed_motion(s->model, row_time);
     }
     if (!failed) {
         model_edges(s->model, count, block->end, states, s->edge_wanted, block->edges);
-    }
-    if (!failed && each == 1 && s->row_need == NEEDS_TIME) {
-        /* Near enough for the display of progress. */
-        block->of_row = block->edges[count - 1].motion;
     }
     return failed;
 }

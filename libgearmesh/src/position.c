@@ -132,23 +132,22 @@ int gm_position_from_pinion_angle(const gm_pair *pair, double pinion_angle, doub
     if (position == NULL) {
         return GM_ERR_NULL;
     }
-    *position = position_nan();
-    if (pair == NULL) {
-        return GM_ERR_NULL;
+    int status = pair == NULL ? GM_ERR_NULL : gmi_check_offset(offset, offset_rate);
+    if (status != GM_ERR_NULL && !gmi_is_finite(pinion_angle)) {
+        status = GM_STATE_NOT_FINITE;
+    } else if (status == GM_OK && !is_angle(pinion_angle)) {
+        status = GM_STATE_OUT_OF_RANGE;
     }
-
-    if (!gmi_is_finite(pinion_angle) || !gmi_is_finite(offset) || !gmi_is_finite(offset_rate)) {
-        return GM_STATE_NOT_FINITE;
-    }
-    if (!is_angle(pinion_angle)) {
-        return GM_STATE_OUT_OF_RANGE;
+    if (status != GM_OK) {
+        *position = position_nan();
+        return status;
     }
 
     set_pinion(pair, reduce_angle(&pair->pinion, pinion_angle), position);
     position->offset = offset;
     position->offset_rate = offset_rate;
     position->pinion_speed = 0.0;
-    return finish(position);
+    return GM_OK;
 }
 
 int gmi_position_nearest(const gm_pair *pair, const gm_state *state, double shift,
