@@ -56,7 +56,7 @@ def _read_lines(path):
         _fail(path, 0, f"cannot be read: {error.strerror}")
     if b"\0" in content:
         line = content[: content.index(b"\0")].count(b"\n") + 1
-        _fail(path, line, "a zero byte: this is not plain text")
+        _fail(path, line, "must be plain text (got a zero byte)")
     text = content.decode("utf-8-sig", errors="replace")
     lines = text.split("\n")
     if not lines[-1]:
@@ -72,10 +72,10 @@ def _other_delimiter(line):
 
 def _check_delimiter(path, number, line):
     if re.match(r"\s*[;\[]", line):
-        _fail(path, number, "this is a parameter file; a flank file or measured traces are right")
+        _fail(path, number, "must be a flank file or measured traces (got a parameter file)")
     delimiter = _other_delimiter(line)
     if delimiter:
-        _fail(path, number, f"the fields are separated by {delimiter}; commas, with a point as decimal sign, are right")
+        _fail(path, number, f"fields must be separated by commas, with a point as decimal sign (got {delimiter})")
 
 
 def _fields(line):
@@ -87,26 +87,25 @@ def _check_header(path, number, line, columns):
         return
     _check_delimiter(path, number, line)
     hint = "; this is a pitch file, which comes second" if _fields(line) == PITCH_COLUMNS else ""
-    _fail(path, number, f"the header is '{line[:60].strip()}'; {','.join(columns)} is right{hint}")
+    _fail(path, number, f"the header must be {','.join(columns)} (got '{line[:60].strip()}'){hint}")
 
 
 def _fail_row(path, number, line, columns, patterns):
     """Say what is wrong with a row that does not match."""
     if len(line) > LINE_LENGTH:
-        _fail(path, number, f"the line is longer than {LINE_LENGTH} characters")
+        _fail(path, number, f"a line must have at most {LINE_LENGTH} characters (got more)")
     if "\r" in line:
-        _fail(path, number, "a carriage return stands within the line; lines ended by LF or CRLF are right")
+        _fail(path, number, "lines must end with LF or CRLF (got a carriage return within the line)")
     _check_delimiter(path, number, line)
     fields = _fields(line)
     if len(fields) != len(columns):
-        hint = " (a decimal comma makes two fields of one number: write 1.5)" if len(fields) > len(columns) else ""
-        wanted = f"{len(columns)} are right: {','.join(columns)}"
-        _fail(path, number, f"the row has {len(fields)} fields, {wanted}{hint}")
+        hint = "; a decimal comma makes two fields of one number: write 1.5" if len(fields) > len(columns) else ""
+        wanted = f"{len(columns)} fields, {','.join(columns)}"
+        _fail(path, number, f"a row must have {wanted} (got {len(fields)}){hint}")
     for column, field in zip(columns, fields):
         pattern = patterns.get(column, NUMBER)
         if not re.fullmatch(pattern, field):
-            wanted = RIGHT[pattern]
-            _fail(path, number, f"{column} is '{field[:40]}'; {wanted} is right")
+            _fail(path, number, f"{column}: must be {RIGHT[pattern]} (got '{field[:40]}')")
 
 
 class Rows:
@@ -143,9 +142,9 @@ def _matched_rows(path, columns, patterns):
         else:
             _fail_row(path, number, line, columns, patterns)
     if header is None:
-        _fail(path, len(lines), f"the file is empty; the header {','.join(columns)} and rows below it are right")
+        _fail(path, len(lines), f"the file must have the header {','.join(columns)} and rows below it (got nothing)")
     if not found:
-        _fail(path, header, "there are no rows below the header")
+        _fail(path, header, "there must be rows below the header (got none)")
     return found
 
 
@@ -156,7 +155,7 @@ def _read_rows(path, columns, teeth):
     for number, (tooth, flank, *numbers) in _matched_rows(path, columns, FIELD_PATTERNS):
         index = ALL if tooth == "*" else int(tooth)
         if index >= (teeth or MAX_TEETH):
-            _fail(path, number, f"tooth is {tooth}; 0 to {(teeth or MAX_TEETH) - 1}, or *, is right")
+            _fail(path, number, f"tooth: must be 0 to {(teeth or MAX_TEETH) - 1}, or * (got {tooth})")
         found.append((number, index, sides[flank], *map(float, numbers)))
     number, tooth, side, *values = zip(*found)
     rows = Rows(path, number, tooth, side, np.column_stack(values))
@@ -167,7 +166,7 @@ def _read_rows(path, columns, teeth):
 def _check_finite(rows):
     bad = np.flatnonzero(~np.isfinite(rows.values).all(axis=1))
     if len(bad):
-        _fail(rows.path, rows.line[bad[0]], "a number is too large; a finite one like 1.5 is right")
+        _fail(rows.path, rows.line[bad[0]], "numbers must be finite, like 1.5 (got one that is too large)")
 
 
 def slot_name(tooth, side):
@@ -195,16 +194,16 @@ def _axis_nodes(rows, first_set, axis):
     position = rows.values[:, axis]
     outside = np.flatnonzero((position < -POSITION_TOLERANCE) | (position > 1 + POSITION_TOLERANCE))
     if len(outside):
-        _fail(rows.path, rows.line[outside[0]], f"{name} is {position[outside[0]]:g}; a value from 0 to 1 is right")
+        _fail(rows.path, rows.line[outside[0]], f"{name}: must be from 0 to 1 (got {position[outside[0]]:g})")
     position, line = position[first_set], rows.line[first_set]
     nodes = _count_grid_lines(position)
     if nodes < 2:
-        _fail(rows.path, line[0], f"only one position {name} = {position[0]:g}; at least 2 x 2 nodes are right")
+        _fail(rows.path, line[0], f"{name}: must have at least two positions (got {position[0]:g} alone)")
     for end, at in ((0.0, position.argmin()), (1.0, position.argmax())):
         if abs(position[at] - end) > POSITION_TOLERANCE:
-            _fail(rows.path, line[at], f"{name} ends at {position[at]:g}; a grid from 0 to 1 is right")
+            _fail(rows.path, line[at], f"{name}: must be a grid from 0 to 1 (got an end at {position[at]:g})")
     if nodes > MAX_NODES:
-        _fail(rows.path, line[0], f"{nodes} positions {name}; 2 to {MAX_NODES} are right")
+        _fail(rows.path, line[0], f"{name}: must have 2 to {MAX_NODES} positions (got {nodes})")
     return nodes
 
 
@@ -220,8 +219,8 @@ def _node_indices(rows, nodes):
         _fail(
             rows.path,
             rows.line[bad[0]],
-            f"{FLANK_COLUMNS[2 + axis]} = {wrong:g} is not on the uniform grid of {nodes[0]} x {nodes[1]} nodes "
-            f"that the file begins with; the nearest right value is {nearest:.6g}",
+            f"{FLANK_COLUMNS[2 + axis]}: must be on the uniform grid of {nodes[0]} x {nodes[1]} nodes that the file begins "
+            f"with, for example {nearest:.6g} (got {wrong:g})",
         )
     return index
 
@@ -235,15 +234,15 @@ def _fill_set(rows, chosen, index, nodes):
     if len(again):
         t1, t2 = rows.values[chosen[again[0]], :2]
         line = rows.line[chosen[again[0]]]
-        _fail(rows.path, line, f"{name} has a second row for t1 = {t1:g}, t2 = {t2:g}; one row per node is right")
+        _fail(rows.path, line, f"{name}: must have one row per node (got a second one for t1 = {t1:g}, t2 = {t2:g})")
     missing = np.setdiff1d(np.arange(nodes[0] * nodes[1]), flat)
     if len(missing):
         t1, t2 = missing[0] // nodes[1] / (nodes[0] - 1), missing[0] % nodes[1] / (nodes[1] - 1)
         _fail(
             rows.path,
             rows.line[chosen[0]],
-            f"{name}, which begins here, has no row for t1 = {t1:.6g}, t2 = {t2:.6g}; "
-            f"{nodes[0]} x {nodes[1]} nodes are right",
+            f"{name}, which begins here: must have rows for {nodes[0]} x {nodes[1]} nodes "
+            f"(got none for t1 = {t1:.6g}, t2 = {t2:.6g})",
         )
     table = np.empty(nodes[0] * nodes[1])
     table[flat] = rows.values[chosen, 2]
@@ -281,7 +280,7 @@ def read_pitch(path, teeth=None):
     for slot, chosen in slots.items():
         if len(chosen) > 1:
             first, second = rows.line[chosen[:2]]
-            _fail(path, second, f"{slot_name(*slot)} has a second row, the first is in line {first}; one is right")
+            _fail(path, second, f"{slot_name(*slot)}: must have one row (got a second one, the first is in line {first})")
     return {slot: float(rows.values[chosen[0], 0]) for slot, chosen in slots.items()}
 
 
@@ -337,7 +336,7 @@ def read_traces(path):
     for number, (tooth, flank, kind, *numbers) in _matched_rows(path, columns, TRACE_PATTERNS):
         face, profile, deviation = map(float, numbers)
         if not np.isfinite([face, profile, deviation]).all():
-            _fail(path, number, "a number is too large; a finite one like 1.5 is right")
+            _fail(path, number, "numbers must be finite, like 1.5 (got one that is too large)")
         place, along = (face, profile) if kind == "profile" else (profile, face)
         key = (int(tooth), flank, kind)
         if previous is None or key != previous[0] or abs(place - previous[1]) > 0.01:
@@ -346,5 +345,5 @@ def read_traces(path):
         groups[-1][2].append((along, deviation))
     for number, key, points in groups:
         if len(points) < 2:
-            _fail(path, number, f"the {key[2]} trace of tooth {key[0]}, flank {key[1]} has 1 point; 2 or more are right")
+            _fail(path, number, f"the {key[2]} trace of tooth {key[0]}, flank {key[1]}: must have 2 points or more (got 1)")
     return columns[4], [Trace(*key, points) for _, key, points in groups]

@@ -40,13 +40,13 @@ def span(text, default_count=None):
         low, high = float(parts[0]), float(parts[min(1, len(parts) - 1)])
         count = int(parts[2]) if len(parts) == 3 else (1 if low == high else default_count)
     except ValueError:
-        raise InputError(f"'{text}': FROM:TO or FROM:TO:COUNT with numbers is right") from None
+        raise InputError(f"a range must be FROM:TO or FROM:TO:COUNT with numbers (got '{text}')") from None
     if len(parts) > 3 or not (math.isfinite(low) and math.isfinite(high)):
-        raise InputError(f"'{text}': FROM:TO or FROM:TO:COUNT with numbers is right")
+        raise InputError(f"a range must be FROM:TO or FROM:TO:COUNT with numbers (got '{text}')")
     if low > high:
-        raise InputError(f"'{text}': {low:g} is above {high:g}; the lower number comes first")
+        raise InputError(f"a range must begin with the lower number (got '{text}')")
     if count is not None and not 1 <= count <= 1000:
-        raise InputError(f"'{text}': 1 to 1000 values are right")
+        raise InputError(f"a range must have 1 to 1000 values (got '{text}')")
     return np.array([low, high]) if count is None else np.linspace(low, high, count)
 
 
@@ -54,9 +54,9 @@ def torques(text, count, mean_Nm):
     """Torques of a range given by the user. They have the direction of the mean load if they are > 0."""
     values_Nm = span(text, count)
     if values_Nm[0] < 0:
-        raise InputError(f"torques '{text}': >= 0 is right; the sign of load.mean_Nm chooses the flank")
+        raise InputError(f"torques: must be >= 0 (got '{text}'); the sign of load.mean_Nm chooses the flank")
     if values_Nm[-1] == 0:
-        raise InputError(f"torques '{text}': without a load the gears may stand anywhere in the backlash")
+        raise InputError(f"torques: must not all be 0 (got '{text}'): without a load the gears may stand anywhere in the backlash")
     return loads(values_Nm, mean_Nm)
 
 
@@ -270,7 +270,7 @@ class Gears:
     def _setting(text):
         key, equals, value = text.partition("=")
         if not equals or "." not in key:
-            raise InputError(f"--set {text}: section.key=value is right")
+            raise InputError(f"--set: must be section.key=value (got {text})")
         return key.strip(), value.strip()
 
     def __enter__(self):
@@ -427,7 +427,7 @@ class Gears:
         key = full_key(name)
         if key.partition(".")[0] not in MADE:
             raise InputError(
-                f"--vary {name}: is not what a gear is made to, a key of [modifications] is right; "
+                f"--vary: must be what a gear is made to, a key of [modifications] (got {name}); "
                 "--torques gives torques, --set all else"
             )
         for gear in GEARS:

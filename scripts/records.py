@@ -166,7 +166,7 @@ def _turning(record, time_s, options):
     """(speed in rpm, angle in rad, rows that they are of) of the shaft that orders refer to."""
     given = [option for option in ("speed", "pulses", "rpm") if getattr(options, option) is not None]
     if len(given) > 1:
-        raise program.InputError(f"--{given[0]}, --{given[1]}: one of them is right")
+        raise program.InputError(f"--{given[0]}, --{given[1]}: must be one of them")
     whole = slice(None)
 
     # Pulses: angle and speed between the first edge and the last one.

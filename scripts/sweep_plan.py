@@ -14,7 +14,7 @@ import spread
 from program import InputError
 
 MOST_RUNS = 1_000_000
-RIGHT = "KEY=FROM:TO:N, KEY=A,B,.., KEY=uniform(LOW,HIGH) or KEY=normal(MEAN,DEVIATION) is right"
+RIGHT = "must be KEY=FROM:TO:N, KEY=A,B,.., KEY=uniform(LOW,HIGH) or KEY=normal(MEAN,DEVIATION)"
 CLASSES = ("class.pinion", "class.wheel", "class.seed")  # flanks that gearflanks makes, in the place of keys
 
 
@@ -48,7 +48,7 @@ def number(text, whole):
     except ValueError:
         value = math.nan
     if not math.isfinite(value):
-        raise InputError(f"--vary {whole}: '{text.strip()}' is no number; {RIGHT}")
+        raise InputError(f"--vary {whole}: {RIGHT} (got '{text.strip()}' for a number)")
     return value
 
 
@@ -61,32 +61,32 @@ def varied(text):
     """What one --vary says."""
     key, equals, spec = (part.strip() for part in text.partition("="))
     if not equals or not re.fullmatch(r"\w+\.\w+", key) or not spec:
-        raise InputError(f"--vary {text}: {RIGHT}, KEY being section.key")
+        raise InputError(f"--vary: {RIGHT}, KEY being section.key (got {text})")
 
     # A distribution.
     match = re.fullmatch(r"(normal|uniform)\(([^,()]*),([^,()]*)\)", spec)
     if match:
         first, second = number(match[2], text), number(match[3], text)
         if match[1] == "uniform" and not first < second:
-            raise InputError(f"--vary {text}: the lower number comes first")
+            raise InputError(f"--vary {text}: must begin with the lower number")
         if match[1] == "normal" and not second > 0:
-            raise InputError(f"--vary {text}: a deviation above 0 is right")
+            raise InputError(f"--vary {text}: the deviation must be above 0")
         return Random(key, match[1], first, second)
     if "(" in spec:
-        raise InputError(f"--vary {text}: {RIGHT}")
+        raise InputError(f"--vary: {RIGHT} (got {text})")
 
     # A range, or a list.
     parts = spec.split(":")
     if len(parts) == 3:
         count = parts[2].strip()
         if not count.isdigit() or not 1 <= int(count) <= MOST_RUNS:
-            raise InputError(f"--vary {text}: '{count}' is no number of values; {RIGHT}")
+            raise InputError(f"--vary {text}: {RIGHT} (got '{count}' for the number of values)")
         return Grid(key, [text_of(v) for v in np.linspace(number(parts[0], text), number(parts[1], text), int(count))])
     if len(parts) == 2 and re.fullmatch(r"\s*[-+.\deE]+\s*", parts[0]):
-        raise InputError(f"--vary {text}: a range must have a number of values; {RIGHT}")
+        raise InputError(f"--vary {text}: {RIGHT} (got a range without the number of values)")
     values = [value.strip() for value in spec.split(",")]
     if not all(values) or len(set(values)) != len(values):
-        raise InputError(f"--vary {text}: values that all differ are right; {RIGHT}")
+        raise InputError(f"--vary {text}: must be values that all differ; {RIGHT}")
     return Grid(key, values)
 
 
@@ -98,22 +98,22 @@ class Plan:
         self.keys = [axis.key for axis in axes]
         twice = {key for key in self.keys if self.keys.count(key) > 1}
         if twice:
-            raise InputError(f"--vary {twice.pop()}: a key is varied once")
+            raise InputError(f"--vary {twice.pop()}: must be given once for a key")
         unknown = [key for key in self.keys if key.startswith("class.") and key not in CLASSES]
         if unknown or "class.seed" in self.keys and not {*CLASSES[:2]} & {*self.keys}:
             wrong = (unknown or ["class.seed"])[0]
-            raise InputError(f"--vary {wrong}: class.pinion and class.wheel are right, class.seed beside them")
+            raise InputError(f"--vary: must be class.pinion or class.wheel, class.seed beside them (got {wrong})")
         self.random = [axis for axis in axes if isinstance(axis, Random)]
         self.grid = [axis for axis in axes if isinstance(axis, Grid)]
         self.method, self.seed = method, seed
         if method == "sobol" and (self.grid or not self.random):
-            raise InputError("--method sobol: keys with normal(..) or uniform(..) alone are right")
+            raise InputError("--method sobol: all keys must have normal(..) or uniform(..)")
         drawn = self._draw(samples) if self.random else [()]
 
         # Each drawn sample at each point of the grid.
         count = math.prod([len(axis.values) for axis in self.grid]) * len(drawn)
         if count > MOST_RUNS:
-            raise InputError(f"{count} runs are more than {MOST_RUNS}")
+            raise InputError(f"a sweep must have at most {MOST_RUNS} runs (got {count})")
         self.rows = []
         for point in itertools.product(*(axis.values for axis in self.grid)):
             for sample in drawn:

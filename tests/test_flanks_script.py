@@ -123,56 +123,56 @@ class BadFiles(Folder):
     def test_wrong_headers(self):
         good = rows(0, "drive", 1)
         self.assert_refused("tooth,flank,t2,t1,deviation_um\n" + good, 1, "tooth,flank,t2,t1", HEADER.strip())
-        self.assert_refused(good, 1, "the header is '0,drive,0,0,1'")
+        self.assert_refused(good, 1, "the header must be", "got '0,drive,0,0,1'")
         self.assert_refused(PITCH_HEADER + "0,drive,1\n", 1, "pitch file")
-        self.assert_refused("# only a comment\n", 1, "empty")
-        self.assert_refused(HEADER, 1, "no rows")
+        self.assert_refused("# only a comment\n", 1, "must have the header", "got nothing")
+        self.assert_refused(HEADER, 1, "must be rows", "got none")
 
     def test_decimal_commas_and_other_delimiters(self):
         good = rows(0, "drive", 1.5)
-        self.assert_refused(HEADER + good.replace("1.5", "1,5"), 2, "6 fields", "decimal comma")
+        self.assert_refused(HEADER + good.replace("1.5", "1,5"), 2, "must have 5 fields", "got 6", "decimal comma")
         self.assert_refused((HEADER + good).replace(",", ";"), 1, "semicolons")
         self.assert_refused(HEADER + good.replace(",", "\t"), 2, "tabs")
-        self.assert_refused(HEADER + "0,drive,0,0\n", 2, "4 fields")
+        self.assert_refused(HEADER + "0,drive,0,0\n", 2, "must have 5 fields", "got 4")
 
     def test_what_is_no_number(self):
         for text in ("nan", "inf", "0x1p3", "1.5um", "", "--1", "1e", "\u0661"):
             bad = rows(0, "drive", 7).replace(",7\n", f",{text}\n", 1)
-            self.assert_refused(HEADER + bad, 2, f"deviation_um is '{text}'")
+            self.assert_refused(HEADER + bad, 2, "deviation_um: must be a number", f"got '{text}'")
         self.assert_refused(HEADER + rows(0, "drive", 7).replace(",7\n", ",1e999\n", 1), 2, "too large")
 
     def test_teeth_and_flanks(self):
-        self.assert_refused(HEADER + rows(-1, "drive", 1), 2, "tooth is '-1'")
-        self.assert_refused(HEADER + rows("\u0661", "drive", 1), 2, "tooth is '\u0661'")
-        self.assert_refused(HEADER + rows(0, "left", 1), 2, "flank is 'left'", "drive, coast or *")
-        self.assert_refused(HEADER + rows(17, "drive", 1), 2, "tooth is 17; 0 to 16", arguments=("--gear-teeth", "17"))
-        self.assert_refused(HEADER + rows(123456, "drive", 1), 2, "tooth is 123456")
+        self.assert_refused(HEADER + rows(-1, "drive", 1), 2, "tooth: must be", "got '-1'")
+        self.assert_refused(HEADER + rows("\u0661", "drive", 1), 2, "tooth: must be", "got '\u0661'")
+        self.assert_refused(HEADER + rows(0, "left", 1), 2, "flank: must be drive, coast or * (got 'left')")
+        self.assert_refused(HEADER + rows(17, "drive", 1), 2, "tooth: must be 0 to 16, or * (got 17)", arguments=("--gear-teeth", "17"))
+        self.assert_refused(HEADER + rows(123456, "drive", 1), 2, "tooth: must be 0 to 999, or * (got 123456)")
 
     def test_grids(self):
         lines = rows(0, "drive", 1).splitlines(keepends=True)
         second = rows(1, "*", 1).splitlines(keepends=True)
-        self.assert_refused(HEADER + "".join(lines + second[:-1]), 17, "tooth 1, flank *", "no row for t1 = 1, t2 = 1")
-        self.assert_refused(HEADER + "".join(lines + second + second[3:4]), 32, "second row for t1 = 0, t2 = 0.75")
-        self.assert_refused(HEADER + "".join(lines).replace("0.25", "0.3"), 3, "t2 = 0.3", "right value is 0.25")
+        self.assert_refused(HEADER + "".join(lines + second[:-1]), 17, "tooth 1, flank *", "got none for t1 = 1, t2 = 1")
+        self.assert_refused(HEADER + "".join(lines + second + second[3:4]), 32, "second one for t1 = 0, t2 = 0.75")
+        self.assert_refused(HEADER + "".join(lines).replace("0.25", "0.3"), 3, "t2: must be on", "for example 0.25 (got 0.3)")
         slip = rows(0, "drive", 1, (6, 5)).replace("0.25", "0.26", 1)
-        self.assert_refused(HEADER + slip, 3, "t2 = 0.26 is not on the uniform grid of 6 x 5 nodes", "right value is 0.25")
-        self.assert_refused(HEADER + "".join(lines) + rows(1, "drive", 1, (3, 4)), 18, "t2 = 0.333333")
+        self.assert_refused(HEADER + slip, 3, "t2: must be on the uniform grid of 6 x 5 nodes", "for example 0.25 (got 0.26)")
+        self.assert_refused(HEADER + "".join(lines) + rows(1, "drive", 1, (3, 4)), 18, "got 0.333333")
         self.assert_refused(HEADER + "".join(lines).replace(",0.25,", ",0.250011,"), 3, "0.250011")
-        self.assert_refused(HEADER + "".join(lines[10:]), 2, "only one position t1 = 1")
-        self.assert_refused(HEADER + "".join(lines[:10]), 7, "t1 ends at 0.5")
-        self.assert_refused(HEADER + "".join(lines) + "0,drive,2,0,1\n", 17, "t1 is 2")
+        self.assert_refused(HEADER + "".join(lines[10:]), 2, "t1: must have at least two positions (got 1 alone)")
+        self.assert_refused(HEADER + "".join(lines[:10]), 7, "t1: must be a grid from 0 to 1 (got an end at 0.5)")
+        self.assert_refused(HEADER + "".join(lines) + "0,drive,2,0,1\n", 17, "t1: must be from 0 to 1 (got 2)")
 
     def test_bytes_that_are_no_text(self):
         good = (HEADER + rows(0, "drive", 1)).encode()
         self.assert_refused(good + b"0,drive,0,0,\0", 17, "zero byte")
         self.assert_refused(good + b"0,drive,0,0,1\r0\n", 17, "carriage return")
-        self.assert_refused(good + b"0,drive,0,0," + b"1" * 1000, 17, "longer than 1000")
+        self.assert_refused(good + b"0,drive,0,0," + b"1" * 1000, 17, "at most 1000 characters")
 
     def test_pitch_files(self):
         for text, words in (
             ("0,drive,1\n1,drive,1\n0,drive,2\n", ["pitch.csv:4:", "tooth 0, flank drive", "line 2"]),
             ("0,drive,nan\n", ["pitch.csv:2:", "nan"]),
-            ("0,drive,0,0,1\n", ["pitch.csv:2:", "5 fields"]),
+            ("0,drive,0,0,1\n", ["pitch.csv:2:", "must have 3 fields", "got 5"]),
         ):
             self.write(HEADER + rows(0, "drive", 1))
             self.write(PITCH_HEADER + text, "pitch.csv")
@@ -185,9 +185,9 @@ class BadFiles(Folder):
     def test_options(self):
         self.write(HEADER + rows(0, "drive", 1) + rows(4, "*", 1))
         for option, value, word in (
-            ("--tooth", "5", "no tooth 5; 0 to 4"),
+            ("--tooth", "5", "must be from 0 to 4 (got 5)"),
             ("--tooth", "-1", "whole number"),
-            ("--teeth", "0,9", "no tooth 9; 0 to 4"),
+            ("--teeth", "0,9", "must be from 0 to 4 (got 9)"),
             ("--teeth", "0,0", "different"),
             ("--flank", "left", "invalid choice"),
             ("--gear-teeth", "2", "3 to 1000"),
@@ -460,14 +460,14 @@ class Measured(Drawn):
         self.write_traces()
         self.write(PITCH_HEADER + "0,drive,1\n", "p.csv")
         bad = {
-            "5,left,profile,8,20\n": "2: the row has 5 fields",
-            "5,L,profile,8,20,1\n": "2: flank is 'L'; left, right, drive or coast is right",
-            "5,left,lead,8,20,1\n": "2: trace is 'lead'; profile or helix is right",
-            "*,left,helix,8,20,1\n": "2: tooth is '*'; a whole number from 0 on is right",
-            "5,left,helix,8,20,x\n": "2: deviation_um is 'x'; a number like 1.5",
-            "5,left,helix,8,20,1\n": "2: the helix trace of tooth 5, flank left has 1 point",
-            "5,left,helix,8,20,1e999\n": "2: a number is too large",
-            "": "1: there are no rows",
+            "5,left,profile,8,20\n": "2: a row must have 6 fields",
+            "5,L,profile,8,20,1\n": "2: flank: must be left, right, drive or coast (got 'L')",
+            "5,left,lead,8,20,1\n": "2: trace: must be profile or helix (got 'lead')",
+            "*,left,helix,8,20,1\n": "2: tooth: must be a whole number from 0 on (got '*')",
+            "5,left,helix,8,20,x\n": "2: deviation_um: must be a number like 1.5 or -2e-3 (got 'x')",
+            "5,left,helix,8,20,1\n": "2: the helix trace of tooth 5, flank left: must have 2 points",
+            "5,left,helix,8,20,1e999\n": "2: numbers must be finite",
+            "": "1: there must be rows",
         }
         for row, said in bad.items():
             self.write(self.HEADER + row, "bad.csv")

@@ -195,7 +195,7 @@ class Options(Case):
             with open("/dev/full", "w") as full:
                 result = subprocess.run([GEARSIM, *arguments], cwd=self.folder, stdout=full, stderr=subprocess.PIPE)
             self.assertEqual(result.returncode, 1)
-            self.assertIn(b"cannot write to stdout", result.stderr)
+            self.assertIn(b"standard output: cannot be written", result.stderr)
 
     def test_check_writes_nothing(self):
         self.write("run.ini", PARAMS)

@@ -385,7 +385,7 @@ class Files(Case):
             (["a.csv"], "no column pinion_speed_rpm; please give --speed, --pulses or --rpm (it has time, n, p)"),
             (["a.csv", "--speed", "m"], "no column 'm' (--speed); it has time, n, p"),
             (["a.csv", "--speed", "n", "--speed-unit", "furlong"], "--speed-unit: must be rpm, Hz"),
-            (["a.csv", "--speed", "n", "--rpm", "3"], "--speed, --rpm: one of them is right"),
+            (["a.csv", "--speed", "n", "--rpm", "3"], "--speed, --rpm: must be one of them"),
             (["a.csv", "--speed", "n", "--signal", "p", "--turns", "1000"], "the record has 37"),
             (["a.csv", "--speed", "n", "--pinion-teeth", "2", "--wheel-teeth", "9"], "--pinion-teeth"),
             (["a.csv", "--speed", "n", "--planetary", "1,2"], "--planetary: must be SUN,PLANET,RING,NUMBER"),

@@ -157,7 +157,7 @@ class Runs(Case):
         self.assertEqual((none.returncode, none.stderr.splitlines()[-1]), (1, "sweep: no run has a result"))
 
     def test_a_key_that_is_not_there_is_told_before_anything_is_written(self):
-        for vary, message in (("load.foo=1,2", "load.foo: unknown key"), ("load.mean_Nm=1:2", "must have a number of values")):
+        for vary, message in (("load.foo=1,2", "load.foo: unknown key"), ("load.mean_Nm=1:2", "a range without the number of values")):
             done = call("sweep", "p.ini", "--vary", vary, "--output", "x", folder=self.folder)
             self.assertEqual(done.returncode, 2)
             self.assertIn(message, done.stderr)

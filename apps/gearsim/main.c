@@ -110,7 +110,7 @@ static int finish_stdout(int status, message_sink *messages) {
     if (fflush(stdout) == 0 && !ferror(stdout)) {
         return status;
     }
-    message_of_program(messages, "cannot write to stdout: %s", strerror(errno));
+    message_of_program(messages, "standard output: cannot be written: %s", strerror(errno));
     return status == EXIT_DONE ? EXIT_RUN_FAILED : status;
 }
 
