@@ -228,6 +228,8 @@ static void add_line(model *m, const elastic_gear *g, const model_lines *lines,
     const long double begin = g->path_start - further, end = g->path_end + further;
     const long double climb = tanl(g->base_helix_angle), b = g->face_width;
     const long double h = b / (g->stations - 1);
+
+    /* The part of the line within the path, or as far beyond it as edges are looked for. */
     long double from = 0.0L, to = b;
     if (climb == 0.0L) {
         to = rho_0 >= begin && rho_0 <= end ? b : 0.0L;
@@ -239,8 +241,10 @@ static void add_line(model *m, const elastic_gear *g, const model_lines *lines,
     if (from >= to) {
         return;
     }
+
     const long double soft[2] = {softness != NULL ? softness[0][((k % 3) + 3) % 3] : 1.0L,
                                  softness != NULL ? softness[1][((k % 3) + 3) % 3] : 1.0L};
+
     for (int e = 0; e < g->stations - 1; ++e) {
         /* Lines with edges go over whole elements, in parts between the cuts within. */
         long double bound[6] = {fmaxl(from, e * h), fminl(to, (e + 1) * h)};
@@ -256,17 +260,21 @@ static void add_line(model *m, const elastic_gear *g, const model_lines *lines,
                 bound[bounds++] = z;
             }
         }
+
         if (further > 0.0L) {
             bound[0] = e * h;
             bound[1] = (e + 1) * h;
         }
         sort(bounds, bound);
+
+        /* Two points of Gauss in each part. */
         for (int part = 0; part < 2 * (bounds - 1); ++part) {
             const long double low = bound[part / 2], high = bound[part / 2 + 1];
             model_point *p = &m->point[m->points++];
             const long double xi = 0.5L + (part % 2 == 0 ? -0.5L : 0.5L) / sqrtl(3.0L);
             const long double z = low + xi * (high - low), rho = rho_0 + climb * z;
             double ignored[2];
+
             p->line = m->lines;
             p->element = e;
             p->t = z / h - e;

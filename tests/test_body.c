@@ -525,12 +525,15 @@ static void friction_takes_its_loss(void) {
         int status = GM_OK;
         gm_test_context("case %d", i);
         GM_ASSERT_INT(random_mixed_case_make(&c, &seed, i), GM_OK);
+
         motion_plan plan = random_plan(&c.pair, &seed, 0.0);
         if (i % 2 == 0) { /* next to the creep speed, where the movement of the axes counts */
             plan.speed[0] *= 1e-2;
             plan.speed[1] *= 1e-2;
         }
         moving_bodies(&c.pair, &plan, bodies);
+
+        /* Power of both bodies without friction and with it. */
         for (int rubs = 0; rubs < 2; ++rubs) {
             plain_mesh room;
             gm_mesh *mesh;
@@ -546,12 +549,14 @@ static void friction_takes_its_loss(void) {
             GM_ASSERT_INT(gm_mesh_init(&mesh, &law, &c.pair, c.use[0], c.use[1], room.memory,
                                        sizeof room.memory),
                           GM_OK);
+
             status |= gm_mesh_evaluate_bodies(mesh, &bodies[0], &bodies[1], GM_WANT_FORCE, NULL, &r,
                                               &loads[0], &loads[1]);
             power[rubs] = power_of(&loads[0], &bodies[0]) + power_of(&loads[1], &bodies[1]);
             loss = r.loss;
             force = r.drive_force + r.coast_force;
         }
+
         if (status == GM_OK && force > 0.0) {
             const double size = force * (2.0 + c.pair.center_distance);
             GM_ASSERT(loss >= 0.0);
@@ -602,17 +607,21 @@ static void a_pose_of_the_call_is_one_of_the_mesh(void) {
         random_case c;
         gm_test_context("case %d", i);
         GM_ASSERT_INT(random_mixed_case_make(&c, &seed, i), GM_OK);
+
         const motion_plan plan = random_plan(&c.pair, &seed, 0.02);
         const double shared[3] = {0.0, 1.0, gm_test_uniform(&seed, 0.1, 0.9)};
         gm_mesh_result results[3];
         int status[3];
         memset(results, 0, sizeof results);
+
+        /* All of the pose in the call, all in the mesh, and some in each. */
         for (int k = 0; k < 3; ++k) {
             const double part = shared[k], rest = 1.0 - part;
             plain_mesh room;
             gm_mesh *mesh;
             gm_mesh_params law;
             gm_motion motion;
+
             memset(&motion, 0, sizeof motion);
             gm_mesh_params_default(&law);
             law.stiffness = 1e8;
@@ -620,11 +629,13 @@ static void a_pose_of_the_call_is_one_of_the_mesh(void) {
             law.pose = (gm_pose){part * plan.pose.center_distance_change,
                                  part * 1e-3 * c.pair.normal_module, part * plan.pose.axial_shift,
                                  part * plan.pose.skew, part * plan.pose.inclination};
+
             motion.pose = (gm_pose){
                 rest * plan.pose.center_distance_change, rest * 1e-3 * c.pair.normal_module,
                 rest * plan.pose.axial_shift, rest * plan.pose.skew, rest * plan.pose.inclination};
             const gm_state state = {plan.angle[0], plan.angle[1], plan.speed[0], plan.speed[1]};
             (void)gm_position_from_state(&c.pair, &state, &motion.position);
+
             status[k] = gm_mesh_init(&mesh, &law, &c.pair, c.use[0], c.use[1], room.memory,
                                      sizeof room.memory);
             if (status[k] == GM_OK) {
@@ -632,6 +643,7 @@ static void a_pose_of_the_call_is_one_of_the_mesh(void) {
                     mesh, &motion, GM_WANT_DERIVATIVES | GM_WANT_WRENCH, NULL, &results[k]);
             }
         }
+
         GM_ASSERT_INT(status[0], status[1]);
         GM_ASSERT(status[0] != GM_OK || memcmp(&results[0], &results[1], sizeof results[0]) == 0);
         if (status[0] == GM_OK && status[2] == GM_OK) {

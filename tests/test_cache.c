@@ -474,6 +474,8 @@ static void bad_states_are_refused_as_without_a_cache(void) {
     make_paper(&f, &params);
     const double p_bt = f.pair.transverse_base_pitch;
     const gm_position good = {44, 40, 1e-3, 55e-6, 0.25, 0.0};
+
+    /* No number, or beyond its range, in one field after the other. */
     gm_position wrong[16];
     int count = 0;
     static const double bad[] = {(double)NAN, HUGE_VAL, -HUGE_VAL};
@@ -490,6 +492,7 @@ static void bad_states_are_refused_as_without_a_cache(void) {
     wrong[count] = good, wrong[count++].phase = 1.5 * p_bt;
     wrong[count] = good, wrong[count++].pinion_tooth = 45;
     wrong[count] = good, wrong[count++].wheel_tooth = -1;
+
     for (int i = 0; i < count; ++i) {
         gm_test_context("position %d", i);
         gm_penetration exact;
@@ -497,6 +500,7 @@ static void bad_states_are_refused_as_without_a_cache(void) {
         memset(&exact, 1, sizeof exact);
         memset(&r, 1, sizeof r);
         const int status = penetration_3d_at(&f.pair, f.flanks[0], f.flanks[1], &wrong[i], &exact);
+
         GM_ASSERT(status != GM_OK);
         GM_ASSERT_INT(gm_mesh_evaluate_at(f.mesh, &wrong[i], GM_WANT_DERIVATIVES, NULL, &r),
                       status);
@@ -513,6 +517,7 @@ static void bad_states_are_refused_as_without_a_cache(void) {
         const gm_penetration exact = exact_at(&f, &outside), r = looked_up_at(&f, &outside);
         GM_ASSERT(memcmp(&r, &exact, sizeof r) == 0);
     }
+
     gm_test_context("none was filled");
     for (size_t i = 0; i < (size_t)f.cache->passes * (size_t)f.cache->columns; ++i) {
         if (!isnan(f.cache->starts[i])) {
@@ -1141,6 +1146,8 @@ static void derivatives_with_corners_are_those_of_differences(void) {
         gm_mesh_result r;
         GM_ASSERT_INT(gm_mesh_evaluate_at(f->mesh, &position, GM_WANT_DERIVATIVES, NULL, &r),
                       GM_OK);
+
+        /* Differences of two steps, which agree where nothing begins to touch between. */
         for (int which = position.offset_rate == 0.0 ? 0 : 2; which < 4; ++which) {
             gm_test_context("state %d, by %d", i, which);
             const double r_bp = f->pair.pinion.base_radius, r_bw = f->pair.wheel.base_radius;
@@ -1159,8 +1166,10 @@ static void derivatives_with_corners_are_those_of_differences(void) {
                     difference[k / 2][of] += (k % 2 == 0 ? -0.5 : 0.5) * value[of] / fabs(by);
                 }
             }
+
             const gm_gradient *by[3] = {&r.force_by, &r.pinion_torque_by, &r.wheel_torque_by};
             double found[3], expected[3], doubt[3];
+
             for (int of = 0; of < 3; ++of) {
                 const double parts[4] = {by[of]->pinion_angle, by[of]->wheel_angle,
                                          by[of]->pinion_speed, by[of]->wheel_speed};
@@ -1169,6 +1178,7 @@ static void derivatives_with_corners_are_those_of_differences(void) {
                 expected[of] = difference[1][of] / arm;
                 doubt[of] = fabs(difference[0][of] - difference[1][of]) / arm;
             }
+
             const double size = fabs(found[0]) + (which < 2 ? 1e5 : 1.0);
             if (doubt[0] + doubt[1] + doubt[2] > 1e-5 * size) {
                 ++rejected; /* an edge of a cell between */

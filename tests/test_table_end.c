@@ -152,12 +152,15 @@ static void compare_at(const two_drawings *two, const gm_mesh_params *law, doubl
     static gm_line_load_point points[2][400];
     int pairs[2][2];
     double x = 0.0;
+
+    /* Either drawing: prepared in the pose, and posed in the call. */
     for (int k = 0; k < 2; ++k) {
         plain_mesh rooms[2];
         gm_mesh *posed, *drawn;
         GM_ASSERT_INT(gm_mesh_init(&posed, law, &two->pair[k], two->flanks[k][GM_PINION],
                                    two->flanks[k][GM_WHEEL], &rooms[0], sizeof rooms[0]),
                       GM_OK);
+
         gm_mesh_params unposed = *law;
         gm_motion motion = {.pose = law->pose, .pose_rate = {1e-3, -2e-3, 1e-3, 0.02, -0.03}};
         const gm_pose none = {0.0, 0.0, 0.0, 0.0, 0.0};
@@ -165,19 +168,24 @@ static void compare_at(const two_drawings *two, const gm_mesh_params *law, doubl
         GM_ASSERT_INT(gm_mesh_init(&drawn, &unposed, &two->pair[k], two->flanks[k][GM_PINION],
                                    two->flanks[k][GM_WHEEL], &rooms[1], sizeof rooms[1]),
                       GM_OK);
+
+        /* The place of both is 14 um behind the touch of the first. */
         if (k == 0) {
             x = (side == GM_DRIVE ? 1.0 : -1.0) * (gm_mesh_clearance(posed, side) + 14e-6);
         }
+
         gm_position *position = &motion.position;
         GM_ASSERT_INT(gm_position_from_pinion_angle(&two->pair[k], angle, x, 1e-3, position),
                       GM_OK);
         position->pinion_speed = 20.0;
+
         GM_ASSERT_INT(gm_mesh_evaluate_at(posed, position, WANT_ALL, NULL, &prepared[k]), GM_OK);
         GM_ASSERT_INT(gm_mesh_evaluate_posed(drawn, &motion, WANT_ALL, NULL, &moving[k]), GM_OK);
         GM_ASSERT_INT(gm_mesh_tangent(drawn, &motion, &tangent[k]), GM_OK);
         GM_ASSERT_INT(gm_mesh_line_loads(posed, position, NULL, points[k], 400, &loads[k]), GM_OK);
         GM_ASSERT_INT(gm_mesh_pairs_at(posed, position, NULL, pairs[k]), GM_OK);
     }
+
     compare_results(&prepared[0], &prepared[1]);
     compare_results(&moving[0], &moving[1]);
     for (int k = 0; k < GM_COORDINATES; ++k) {
@@ -189,9 +197,11 @@ static void compare_at(const two_drawings *two, const gm_mesh_params *law, doubl
         compare_numbers(tangent[0].wrench_by_rate[k].pinion_force,
                         tangent[1].wrench_by_rate[k].pinion_force, count, 1e-7);
     }
+
     GM_ASSERT_INT(pairs[0][side], pairs[1][side]);
     GM_ASSERT_REL(loads[0].largest_line_load, loads[1].largest_line_load, 1e-9);
     GM_ASSERT_REL(loads[0].touching_width, loads[1].touching_width, 1e-9);
+
     if (GM_ASSERT_INT(loads[0].points, loads[1].points)) {
         for (int k = 0; k < loads[0].points; ++k) {
             GM_ASSERT_ABS(points[0][k].gap, points[1][k].gap, 1e-14);
@@ -417,9 +427,12 @@ static void elastic_teeth_read_the_same_flanks(void) {
         law.law = GM_LAW_ELASTIC;
         law.corner_contact = i < 2 ? GM_CORNER_OFF : GM_CORNER_ON;
         law.pose.center_distance_change = distance_for(&two.pair[0], -two.cell[GM_PINION]);
+
         gm_mesh_result result[10][2];
         gm_line_loads loads[10][2];
         double x[10];
+
+        /* Ten places of either drawing, 20 um behind the touch of the first. */
         for (int k = 0; k < 2; ++k) {
             const size_t size = gm_mesh_size(&law, &two.pair[k]);
             void *memory = malloc(size);
@@ -428,9 +441,11 @@ static void elastic_teeth_read_the_same_flanks(void) {
             GM_ASSERT_INT(gm_mesh_init(&mesh, &law, &two.pair[k], two.flanks[k][GM_PINION],
                                        two.flanks[k][GM_WHEEL], memory, size),
                           GM_OK);
+
             const size_t work = gm_workspace_size(mesh);
             void *work_memory = malloc(work);
             GM_ASSERT_INT(gm_workspace_init(&workspace, mesh, work_memory, work), GM_OK);
+
             for (int n = 0; n < 10; ++n) {
                 gm_test_context("case %d, drawing %d, place %d", i, k, n);
                 x[n] = k == 0 ? gm_mesh_clearance(mesh, GM_DRIVE) + 20e-6 : x[n];
@@ -446,6 +461,7 @@ static void elastic_teeth_read_the_same_flanks(void) {
             free(work_memory);
             free(memory);
         }
+
         for (int n = 0; n < 10; ++n) {
             gm_test_context("case %d, place %d", i, n);
             GM_ASSERT_REL(result[n][0].force, result[n][1].force, 1e-7);

@@ -271,6 +271,7 @@ static void rough_flanks_touch_where_pieces_say(void) {
     uint64_t seed = UINT64_C(308);
     int compared = 0;
     for (int i = 0; i < 200; ++i) {
+        /* Tables of any size for one side of both gears. */
         gm_flanks *flanks[2];
         for (int gear = GM_PINION; gear <= GM_WHEEL; ++gear) {
             const int face = gm_test_integer(&seed, 2, i % 2 == 0 ? FACE : 5);
@@ -283,6 +284,7 @@ static void rough_flanks_touch_where_pieces_say(void) {
                 0,
                 0,
                 0};
+
             for (int k = 0; k < NODES; ++k) {
                 nodes[k] = gm_test_uniform(&seed, -1e-6, 1e-6) * (k % 37 == 0 ? 12.0 : 1.0);
             }
@@ -291,6 +293,7 @@ static void rough_flanks_touch_where_pieces_say(void) {
             GM_ASSERT_INT(gm_flanks_set_table(flanks[gear], GM_DRIVE, GM_ALL_TEETH, nodes, 1.0),
                           GM_OK);
         }
+
         plain_mesh room;
         gm_mesh *mesh;
         gm_mesh_params law;
@@ -301,6 +304,8 @@ static void rough_flanks_touch_where_pieces_say(void) {
         GM_ASSERT_INT(gm_mesh_init(&mesh, &law, &pair, flanks[GM_PINION], flanks[GM_WHEEL],
                                    room.memory, sizeof room.memory),
                       GM_OK);
+
+        /* Places about the touch, with the faces against each other. */
         for (int k = 0; k < 10; ++k) {
             gm_motion motion = {.pose = {.axial_shift = gm_test_uniform(&seed, -2e-3, 2e-3),
                                          .skew = gm_test_uniform(&seed, -1e-4, 1e-4)}};

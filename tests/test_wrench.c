@@ -200,6 +200,8 @@ static gm_flanks *flanks_of(int place, int teeth, int face_nodes, const double *
 static void the_common_face_may_begin_later(void) {
     gm_pair_params params = reference_params((double)NAN);
     const double begin = BEGIN_MM * 1e-3;
+
+    /* The same gears with a pinion that begins before the wheel's face, and with one that ends with it. */
     params.wheel_face_width = FACE_MM * 1e-3;
     params.pinion_face_width = WIDE_MM * 1e-3;
     const gm_pair wide = make_pair(&params);
@@ -207,6 +209,7 @@ static void the_common_face_may_begin_later(void) {
     const gm_pair narrow = make_pair(&params);
     GM_ASSERT_ABS(wide.face_start, begin, 1e-17);
     const double turned = begin * tan(narrow.base_helix_angle);
+
     uint64_t seed = UINT64_C(46);
     double values[(WIDE_MM + 1) * PROFILE_NODES], wheel_values[(FACE_MM / 2 + 1) * PROFILE_NODES];
     for (int k = 0; k < (WIDE_MM + 1) * PROFILE_NODES; ++k) {
@@ -215,28 +218,33 @@ static void the_common_face_may_begin_later(void) {
     for (int k = 0; k < (FACE_MM / 2 + 1) * PROFILE_NODES; ++k) {
         wheel_values[k] = gm_test_uniform(&seed, -3e-6, 3e-6);
     }
+
     const gm_flanks *wide_flanks = flanks_of(0, 45, WIDE_MM + 1, values);
     const gm_flanks *narrow_flanks =
         flanks_of(1, 45, FACE_MM + 1, values + BEGIN_MM * PROFILE_NODES);
     const gm_flanks *wheel_flanks = flanks_of(2, 41, FACE_MM / 2 + 1, wheel_values);
+
     for (int i = 0; i < 80; ++i) {
         gm_test_context("position %d", i);
         const int with_pinion = i / 20 % 2, with_wheel = i / 40;
         const gm_flanks *wheel = with_wheel ? wheel_flanks : NULL;
         gm_position of_wide, of_narrow;
         gm_wrench got, same;
+
         const double angle = 0.07 * i;
         const double x = i % 2 ? 60e-6 : -60e-6;
         GM_ASSERT_INT(gm_position_from_pinion_angle(&wide, angle, x, 0.0, &of_wide), GM_OK);
         GM_ASSERT_INT(gm_position_from_pinion_angle(
                           &narrow, angle + turned / narrow.pinion.base_radius, x, 0.0, &of_narrow),
                       GM_OK);
+
         GM_ASSERT_INT(
             wrench_3d_at(&wide, with_pinion ? wide_flanks : NULL, wheel, &of_wide, 1e8, 0.0, &got),
             GM_OK);
         GM_ASSERT_INT(wrench_3d_at(&narrow, with_pinion ? narrow_flanks : NULL, wheel, &of_narrow,
                                    1e8, 0.0, &same),
                       GM_OK);
+
         /* About a point that lies `begin` lower: plus begin e_z cross force. */
         const double on_wheel[3] = {same.wheel_moment[0] - begin * same.wheel_force[1],
                                     same.wheel_moment[1] + begin * same.wheel_force[0],
@@ -244,6 +252,7 @@ static void the_common_face_may_begin_later(void) {
         const double on_pinion[3] = {same.pinion_moment[0] - begin * same.pinion_force[1],
                                      same.pinion_moment[1] + begin * same.pinion_force[0],
                                      same.pinion_moment[2]};
+
         GM_ASSERT(fabs(same.wheel_force[1]) > 100.0);
         for (int k = 0; k < 3; ++k) {
             /* The origin of the lines is certain to some 1e-17 m of the face's 12 mm on the line of action. */
