@@ -334,16 +334,20 @@ static long double step(model *m, long double x, const int *active, int count) {
         m->matrix[i][i] += p->B * (p->L - 1.0L - logl(q));
         m->matrix[i][count] = approach_of(m, active[i], x) - p->B * q * (p->L - logl(q));
     }
+
+    /* Gauss with the largest pivot of each column. */
     for (int k = 0; k < count; ++k) {
         int best = k;
         for (int i = k + 1; i < count; ++i) {
             best = fabsl(m->matrix[i][k]) > fabsl(m->matrix[best][k]) ? i : best;
         }
+
         for (int c = 0; c <= count; ++c) {
             const long double swap = m->matrix[k][c];
             m->matrix[k][c] = m->matrix[best][c];
             m->matrix[best][c] = swap;
         }
+
         for (int i = k + 1; i < count; ++i) {
             const long double factor = m->matrix[i][k] / m->matrix[k][k];
             for (int c = k; c <= count && factor != 0.0L; ++c) {
@@ -351,12 +355,15 @@ static long double step(model *m, long double x, const int *active, int count) {
             }
         }
     }
+
     for (int k = count - 1; k >= 0; --k) {
         for (int c = k + 1; c < count; ++c) {
             m->matrix[k][count] -= m->matrix[k][c] * m->matrix[c][count];
         }
         m->matrix[k][count] /= m->matrix[k][k];
     }
+
+    /* Loads stay above 0: no step takes more than 99 in 100 of one. */
     long double largest = 0.0L;
     for (int i = 0; i < count; ++i) {
         const long double before = m->load[active[i]];

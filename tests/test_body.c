@@ -727,11 +727,13 @@ static void what_cannot_be_is_refused(void) {
     plain_mesh room;
     gm_mesh *mesh;
     GM_ASSERT_INT(plain_mesh_make(&room, &pair, NULL, NULL, 1e8, 1e3, &mesh), GM_OK);
+
     motion_plan plan = random_plan(&pair, &seed, 0.0);
     plan.angle[1] = pair.pinion.base_radius * plan.angle[0] / pair.wheel.base_radius;
     plan.pose.center_distance_change = plan.pose.axial_shift = 0.0;
     gm_body good[2];
     moving_bodies(&pair, &plan, good);
+
     static const struct {
         int body, field, status;
         double value;
@@ -750,13 +752,16 @@ static void what_cannot_be_is_refused(void) {
         gm_motion motion;
         gm_test_context("value %d", (int)k);
         ((double *)&bodies[wrong[k].body])[wrong[k].field] = wrong[k].value;
+
         GM_ASSERT_INT(gm_mesh_evaluate_bodies(mesh, &bodies[0], &bodies[1], GM_WANT_FORCE, NULL, &r,
                                               &loads[0], &loads[1]),
                       wrong[k].status);
+
         GM_ASSERT_NAN(r.force);
         GM_ASSERT_NAN(r.wrench.wheel_moment[2]);
         GM_ASSERT_NAN(loads[0].force[0]);
         GM_ASSERT_NAN(loads[1].moment[2]);
+
         if (wrong[k].status == GM_STATE_NOT_FINITE) {
             GM_ASSERT_INT(gm_motion_of_bodies(mesh, &bodies[0], &bodies[1], &motion, NULL),
                           GM_STATE_NOT_FINITE);

@@ -658,8 +658,9 @@ static void derivatives_are_those_of_differences(void) {
                                         gm_test_uniform(&seed, -tilt, tilt),
                                         gm_test_uniform(&seed, -tilt, tilt)};
             }
-            if (i % 8 ==
-                0) { /* rough and without damping, the speed of which is a mean while axes tilt */
+
+            /* While axes tilt only without damping, whose speed is a mean then. */
+            if (i % 8 == 0) {
                 motion.pose_rate = (gm_pose){0.3, -0.2, 0.1, gm_test_uniform(&seed, -90.0, 90.0),
                                              gm_test_uniform(&seed, -90.0, 90.0)};
             }
@@ -675,6 +676,8 @@ static void derivatives_are_those_of_differences(void) {
                     status |= gm_mesh_evaluate_posed(mesh, &a, 0, NULL, &far[k]);
                     status |= gm_mesh_evaluate_posed(mesh, &b, 0, NULL, &near[k]);
                 }
+
+                /* Two steps, which agree where nothing begins to touch between. */
                 const double got[3] = {part_of(&r.force_by, which),
                                        part_of(&r.pinion_torque_by, which),
                                        part_of(&r.wheel_torque_by, which)};
@@ -685,6 +688,7 @@ static void derivatives_are_those_of_differences(void) {
                                           near[1].pinion_torque - near[0].pinion_torque,
                                           near[1].wheel_torque - near[0].wheel_torque};
                 const double value[3] = {r.force, r.pinion_torque, r.wheel_torque};
+
                 for (int k = 0; k < 3; ++k) {
                     const double by = narrow[k] / h;
                     const double size = fabs(got[k]) + 1e-3 * fabs(got[0]);
@@ -697,6 +701,7 @@ static void derivatives_are_those_of_differences(void) {
                     ++met;
                 }
             }
+
             GM_ASSERT(status == GM_OK || status == GM_POSE_OUT_OF_MESH);
         }
         random_case_free(&c);

@@ -156,15 +156,19 @@ static void forces_are_those_of_full_compliance(void) {
             elastic_case_free(&c);
             continue;
         }
+
+        /* A place on the path, deviations, and every third time teeth of their own softness. */
         const double size = drawn.normal_module * pow(10.0, gm_test_uniform(&seed, -4.0, -2.3));
         const elastic_deviation d = random_deviation(&seed, &c.gear, size);
         const double x = size * gm_test_uniform(&seed, 0.05, 3.0);
         const double o = c.gear.path_start + gm_test_uniform(&seed, 0.0, 1.0) * c.gear.pitch;
+
         double drawn_softness[2][3];
         const double(*softness)[3] = (const double(*)[3])drawn_softness;
         for (int i = 0; i < 6; ++i) {
             drawn_softness[i / 3][i % 3] = k % 3 == 0 ? gm_test_uniform(&seed, 0.9, 3.0) : 1.0;
         }
+
         gmi_elastic_lines_at at = elastic_lines_at(&c.gear, o);
         double soft[2][GMI_ELASTIC_LINES_MAX];
         for (int i = 0; i <= at.last - at.first; ++i) {
@@ -173,16 +177,19 @@ static void forces_are_those_of_full_compliance(void) {
         }
         at.pinion_softness = soft[0];
         at.wheel_softness = soft[1];
+
         gm_test_context("gear %d: %g/%g teeth, helix %g deg, %d stations, x %g", k, drawn.teeth[0],
                         drawn.teeth[1], drawn.helix_angle / degree, drawn.stations, x);
         elastic_answer exact;
         const gmi_elastic_result got = elastic_solve_at(&c, &at, &d, x, 0);
         GM_ASSERT(elastic_model_solve(&c.gear, &d, softness, 0.0, NULL, o, x, &exact));
+
         /* Tables of the teeth: mostly 1e-7, more where the line of action passes the end of a fillet, as of many rings. */
         const double scale = (double)exact.force;
         const double accuracy = drawn.teeth[1] > 0.0 ? 1e-6 : 2e-5;
         GM_ASSERT_REL(got.force, (double)exact.force, accuracy);
         GM_ASSERT_REL(got.energy, (double)exact.energy, accuracy);
+
         GM_ASSERT_INT(c.work.count, exact.lines);
         for (int i = 0; i < c.work.count && i < exact.lines; ++i) {
             for (int j = 0; j < exact.lines; ++j) {
@@ -192,6 +199,7 @@ static void forces_are_those_of_full_compliance(void) {
                 }
             }
         }
+
         with_deviation += d.crowning > 0.0 && exact.force > 0.0L;
         rings += drawn.teeth[1] < 0.0;
         ++done;
@@ -446,6 +454,8 @@ static void energy_is_kept_over_a_mesh_cycle(void) {
     for (int kind = 1; kind < KINDS; ++kind) { /* helical: continuous */
         elastic_case c;
         make(&c, kind, 17);
+
+        /* Smooth from event to event: where a station enters or leaves, and where cells of the tables end. */
         double events[2 * 17 + PIECES + 1];
         int count = 0;
         for (int k = 0; k <= PIECES; ++k) {
@@ -457,22 +467,28 @@ static void energy_is_kept_over_a_mesh_cycle(void) {
             events[count++] = -rise / c.gear.pitch - floor(-rise / c.gear.pitch);
             events[count++] = upper - floor(upper);
         }
+
         qsort(events, (size_t)count, sizeof *events, ascending);
         const double x = 2e-3 * c.gear.normal_module;
         double sum = 0.0, mean = 0.0;
+
+        /* Gauss's rule of five points between them. */
         for (int k = 0; k + 1 < count; ++k) {
             const double length = events[k + 1] - events[k];
             for (int i = 0; i < 5 && length > 1e-12; ++i) {
                 const double xi = events[k] + place[i] * length;
+
                 const gmi_elastic_lines_at at =
                     elastic_lines_at(&c.gear, c.gear.path_start + xi * c.gear.pitch);
                 gmi_elastic_gradient force, energy;
                 (void)elastic_solve_at(&c, &at, &ideal, x, 1);
                 gmi_elastic_differentiate(&c.law, &c.work, &force, &energy);
+
                 sum += weight[i] * length * energy.by_roll;
                 mean += weight[i] * length * force.value;
             }
         }
+
         gm_test_context("kind %d", kind);
         GM_ASSERT_ABS(sum, 0.0, 1e-10 * mean);
         elastic_case_free(&c);
@@ -517,11 +533,13 @@ static void warm_start_gives_the_cold_answer(void) {
         elastic_case warm, cold;
         make(&warm, kind, 17);
         make(&cold, kind, 17);
+
         const double size = 2e-3 * warm.gear.normal_module;
         elastic_deviation d = random_deviation(&seed, &warm.gear, size);
         double o = warm.gear.path_start, x = size;
         int tooth = 0;
         for (int k = 0; k < 600; ++k) {
+            /* Small steps, and now and then a leap or other flanks. */
             if (k % 40 == 0) {
                 o += gm_test_uniform(&seed, -3.0, 3.0) * warm.gear.pitch;
                 x = size * gm_test_uniform(&seed, -1.0, 3.0);
@@ -529,8 +547,10 @@ static void warm_start_gives_the_cold_answer(void) {
             if (k % 97 == 0) {
                 d = random_deviation(&seed, &warm.gear, size);
             }
+
             o += gm_test_uniform(&seed, -0.02, 0.05) * warm.gear.pitch;
             x += gm_test_uniform(&seed, -0.05, 0.05) * size;
+
             /* Line 0 may be any: the workspace follows the teeth by their numbers. */
             const int skipped = gm_test_integer(&seed, -1, 1);
             gmi_elastic_lines_at at = elastic_lines_at(&warm.gear, o + skipped * warm.gear.pitch);
@@ -539,6 +559,7 @@ static void warm_start_gives_the_cold_answer(void) {
             for (int i = 0; i < 3; ++i) {
                 shifted.of_line[i] = d.of_line[(i + skipped + 3) % 3];
             }
+
             const gmi_elastic_result got = elastic_solve_at(&warm, &at, &shifted, x, 1);
             const gmi_elastic_result expected = elastic_solve_at(&cold, &at, &shifted, x, 0);
             gm_test_context("kind %d, step %d", kind, k);

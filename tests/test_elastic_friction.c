@@ -277,6 +277,8 @@ static void torques_are_those_of_the_formula_along_the_lines(void) {
     static gm_line_load_point points[POINTS];
     for (int k = 0; k < 9; ++k) {
         const gm_pair_params gears[3] = {spur62(), helical(), nrel3()};
+
+        /* A mesh with each law of friction, and one without; stations enough for sums by trapezia. */
         gm_mesh_params law = elastic_law(0.1);
         elastic_mesh m;
         law.friction_law = k / 3;
@@ -284,10 +286,12 @@ static void torques_are_those_of_the_formula_along_the_lines(void) {
         law.stations = 97;
         gm_test_context("case %d", k);
         make(&m, &gears[k % 3], &law, NULL, NULL);
+
         elastic_mesh smooth;
         law.friction_law = GM_FRICTION_CONSTANT;
         law.friction_coefficient = 0.0;
         make(&smooth, &gears[k % 3], &law, NULL, NULL);
+
         const double r_bp = m.pair.pinion.base_radius, r_bw = m.pair.wheel.base_radius;
         gm_position position;
         GM_ASSERT_INT(
@@ -295,6 +299,7 @@ static void torques_are_those_of_the_formula_along_the_lines(void) {
                 &m.pair, 0.03, 3e-3 * m.pair.normal_module + 0.5 * m.pair.backlash, 0.0, &position),
             GM_OK);
         position.pinion_speed = 90.0;
+
         gm_mesh_result r, s;
         gm_line_loads loads;
         GM_ASSERT_INT(
@@ -304,6 +309,8 @@ static void torques_are_those_of_the_formula_along_the_lines(void) {
                       GM_OK);
         GM_ASSERT_INT(gm_mesh_line_loads(m.mesh, &position, m.workspace, points, POINTS, &loads),
                       GM_OK);
+
+        /* Force, torques and loss along the lines, from the load of each point and how it slides. */
         const double rho_c = r_bp * tan(m.pair.working_pressure_angle);
         const double wheel_speed = 90.0 * r_bp / r_bw;
         const double rolling = 90.0 * rho_c + wheel_speed * (m.pair.line_of_action - rho_c);
@@ -317,12 +324,14 @@ static void torques_are_those_of_the_formula_along_the_lines(void) {
                 const double v = (90.0 + wheel_speed) * (rho - rho_c);
                 const double mu = coefficient(&m.law, &m.pair, r.force, q, v, rolling);
                 const double friction = mu * v / sqrt(v * v + 0.01) * force;
+
                 sums[0] += force;
                 sums[1] += friction * rho;
                 sums[2] += friction * (m.pair.line_of_action - rho);
                 sums[3] += friction * v;
             }
         }
+
         const double scale = r.force / sums[0] / cos(m.pair.base_helix_angle);
         const double tolerance = m.pair.face_advance == 0.0 ? 1e-3 : 0.04;
         const double least = 0.04 * tolerance * r.force;
@@ -331,6 +340,7 @@ static void torques_are_those_of_the_formula_along_the_lines(void) {
         GM_ASSERT_ABS(r.wheel_torque - s.wheel_torque, scale * sums[2],
                       least * (m.pair.line_of_action - rho_c));
         GM_ASSERT_REL(r.loss, scale * sums[3], tolerance);
+
         release(&smooth);
         release(&m);
     }

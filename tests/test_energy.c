@@ -200,6 +200,8 @@ static void torques_and_forces_are_its_gradient(void) {
         c.params.pinion_face_width = c.params.face_width;
         c.params.wheel_face_width = 1.4 * c.params.face_width;
         GM_ASSERT_INT(gm_pair_init(&c.pair, &c.params), GM_OK);
+
+        /* Somewhere in contact, in a pose. */
         const gm_pair *pair = &c.pair;
         const gm_mesh_params law = plain_law(GM_CORNER_ON);
         gm_motion motion = {.position = random_pressed(&seed, pair, i),
@@ -210,6 +212,7 @@ static void torques_and_forces_are_its_gradient(void) {
             status = gm_mesh_evaluate_posed(mesh, &motion, GM_WANT_WRENCH, NULL, &r);
         }
         if (status == GM_OK && r.force != 0.0) {
+            /* What the slopes of the energy have to be. */
             const double size = r.drive_force + r.coast_force;
             const double arms[5] = {pair->pinion.base_radius, pair->wheel.base_radius, 1.0, 1.0,
                                     1.0};
@@ -217,6 +220,7 @@ static void torques_and_forces_are_its_gradient(void) {
             const double expected[5] = {r.pinion_torque, -r.wheel_torque, -r.wrench.wheel_force[0],
                                         -r.wrench.wheel_force[1],
                                         -r.wrench.wheel_force[2] * by_turn};
+
             for (int k = 0; k < 5; ++k) {
                 gm_test_context("case %d, coordinate %d", i, k);
                 const double h = 2e-5 * pair->normal_module / arms[k];
@@ -225,6 +229,7 @@ static void torques_and_forces_are_its_gradient(void) {
                     const gm_motion there = moved(pair, &motion, k, (j < 2 ? j - 2 : j - 1) * h);
                     beside[j] = energy_at(mesh, &there);
                 }
+
                 const double slope = (beside[2] - beside[1]) / (2.0 * h);
                 const double wider = (beside[3] - beside[0]) / (4.0 * h);
                 if (fabs(wider - slope) < 1e-5 * size * arms[k]) { /* not about a kink */
@@ -313,16 +318,21 @@ static void it_depends_on_the_place_alone(void) {
         gm_mesh_result still, busy, unasked;
         gm_test_context("case %d", i);
         GM_ASSERT_INT(random_mixed_case_make(&c, &seed, i), GM_OK);
+
+        /* At rest. */
         const int corner = i % 3 == 0 ? GM_CORNER_ON : GM_CORNER_OFF;
         gm_mesh_params law = plain_law(corner);
         gm_motion motion = {.position = random_pressed(&seed, &c.pair, i),
                             .pose = random_pose(&seed, &c.pair, i % 4 == 0 ? 0.0 : 0.01)};
         int status = plain_mesh_of(&room[0], &c.pair, c.use, &law, &mesh[0]);
+
         law.damping = 1e3;
         law.friction_coefficient = i % 2 == 0 ? 0.1 : 0.0;
         if (status == GM_OK) {
             status = gm_mesh_evaluate_posed(mesh[0], &motion, GM_WANT_ENERGY, NULL, &still);
         }
+
+        /* Moving, with damping and friction; and whatever else is asked for. */
         if (status == GM_OK) {
             GM_ASSERT_INT(plain_mesh_of(&room[1], &c.pair, c.use, &law, &mesh[1]), GM_OK);
             motion.position.offset_rate = 0.01;
@@ -330,6 +340,7 @@ static void it_depends_on_the_place_alone(void) {
             motion.pose_rate.center_distance_change = i % 5 < 2 ? 0.0 : 1e-3;
             motion.pose_rate.skew = i % 5 < 4 ? 0.0 : 1e-3;
             compared += still.energy > 0.0 && i % 5 >= 2;
+
             for (int wanted = 0; wanted < 4; ++wanted) {
                 GM_ASSERT_INT(
                     gm_mesh_evaluate_posed(mesh[1], &motion, wanted | GM_WANT_ENERGY, NULL, &busy),

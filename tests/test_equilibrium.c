@@ -41,6 +41,7 @@ static void equilibrium_inverts_the_sum(void) {
         random_case c;
         gm_test_context("case %d, seed %llx", i, (unsigned long long)seed);
         GM_ASSERT_INT(random_mixed_case_make(&c, &seed, i), GM_OK);
+
         const double r_bw = (double)c.model.base_radius[1];
         const double m_n = c.params.normal_module;
         const double stiffness = 1e8;
@@ -50,6 +51,7 @@ static void equilibrium_inverts_the_sum(void) {
         gm_penetration r;
         const int status =
             equilibrium(&c.pair, c.use[0], c.use[1], c.pinion_angle, stiffness, torque, &x, &r);
+
         /* Spur gears may jump across the torque: no exact solution then. All else has one. */
         const int helical = fabs((double)c.model.face_advance) > 0.05 * m_n;
         if (helical) {
@@ -57,11 +59,13 @@ static void equilibrium_inverts_the_sum(void) {
                 random_case_free(&c);
                 return;
             }
+
             gm_position position;
             gm_penetration there;
             GM_ASSERT_INT(gm_position_from_pinion_angle(&c.pair, c.pinion_angle, x, 0.0, &position),
                           GM_OK);
             GM_ASSERT_INT(penetration_3d_at(&c.pair, c.use[0], c.use[1], &position, &there), GM_OK);
+
             /* x is a double: it resolves the sum to contact length times its rounding. */
             const double resolution =
                 1e-12 * sum + 8.0 * 0x1p-53 * c.params.center_distance *
@@ -70,6 +74,7 @@ static void equilibrium_inverts_the_sum(void) {
                 GM_ASSERT_ABS(there.penetration, torque / stiffness / r_bw, resolution) &&
                 GM_ASSERT_ABS(r.penetration, there.penetration, resolution) &&
                 GM_ASSERT(torque > 0.0 ? there.drive > 0.0 : there.coast > 0.0);
+
             ++solved;
             if (!good) {
                 random_case_free(&c);
@@ -80,6 +85,7 @@ static void equilibrium_inverts_the_sum(void) {
         }
         random_case_free(&c);
     }
+
     gm_test_context("all cases");
     GM_ASSERT(solved > 300);
 }
@@ -465,6 +471,7 @@ static void equilibrium_refuses_what_it_must(void) {
     r.penetration = 0.0;
     GM_ASSERT_INT(equilibrium(&pair, NULL, NULL, 0.1, 1e8, 1.0, NULL, &r), GM_ERR_NULL);
     GM_ASSERT_NAN(r.penetration);
+
     static const double bad_stiffness[] = {0.0, -1.0, NAN, HUGE_VAL, 0.99e-30, 1.01e30};
     for (size_t k = 0; k < sizeof bad_stiffness / sizeof bad_stiffness[0]; ++k) {
         gm_test_context("stiffness %g", bad_stiffness[k]);
@@ -475,6 +482,7 @@ static void equilibrium_refuses_what_it_must(void) {
         GM_ASSERT_NAN(x);
         GM_ASSERT_NAN(r.penetration);
     }
+
     static const double bad_number[] = {NAN, HUGE_VAL, -HUGE_VAL};
     for (size_t k = 0; k < sizeof bad_number / sizeof bad_number[0]; ++k) {
         gm_test_context("number %g", bad_number[k]);
@@ -485,8 +493,10 @@ static void equilibrium_refuses_what_it_must(void) {
                       GM_ERR_PARAMETER);
         GM_ASSERT_NAN(x);
     }
+
     GM_ASSERT_INT(equilibrium(&pair, NULL, NULL, 2e9, 1e8, 1.0, &x, &r), GM_STATE_OUT_OF_RANGE);
     GM_ASSERT_NAN(x);
+
     /* Flanks of another gear, on either side. */
     const gm_flanks_params sizes = {44, 0, 0, 0, 0, 0, 0};
     double memory[512];
@@ -603,12 +613,14 @@ static void a_guess_does_not_change_the_answer(void) {
     for (int i = 0; i < 600; ++i) {
         random_case c;
         GM_ASSERT_INT(random_mixed_case_make(&c, &seed, i), GM_OK);
+
         const double torque = i % 20 == 0 ? 0.0 : random_torque(&c, &seed);
         double x = NAN;
         gm_penetration r;
         const int status =
             equilibrium(&c.pair, c.use[0], c.use[1], c.pinion_angle, 1e8, torque, &x, &r);
         found += status == GM_OK;
+
         const double pitch = c.pair.transverse_base_pitch;
         const double sum = torque / (1e8 * c.pair.wheel.base_radius);
         const double guesses[] = {x,
@@ -626,6 +638,7 @@ static void a_guess_does_not_change_the_answer(void) {
                                   HUGE_VAL,
                                   -HUGE_VAL,
                                   NAN};
+
         for (size_t k = 0; k < sizeof guesses / sizeof guesses[0]; ++k) {
             gm_test_context("case %d, helix %g, guess %zu", i, c.params.helix_angle, k);
             double again = 0.0;
@@ -856,6 +869,8 @@ static void several_loads_are_carried_as_each_is(void) {
     for (int i = 0; i < 300; ++i) {
         random_case c;
         GM_ASSERT_INT(random_mixed_case_make(&c, &seed, i), GM_OK);
+
+        /* Every kind of mesh: simple, posed, tilted, with friction. */
         gm_mesh_params params;
         gm_mesh_params_default(&params);
         params.stiffness = 1e8;
@@ -864,6 +879,7 @@ static void several_loads_are_carried_as_each_is(void) {
         params.pose.axial_shift = i % 3 == 1 ? 0.1 * c.params.normal_module : 0.0;
         params.pose.skew = i % 9 == 4 ? 1e-5 : 0.0;
         params.friction_coefficient = i % 7 == 3 ? 0.05 : 0.0;
+
         any_mesh room;
         gm_mesh *mesh;
         if (gm_mesh_init(&mesh, &params, &c.pair, c.use[0], c.use[1], room.memory,
@@ -871,6 +887,8 @@ static void several_loads_are_carried_as_each_is(void) {
             random_case_free(&c);
             continue; /* tips out of mesh */
         }
+
+        /* Loads of either sign, one of none, one beyond what is carried, and one that is there twice. */
         double torque[LOADS], x[LOADS];
         gm_mesh_result result[LOADS];
         for (int k = 0; k < LOADS; ++k) {
@@ -879,6 +897,8 @@ static void several_loads_are_carried_as_each_is(void) {
         torque[9] = torque[8];
         const int status = gm_rolling_equilibria(mesh, c.pinion_angle, 1.0, torque, LOADS,
                                                  GM_WANT_WRENCH, NULL, x, result);
+
+        /* Each by itself; the status is the first one that is not done. */
         int first = GM_OK;
         for (int k = 0; k < LOADS; ++k) {
             gm_test_context("case %d, helix %g, load %d", i, c.params.helix_angle, k);
@@ -892,12 +912,14 @@ static void several_loads_are_carried_as_each_is(void) {
                 GM_ASSERT_NAN(result[k].force);
                 continue;
             }
+
             ++found;
             const double touching =
                 fmin(1.0, there.contact.drive_contact + there.contact.coast_contact);
             const double accuracy = 2.0 * ACCURACY * c.params.center_distance / touching;
             GM_ASSERT_ABS(x[k], alone, accuracy);
             GM_ASSERT(isfinite(result[k].wrench.wheel_moment[2]));
+
             if (fabs(c.pair.face_advance) > 0.05 * c.params.normal_module) { /* no steps */
                 const double contact =
                     1.0 + there.contact.drive_contact + there.contact.coast_contact;
@@ -906,6 +928,7 @@ static void several_loads_are_carried_as_each_is(void) {
                                   1e8 * c.pair.wheel.base_radius * accuracy * contact);
             }
         }
+
         GM_ASSERT_INT(status, first);
         random_case_free(&c);
     }
@@ -1034,6 +1057,7 @@ static void unequal_faces_carry_as_turned_helicoids_do(void) {
         params.axial_offset = -1.5e-3;
         params.pinion_start_radius = 0.5 * 68.2600963e-3;
         params.wheel_start_radius = 0.5 * 96.3795598e-3;
+
         const gm_pair pair = make_pair(&params);
         for (int k = 0; k < 5; ++k) {
             gm_test_context("case %d, position %d", i, k);

@@ -122,6 +122,8 @@ static void roots_are_where_pairs_change(void) {
                              : which == 1 ? reference_pair(REFERENCE_FACE_WIDTH)
                                           : make_pair(&ring);
         const double m = pair.normal_module;
+
+        /* With corners and without, on both sides, in a pose and as drawn. */
         for (int kind = 0; kind < 8; ++kind) {
             gm_mesh_params params;
             gm_mesh_params_default(&params);
@@ -132,6 +134,7 @@ static void roots_are_where_pairs_change(void) {
             GM_ASSERT_INT(
                 gm_mesh_init(&mesh, &params, &pair, NULL, NULL, where.memory, sizeof where.memory),
                 GM_OK);
+
             way w = {.mesh = mesh,
                      .side = kind / 2 % 2 == 0 ? 1.0 : -1.0,
                      .depth = 4e-3 * m,
@@ -142,6 +145,7 @@ static void roots_are_where_pairs_change(void) {
                 w.pose.center_distance_change = 1e-3 * m;
                 w.pose.axial_shift = 5e-3 * m;
             }
+
             gm_test_context("pair %d, kind %d", which, kind);
             GM_ASSERT(roots_of(&w) >= 6);
         }

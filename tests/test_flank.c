@@ -309,12 +309,15 @@ static void peak_follows_every_change(void) {
         gm_flanks *flanks = small_flanks(&sizes);
         double highest[2][TEETH] = {{0.0}}, pitch[2][TEETH] = {{0.0}};
         int places[2] = {0, 0};
+
         for (int change = 0; change < 60; ++change) {
             gm_test_context("run %d, change %d", run, change);
             const int side = (int)gm_test_uniform(&seed, 0.0, 2.0);
             const int tooth = (int)gm_test_uniform(&seed, -1.0, TEETH) + (change % 9 ? 0 : -1);
             const int one = tooth < 0 ? GM_ALL_TEETH : tooth;
             double value = gm_test_uniform(&seed, -5e-6, 5e-6);
+
+            /* A table or a pitch, of one tooth or all; and which deviation is the highest now. */
             if (change % 4 == 0 && places[side] < TABLES) {
                 double values[NODES];
                 value = -1.0;
@@ -322,6 +325,7 @@ static void peak_follows_every_change(void) {
                     values[k] = gm_test_uniform(&seed, -9e-6, 3e-6);
                     value = fmax(value, values[k]);
                 }
+
                 GM_ASSERT_INT(gm_flanks_set_table(flanks, side, one, values, 1.0), GM_OK);
                 ++places[side];
                 for (int k = 0; k < TEETH; ++k) {
@@ -333,6 +337,7 @@ static void peak_follows_every_change(void) {
                     pitch[side][k] = one == GM_ALL_TEETH || one == k ? value : pitch[side][k];
                 }
             }
+
             for (int s = GM_DRIVE; s <= GM_COAST; ++s) {
                 double expected = -1.0;
                 for (int k = 0; k < TEETH; ++k) {

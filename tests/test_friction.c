@@ -434,27 +434,34 @@ static void gradients_of_the_torques_are_those_of_differences(void) {
         if (gm_mesh_evaluate(c.mesh, &c.state, GM_WANT_DERIVATIVES, NULL, &r) == GM_OK &&
             r.drive_force + r.coast_force > 0.0) {
             const gm_gradient *by[2] = {&r.pinion_torque_by, &r.wheel_torque_by};
+
+            /* One-sided differences, which agree where nothing begins to touch between. */
             for (int which = 0; which < 4; ++which) {
                 const double scale = which < 2 ? 3e-6 * pair->normal_module / r_bp
                                                : 1e-5 * (fabs(c.state.pinion_speed) + 0.01);
+
                 double ahead[2], behind[2];
                 torques_at(c.mesh, c.state, which, scale, ahead);
                 torques_at(c.mesh, c.state, which, -scale, behind);
+
                 for (int gear = 0; gear < 2; ++gear) {
                     const double exact[4] = {by[gear]->pinion_angle, by[gear]->wheel_angle,
                                              by[gear]->pinion_speed, by[gear]->wheel_speed};
                     const double arm = gear ? r_bw : r_bp;
                     const double middle = gear ? r.wheel_torque : r.pinion_torque;
+
                     const double forward = (ahead[gear] - middle) / scale;
                     const double backward = (middle - behind[gear]) / scale;
                     const double size = which < 2 ? stiffness_of_all * r_bp * arm
                                                   : (r.drive_force + r.coast_force) * arm /
                                                             (fabs(c.state.pinion_speed) + 0.01) +
                                                         c.params.damping * r_bp * arm;
+
                     if (fabs(forward - backward) > 2e-5 * size) {
                         ++kinks;
                         continue;
                     }
+
                     ++compared;
                     tilted += c.params.pose.skew != 0.0;
                     GM_ASSERT_ABS(0.5 * (forward + backward), exact[which], 2e-5 * size);
@@ -482,10 +489,13 @@ static void touching_part_moves_the_friction_too(void) {
         gm_test_context("case %d", i);
         moving_case_make(&c, &seed, i);
         const gm_pair *pair = &c.gears.pair;
+
+        /* Hardly any stiffness: all is damping, whose force follows the touching part. */
         c.params.stiffness = 1e-3;
         c.params.damping = 1e5;
         c.params.friction_law = GM_FRICTION_CONSTANT;
         c.mesh = mesh_with(&c.room, &c.params, pair, c.gears.use[0], c.gears.use[1]);
+
         if (gm_mesh_evaluate(c.mesh, &c.state, GM_WANT_DERIVATIVES, NULL, &r) == GM_OK &&
             r.drive_force + r.coast_force > 0.0) {
             /* What friction alone makes of it. */
@@ -494,6 +504,7 @@ static void touching_part_moves_the_friction_too(void) {
                 r.pinion_torque_by.pinion_angle - r_bp * r.force_by.pinion_angle,
                 r.pinion_torque_by.wheel_angle - r_bp * r.force_by.wheel_angle};
             const double size = fmax(fabs(exact[0]), fabs(exact[1]));
+
             for (int which = 0; which < 2; ++which) {
                 const double h = 1e-7 * pair->normal_module / r_bp;
                 double friction[3];
@@ -505,12 +516,14 @@ static void touching_part_moves_the_friction_too(void) {
                                   GM_OK);
                     friction[k] = there.pinion_torque - r_bp * there.force;
                 }
+
                 const double forward = (friction[2] - friction[1]) / h;
                 const double backward = (friction[1] - friction[0]) / h;
                 if (fabs(forward - backward) > 1e-3 * size) {
                     ++kinks;
                     continue;
                 }
+
                 ++compared;
                 GM_ASSERT_ABS(0.5 * (forward + backward), exact[which], 1e-3 * size + 1e-6);
             }
@@ -529,22 +542,29 @@ static void gradients_hold_while_the_axes_tilt(void) {
         moving_case c;
         gm_test_context("case %d", i);
         moving_case_make(&c, &seed, i);
+
         const gm_pair *pair = &c.gears.pair;
         const double m = pair->normal_module;
+
+        /* Nearly at rest, next to the creep speed, while the axes move. */
         c.params.damping =
             0.0; /* its mean speed of approach moves too, which derivatives leave out */
         c.params.friction_speed = 1e-3;
         c.mesh = mesh_with(&c.room, &c.params, pair, c.gears.use[0], c.gears.use[1]);
         c.state.pinion_speed *= 1e-3;
         c.state.wheel_speed *= 1e-3;
+
         const gm_pose rate = {gm_test_uniform(&seed, -1.0, 1.0) * m, 1e-1 * m, 0.0,
                               gm_test_uniform(&seed, -1.0, 1.0) * 0.1,
                               gm_test_uniform(&seed, -1.0, 1.0) * 0.1};
         const double radii[2] = {pair->pinion.base_radius, pair->wheel.base_radius};
         gm_mesh_result at[3];
+
+        /* One-sided differences, as above. */
         for (int which = 0; which < 4; ++which) {
             const double h = which < 2 ? 1e-7 * m / radii[which] : 1e-6;
             int status = GM_OK;
+
             for (int k = 0; k < 3; ++k) {
                 gm_state state = c.state;
                 double *const places[4] = {&state.pinion_angle, &state.wheel_angle,
@@ -555,9 +575,11 @@ static void gradients_hold_while_the_axes_tilt(void) {
                 status |=
                     gm_mesh_evaluate_posed(c.mesh, &motion, GM_WANT_DERIVATIVES, NULL, &at[k]);
             }
+
             if (status != GM_OK || at[1].drive_force + at[1].coast_force == 0.0) {
                 continue;
             }
+
             const gm_gradient *by = &at[1].pinion_torque_by;
             const double exact[4] = {by->pinion_angle, by->wheel_angle, by->pinion_speed,
                                      by->wheel_speed};
@@ -565,6 +587,7 @@ static void gradients_hold_while_the_axes_tilt(void) {
             const double backward = (at[1].pinion_torque - at[0].pinion_torque) / h;
             const double size =
                 which < 2 ? stiffness_of_all * radii[0] * radii[which] : fabs(exact[which]) + 1e-3;
+
             if (fabs(forward - backward) > 1e-4 * size) {
                 ++kinks;
                 continue;

@@ -505,6 +505,7 @@ static void what_cannot_be_is_refused(void) {
     refused("(got class 6 and a scatter)");
     options.face_nodes = 8;
     refused("(got 8 x 31)");
+
     scatter.profile.slope.mean = 0.011;
     refused("profile: must be slope and crowning of at most 10 mm");
     scatter.helix.slope.deviation = -1e-6;
@@ -512,6 +513,8 @@ static void what_cannot_be_is_refused(void) {
         "helix: must be slope and crowning of at most 10 mm, with standard deviations not below 0");
     scatter.helix.crowning.mean = (double)NAN;
     refused("helix: must be slope and crowning");
+
+    /* Waves. */
     scatter.profile.wave = (gm_scatter_uniform){2e-6, 1e-6};
     refused("profile: must be amplitudes of waves from low to high");
     scatter.profile.wave = (gm_scatter_uniform){-1e-6, 1e-6};
@@ -523,6 +526,8 @@ static void what_cannot_be_is_refused(void) {
     scatter.helix.wave = (gm_scatter_uniform){0.0, 1e-6};
     scatter.helix.wave_count = (gm_scatter_uniform){1.0, 5.1};
     refused("helix: must have 4 nodes per wave (got too many waves for 21 nodes)");
+
+    /* Foot, tip and the rest. */
     scatter.foot.mean = (double)NAN;
     refused("foot: must be at most 10 mm");
     scatter.foot_end = 0.0;
@@ -531,12 +536,14 @@ static void what_cannot_be_is_refused(void) {
     refused("tip relief: must be at most 10 mm");
     scatter.tip_start = 1.0;
     refused("tip relief: must be at most 10 mm, with a start from 0 to below 1");
+
     scatter.roughness = -1e-9;
     refused("roughness, pitch, eccentricity: must be from 0 to 10 mm");
     scatter.pitch = (double)NAN;
     refused("roughness, pitch, eccentricity: must be from 0 to 10 mm");
     scatter.eccentricity = 0.02;
     refused("roughness, pitch, eccentricity: must be from 0 to 10 mm");
+
     GM_ASSERT_INT(generate(0), GM_IO_OK);
     end();
     gm_flank_scatter_default(NULL);

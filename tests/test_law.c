@@ -93,15 +93,18 @@ static void gradient_of_the_force_is_that_of_differences(void) {
         GM_ASSERT_INT(random_mixed_case_make(&c, &seed, i), GM_OK);
         const double r_bp = c.pair.pinion.base_radius;
         const double stiffness = 1e8;
+
         /* Damping and speed so that the viscous part is of the size of the elastic one. */
         const double damping = i % 3 == 0 ? 0.0 : 1e4;
         const double reach = stiffness * 1e-3 * c.params.normal_module / 1e4;
         const gm_state state = {c.pinion_angle -
                                     floor(c.pinion_angle), /* small: angles cost digits */
                                 0.0, gm_test_uniform(&seed, -0.5, 1.0) * reach / r_bp, 0.0};
+
         gm_state placed = state;
         placed.wheel_angle = c.wheel_angle + c.pair.pinion.base_radius / c.pair.wheel.base_radius *
                                                  (state.pinion_angle - c.pinion_angle);
+
         plain_mesh room;
         gm_mesh *mesh;
         gm_mesh_result r;
@@ -112,8 +115,11 @@ static void gradient_of_the_force_is_that_of_differences(void) {
             random_case_free(&c);
             continue;
         }
+
         const double exact[] = {r.force_by.pinion_angle, r.force_by.wheel_angle,
                                 r.force_by.pinion_speed, r.force_by.wheel_speed};
+
+        /* One-sided differences, which agree where nothing begins to touch between. */
         for (int which = 0; which < 4; ++which) {
             const double scale =
                 which < 2 ? 1e-7 * c.params.normal_module / r_bp * 100.0 : 1e-4 * reach / r_bp;
@@ -121,6 +127,7 @@ static void gradient_of_the_force_is_that_of_differences(void) {
             const double behind = moved_force(&c, mesh, placed, which, -scale);
             const double forward = (ahead - r.force) / scale;
             const double backward = (r.force - behind) / scale;
+
             const double size = fabs(exact[which]) + stiffness * (which < 2 ? r_bp : 0.0);
             if (fabs(forward - backward) > 1e-4 * size) {
                 ++kinks;

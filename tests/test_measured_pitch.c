@@ -359,6 +359,7 @@ static void wrong_set_ups_are_refused(void) {
         {{GM_FACE_I, GM_CLOCKWISE, 1, 0, 0, 44e-3}, "44 mm"},
         {{GM_FACE_I, GM_CLOCKWISE, 1, 0, 0, (double)INFINITY}, "infinite"},
     };
+
     for (size_t i = 0; i < GM_TEST_COUNT(cases); ++i) {
         setup = cases[i].setup;
         GM_ASSERT_INT(read_and_build(path, 0), GM_IO_ERR_OPTION);
@@ -366,12 +367,16 @@ static void wrong_set_ups_are_refused(void) {
         GM_ASSERT(strstr(error.text, cases[i].said) != NULL);
         GM_ASSERT(strstr(error.text, "must be") != NULL);
     }
+
+    /* Nothing measured. */
     measured.count = 0;
     setup = cases[0].setup;
     setup.datum_face = GM_FACE_I;
     GM_ASSERT_INT(gm_measured_pitch_build(&pitch, NULL, &measured, &setup, &pair, 0, &error),
                   GM_IO_ERR_FORMAT);
     GM_ASSERT(strstr(error.text, "measured pitch: must be that of all teeth") != NULL);
+
+    /* Sides and numbers of teeth by themselves; without a set-up only what needs none. */
     GM_ASSERT_INT(gm_measurement_side(NULL, GM_COAST), GM_COAST);
     GM_ASSERT_INT(gm_measurement_tooth(NULL, &pair, 0, 1), -1);
     GM_ASSERT_INT(gm_measurement_side(&setup, 7), -1);
@@ -380,6 +385,7 @@ static void wrong_set_ups_are_refused(void) {
     GM_ASSERT_INT(gm_measurement_tooth(&setup, &pair, 0, 0), -1);
     GM_ASSERT_INT(gm_measurement_tooth(&setup, NULL, 0, 1), -1);
     GM_ASSERT_INT(gm_measurement_tooth(&setup, &pair, 0, 45), 44);
+
     setup.first_tooth = 45;
     GM_ASSERT_INT(gm_measurement_tooth(&setup, &pair, 0, 1), -1);
     setup.first_tooth = -1;
@@ -387,9 +393,11 @@ static void wrong_set_ups_are_refused(void) {
     setup.first_tooth = 0;
     setup.first_number = -1;
     GM_ASSERT_INT(gm_measurement_tooth(&setup, &pair, 0, 1), -1);
+
     setup.datum_face = 0;
     GM_ASSERT_INT(gm_measurement_side(&setup, GM_LEFT), -1);
     GM_ASSERT_INT(gm_measurement_side(&setup, GM_DRIVE), GM_DRIVE);
+
     GM_ASSERT_INT(gm_measured_pitch_build(NULL, NULL, &measured, &setup, &pair, 0, &error),
                   GM_IO_ERR_NULL);
     GM_ASSERT_INT(gm_measured_pitch_read(&measured, NULL, GM_DECIMAL_POINT, &error),

@@ -103,6 +103,7 @@ static void a_field_at_fault_is_named(void) {
         {"simple_stiffness", stiffness, HUGE_VAL},
         {"simple_stiffness", stiffness, -HUGE_VAL},
     };
+
     const gm_pair pair = reference_pair(REFERENCE_FACE_WIDTH);
     for (size_t i = 0; i < sizeof wrong / sizeof wrong[0]; ++i) {
         gm_test_context("%s = %g", wrong[i].field, wrong[i].value);
@@ -118,6 +119,7 @@ static void a_field_at_fault_is_named(void) {
         } else {
             params.simple_stiffness = wrong[i].value;
         }
+
         const char *field = NULL, *requirement = NULL;
         GM_ASSERT_INT(gm_mesh_params_check(&params, &field, &requirement), GM_ERR_PARAMETER);
         GM_ASSERT_STRING(field, wrong[i].field);

@@ -165,11 +165,14 @@ static void reliefs_change_nothing_outside_their_range(void) {
         for (int shape = GM_SHAPE_LINEAR; shape <= GM_SHAPE_CIRCULAR; ++shape) {
             only(kind, shape, AMOUNT);
             gm_test_context("kind %d, shape %d", kind, shape);
+
             int inside = 0;
             int wrong = 0;
             for (int i = 0; i <= 97; ++i) {
                 for (int j = 0; j <= 97; ++j) {
                     const double t1 = i / 97.3, t2 = j / 97.3;
+
+                    /* Along face and profile from where the relief begins to act. */
                     const double face = kind == GM_MOD_END_RELIEF_I ||
                                                 kind == GM_MOD_TIP_CORNER_I ||
                                                 kind == GM_MOD_ROOT_CORNER_I
@@ -180,6 +183,7 @@ static void reliefs_change_nothing_outside_their_range(void) {
                                                    kind == GM_MOD_ROOT_CORNER_II
                                                ? t2
                                                : 1.0 - t2;
+
                     double covered = 0.0; /* 1 = where the range begins */
                     if (kind != GM_MOD_TIP_RELIEF && kind != GM_MOD_ROOT_RELIEF) {
                         covered += face / 0.25;
@@ -187,11 +191,13 @@ static void reliefs_change_nothing_outside_their_range(void) {
                     if (kind != GM_MOD_END_RELIEF_I && kind != GM_MOD_END_RELIEF_II) {
                         covered += profile / 0.2;
                     }
+
                     const double v = value(t1, t2);
                     wrong += covered > 1.0 ? v != 0.0 : !(v < 0.0 && v >= -AMOUNT);
                     inside += covered < 1.0;
                 }
             }
+
             GM_ASSERT_INT(wrong, 0);
             GM_ASSERT(inside > 100);
         }

@@ -352,6 +352,7 @@ static void published_pairs_have_their_tips_and_contact_ratios(void) {
             catalogue_params(pairs[i].pinion_teeth, pairs[i].wheel_teeth, pairs[i].module_mm,
                              pairs[i].helix_deg, pairs[i].distance_mm, pairs[i].x_p, pairs[i].x_w);
         const gm_pair p = make_pair(&params);
+
         const double mm = 1e-3;
         const double by_shifts = 2.0 * pairs[i].shift_digit * pairs[i].module_mm;
         const double m_n = p.normal_module;
@@ -360,6 +361,7 @@ static void published_pairs_have_their_tips_and_contact_ratios(void) {
         GM_ASSERT_ABS(m_n * p.wheel.tip_alteration, pairs[i].k_mm * mm,
                       (pairs[i].k_digit + by_shifts) * mm);
         GM_ASSERT_ABS(p.transverse_contact_ratio, pairs[i].contact_ratio, 0.5e-3);
+
         /* The tips keep the clearance of the rack, 0.25 m_n, so nothing is to be warned of. */
         GM_ASSERT_ABS(p.pinion_tip_clearance, 0.25 * m_n, 1e-15);
         GM_ASSERT_ABS(p.wheel_tip_clearance, 0.25 * m_n, 1e-15);

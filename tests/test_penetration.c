@@ -106,9 +106,12 @@ static void null_pointers_are_refused(void) {
 static void positions_out_of_range_are_refused(void) {
     const gm_pair pair = reference_pair(REFERENCE_FACE_WIDTH);
     const double p_bt = pair.transverse_base_pitch;
+
     gm_position wrong[16];
     int expected[16];
     int count = 0;
+
+    /* No number, in one field after the other. */
     static const double bad[] = {NAN, HUGE_VAL, -HUGE_VAL};
     for (int k = 0; k < 3; ++k) {
         for (int field = 0; field < 3; ++field) {
@@ -119,18 +122,22 @@ static void positions_out_of_range_are_refused(void) {
             expected[count++] = GM_STATE_NOT_FINITE;
         }
     }
+
+    /* Beyond half a pitch, and teeth that the gears do not have. */
     wrong[count] = good_position();
     wrong[count].offset = 0.5 * p_bt;
     expected[count++] = GM_STATE_OUT_OF_RANGE;
     wrong[count] = good_position();
     wrong[count].phase = 10.0 * p_bt;
     expected[count++] = GM_STATE_OUT_OF_RANGE;
+
     for (int k = 0; k < 4; ++k) {
         wrong[count] = good_position();
         *(k < 2 ? &wrong[count].pinion_tooth : &wrong[count].wheel_tooth) =
             k % 2 == 0 ? -1 : (k < 2 ? 45 : 41);
         expected[count++] = GM_ERR_TOOTH;
     }
+
     for (int i = 0; i < count; ++i) {
         gm_test_context("position %d", i);
         gm_penetration r;
@@ -139,12 +146,14 @@ static void positions_out_of_range_are_refused(void) {
             GM_ASSERT_INT(evaluations[e](&pair, NULL, NULL, &wrong[i], &r), expected[i]);
             assert_all_nan(&r);
         }
+
         gm_wrench w;
         memset(&w, 1, sizeof w);
         GM_ASSERT_INT(wrench_3d_at(&pair, NULL, NULL, &wrong[i], 1e8, 1.0, &w), expected[i]);
         GM_ASSERT_NAN(w.pinion_force[0]);
         GM_ASSERT_NAN(w.wheel_moment[2]);
     }
+
     const gm_position good = good_position();
     gm_penetration r;
     GM_ASSERT_INT(penetration_3d_at(&pair, NULL, NULL, &good, &r), GM_OK);
@@ -171,6 +180,7 @@ static void speeds_are_taken_up_to_1e9(void) {
     gm_pair_params params = reference_params(REFERENCE_FACE_WIDTH);
     params.backlash = -20e-6;
     const gm_pair pair = make_pair(&params);
+
     static const double absurd[] = {1.01e9, -1.01e9, 1e80, -1.7e308};
     for (int k = 0; k < 4; ++k) {
         gm_test_context("%g", absurd[k]);
@@ -179,6 +189,7 @@ static void speeds_are_taken_up_to_1e9(void) {
         gm_position position = {0, 0, 0.0, 0.0, absurd[k], 0.0};
         gm_penetration r;
         gm_wrench w;
+
         for (int gear = 0; gear < 2; ++gear) {
             GM_ASSERT_INT(gm_penetration_3d(&pair, NULL, NULL, &states[gear], &r),
                           GM_STATE_OUT_OF_RANGE);
@@ -189,29 +200,36 @@ static void speeds_are_taken_up_to_1e9(void) {
                           GM_STATE_OUT_OF_RANGE);
             GM_ASSERT_NAN(position.offset_rate);
         }
+
         position = (gm_position){0, 0, 0.0, 0.0, absurd[k], 0.0};
         GM_ASSERT_INT(penetration_3d_at(&pair, NULL, NULL, &position, &r), GM_STATE_OUT_OF_RANGE);
         assert_all_nan(&r);
         GM_ASSERT_INT(wrench_3d_at(&pair, NULL, NULL, &position, 1e8, 1e3, &w),
                       GM_STATE_OUT_OF_RANGE);
         GM_ASSERT_NAN(w.wheel_force[0]);
+
         GM_ASSERT_INT(penetration_simple_at(&pair, 0.0, absurd[k], &r), GM_STATE_OUT_OF_RANGE);
         assert_all_nan(&r);
         GM_ASSERT_INT(penetration_simple_at(&pair, k % 2 ? 1.01e18 : -1.7e308, 0.0, &r),
                       GM_STATE_OUT_OF_RANGE);
         assert_all_nan(&r);
+
         GM_ASSERT_INT(gm_position_from_pinion_angle(&pair, 0.1, 0.0, absurd[k], &position),
                       GM_STATE_OUT_OF_RANGE);
         GM_ASSERT_NAN(position.offset_rate);
     }
+
+    /* The bounds themselves are taken. */
     gm_penetration r;
     gm_position position = {0, 0, 0.0, 0.0, 1e9, 0.0};
     GM_ASSERT_INT(penetration_3d_at(&pair, NULL, NULL, &position, &r), GM_OK);
     GM_ASSERT_REL(r.rate, 1e9 * (r.drive_contact + r.coast_contact), 1e-15);
+
     GM_ASSERT_INT(gm_position_from_pinion_angle(&pair, 0.1, 0.0, -1e9, &position), GM_OK);
     GM_ASSERT_INT(penetration_simple_at(&pair, -1e18, -1e9, &r), GM_OK);
     GM_ASSERT_REL(r.coast, 1e18, 1e-15);
     GM_ASSERT_REL(r.rate, -1e9, 1e-15);
+
     const gm_state state = {0.1, 0.1 * 45.0 / 41.0, 1e9, -1e9};
     GM_ASSERT_INT(gm_penetration_simple(&pair, &state, &r), GM_OK);
     GM_ASSERT_INT(gm_penetration_3d(&pair, NULL, NULL, &state, &r), GM_OK);
@@ -241,6 +259,8 @@ static void evaluation_writes_its_output_alone(void) {
         const gm_pair before = c.pair;
         gm_pair copy;
         memcpy(&copy, &c.pair, sizeof copy);
+
+        /* Pair and tables as they were. */
         double *tables[2] = {NULL, NULL};
         size_t bytes[2] = {0, 0};
         for (int g = 0; g < 2; ++g) {
@@ -252,12 +272,14 @@ static void evaluation_writes_its_output_alone(void) {
                 memcpy(tables[g], s->values, bytes[g]);
             }
         }
+
         gm_penetration first;
         gm_penetration again;
         memset(&first, 0, sizeof first);
         memset(&again, 0, sizeof again);
         GM_ASSERT_INT(gm_penetration_3d(&c.pair, c.use[0], c.use[1], &state, &first), GM_OK);
         GM_ASSERT_INT(gm_penetration_3d(&copy, c.use[0], c.use[1], &state, &again), GM_OK);
+
         GM_ASSERT(memcmp(&first, &again, sizeof first) == 0);
         GM_ASSERT(memcmp(&before, &c.pair, sizeof before) == 0);
         for (int g = 0; g < 2; ++g) {

@@ -270,19 +270,24 @@ static void gradient_between_tilted_axes_is_that_of_differences(void) {
         random_case c;
         gm_test_context("case %d, seed %llx", i, (unsigned long long)seed);
         GM_ASSERT_INT(random_mixed_case_make(&c, &seed, i), GM_OK);
+
+        /* Tilted and moved, damped and not. */
         plain_mesh room;
         gm_mesh *mesh;
         gm_mesh_params law;
         gm_mesh_params_default(&law);
         law.stiffness = 1e8;
         law.damping = i % 2 == 0 ? 0.0 : 1e3;
+
         const double reach = 2e-3 * c.params.normal_module / c.params.face_width;
         law.pose.skew = gm_test_uniform(&seed, -reach, reach);
         law.pose.inclination = gm_test_uniform(&seed, -reach, reach);
         law.pose.offset = gm_test_uniform(&seed, -1e-3, 1e-3) * c.params.normal_module;
         const double r_bp = c.pair.pinion.base_radius, r_bw = c.pair.wheel.base_radius;
+
         const int made =
             gm_mesh_init(&mesh, &law, &c.pair, c.use[0], c.use[1], room.memory, sizeof room.memory);
+
         const double angle = gm_test_uniform(&seed, 0.0, 1.0);
         const double x =
             0.5 * c.pair.backlash + c.params.normal_module * gm_test_uniform(&seed, -1e-3, 4e-3);
@@ -300,6 +305,8 @@ static void gradient_between_tilted_axes_is_that_of_differences(void) {
                 status = gm_mesh_evaluate_at(mesh, &position, GM_WANT_DERIVATIVES, NULL, &at[k]);
             }
         }
+
+        /* By x and by the roll, one-sided: both agree where nothing begins to touch between. */
         if (status == GM_OK && at[0].force > 0.0) {
             const double exact[2] = {-at[0].force_by.wheel_angle / r_bw,
                                      at[0].force_by.pinion_angle / r_bp +

@@ -421,6 +421,7 @@ static void derived_geometry(void) {
         if (prepare(&p, c)) {
             const gm_pair *q = &p.pair;
             const double cos_beta = cos(q->helix_angle);
+
             /* Differences of lengths of the size of the centre distance d lose some of its last
              * bits: backlash (p_bt minus both thicknesses plus the spread of the axes) and path
              * limits (line of action minus the mate's tip). 8 roundings of d, about 1e-15 d. */
@@ -456,6 +457,7 @@ static void derived_geometry(void) {
                 {"overlap_ratio", q->overlap_ratio, 0.0},
                 {"total_contact_ratio", q->total_contact_ratio, 0.0},
             };
+
             for (int i = 0; i < DERIVED_COUNT; ++i) {
                 /* 1e-12: some thousand roundings, far below any drawing, far above chance. */
                 gm_test_near(derived[i].got, c->derived[i], 1e-12, derived[i].absolute,
