@@ -45,17 +45,36 @@ EXAMPLE = (
 
 
 class Ring(Case):
-    def test_measurements_of_a_ring_are_refused(self):
+    def make(self):
         with open(PARAMS, encoding="utf-8") as file:
             text = re.sub(r"(?m)^.*_(tip|start)_diameter_mm.*\n", "", file.read())
         for key, value in (("wheel_teeth", -120), ("center_distance_mm", 73.8), ("normal_pressure_angle_deg", 20)):
             text = re.sub(rf"(?m)^{key} = .*$", f"{key} = {value}", text)
         self.write("ring.ini", text)
-        said = "must have external teeth; measurements of a ring are not read"
-        self.refused(said, "ring.ini", "--gear", "wheel", "--datum-face", "I", "--count", "clockwise",
-                     "--measured-pitch", PITCH, "--pitch", "p.csv")
-        self.refused(said, "ring.ini", "--gear", "wheel", "--datum-face", "I", "--count", "clockwise",
-                     "--traces", TRACES, "--flanks", "f.csv")
+
+    def test_a_ring_is_measured_as_its_teeth_look_with_their_tips_up(self):
+        self.make()
+        # Tooth 3 of 120 stands 2 um ahead, counted clockwise from face I: as phi_w grows, with the pinion.
+        pitch = "".join(f"{tooth},{flank},{2 if tooth == 3 else 0}\n" for tooth in range(1, 121) for flank in ("left", "right"))
+        self.write("pitch.csv", PITCH_HEADER + pitch)
+        said = self.accepted("ring.ini", "--gear", "wheel", "--datum-face", "I", "--count", "clockwise",
+                             "--measured-pitch", "pitch.csv", "--pitch", "p.csv")
+        self.assertIn("# ring of 120 teeth, from measurements", said)
+        self.assertIn("datum face I (t1 = 0): left flanks are coast, right flanks are drive", said)
+        self.assertIn("seen from it the ring turns clockwise as it is driven forward", said)
+        self.assertIn("measured teeth 1, 2, 3 .. 120 are teeth 0, 1, 2 .. 119", said)
+        rows = {(int(row["tooth"]), row["flank"]): float(row["deviation_um"]) for row in rows_of(self.path("p.csv"))}
+
+        # A ring tooth ahead has gone away from the pinion's drive flank. Arc to base tangent: r_b / r = cos(alpha_t).
+        alpha = math.atan(math.tan(math.radians(20)) / math.cos(math.radians(33)))
+        self.assertAlmostEqual(rows[2, "drive"], -2 * math.cos(alpha) * 119 / 120, delta=1e-3)
+        self.assertAlmostEqual(rows[2, "coast"], 2 * math.cos(alpha) * 119 / 120, delta=1e-3)
+
+    def test_measurements_of_another_gear_are_refused(self):
+        self.make()
+        how = ("ring.ini", "--gear", "wheel", "--datum-face", "I", "--count", "clockwise")
+        self.refused("must have a row for each of the 120 teeth", *how, "--measured-pitch", PITCH, "--pitch", "p.csv")
+        self.refused("diameter_mm: must be from", *how, "--traces", TRACES, "--flanks", "f.csv")
 
 
 class Example(Case):

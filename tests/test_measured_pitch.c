@@ -3,7 +3,7 @@
 
 /*
  * Measured pitch: a displaced gear, constructed point by point and looked at as a machine does, from both faces, counted
- * both ways, as pinion and as wheel; single and cumulative values; everything that must be refused.
+ * both ways, as pinion, as wheel and as ring; single and cumulative values; everything that must be refused.
  */
 #include "io_test.h"
 #include "reference_gear.h"
@@ -35,9 +35,16 @@ typedef struct displaced {
     double y;
 } displaced;
 
+static int is_ring(const displaced *of) {
+    return of->gear->sign < 0.0;
+}
+
 /* Direction of the middle of a tooth in the section z = 0 at zero angles, counter-clockwise from +x. */
 static double tooth_direction(const displaced *of, int tooth) {
     const int teeth = of->gear->teeth;
+    if (is_ring(of)) {
+        return (2 * tooth + 1) * pi / teeth;
+    }
     return of->wheel ? pi - (2 * tooth + 1) * pi / teeth : 2.0 * pi * tooth / teeth;
 }
 
@@ -51,6 +58,16 @@ typedef struct flank_point {
 
 static flank_point involute(const displaced *of, int tooth, int turn, double roll_angle) {
     const double base = of->gear->base_radius;
+    if (is_ring(of)) {
+        /* The same thread the other way round: internal teeth grow thicker outwards, and their normals look inwards. */
+        const double left =
+            tooth_direction(of, tooth) + turn * (of->gear->base_half_thickness + roll_angle);
+        const flank_point inner = {base * cos(left) + turn * base * roll_angle * sin(left) + of->x,
+                                   base * sin(left) - turn * base * roll_angle * cos(left) + of->y,
+                                   -turn * sin(left), turn * cos(left)};
+        return inner;
+    }
+
     /* The thread unwinds from the base circle: where it leaves it, and along which tangent. */
     const double leaves =
         tooth_direction(of, tooth) + turn * (of->gear->base_half_thickness - roll_angle);
@@ -90,8 +107,8 @@ static gm_pitch_point observe(const displaced *of, const displaced *ideal, int t
     const double middle = seen(tooth_direction(of, tooth), face);
     const double nominal = seen(crossing_direction(ideal, tooth, turn, radius), face);
     const double actual = seen(crossing_direction(of, tooth, turn, radius), face);
-    /* With the tip up, counter-clockwise is left. */
-    const int left = turned(middle, nominal) > 0.0;
+    /* With the tip up, counter-clockwise is left; the tip of a ring looks to the axis. */
+    const int left = (turned(middle, nominal) > 0.0) != is_ring(of);
     const double counted = setup.counting == GM_COUNTERCLOCKWISE ? 1.0 : -1.0;
     const double first = seen(tooth_direction(of, setup.first_tooth), face);
     const int steps = (int)lround(counted * turned(first, middle) * teeth / (2.0 * pi));
@@ -127,9 +144,10 @@ static void try_displaced_gear(int wheel, double radius) {
     GM_ASSERT_INT(gm_measured_pitch_build(&pitch, &report, &measured, &setup, &pair, wheel, &error),
                   GM_IO_OK);
     for (int tooth = 0; pitch.teeth > 0 && tooth < of.gear->teeth; ++tooth) {
-        /* The drive flank is the counter-clockwise one on both gears: the pinion's leads, the wheel's is hit. */
-        GM_ASSERT_ABS(pitch.drive[tooth], added(&of, tooth, 1, radius), 1e-10);
-        GM_ASSERT_ABS(pitch.coast[tooth], added(&of, tooth, -1, radius), 1e-10);
+        /* The drive flank is the counter-clockwise one: the pinion's leads, the wheel's is hit; on a ring the other one. */
+        const int drive = is_ring(&of) ? -1 : 1;
+        GM_ASSERT_ABS(pitch.drive[tooth], added(&of, tooth, drive, radius), 1e-10);
+        GM_ASSERT_ABS(pitch.coast[tooth], added(&of, tooth, -drive, radius), 1e-10);
         GM_ASSERT(pitch.drive_set[tooth] && pitch.coast_set[tooth]);
     }
     GM_ASSERT_REL(report.displacement, hypot(of.x, of.y), 1e-4);
@@ -157,6 +175,40 @@ static void a_displaced_gear_is_seen_however_it_stood_and_was_counted(void) {
         gm_test_context("case %d", which);
         try_displaced_gear(wheel,
                            wheel ? pair.wheel.reference_radius : pair.pinion.reference_radius);
+    }
+}
+
+static void a_displaced_ring_is_seen_so_too(void) {
+    begin();
+    gm_pair_params params;
+    gm_pair_params_default(&params);
+    params.pinion_teeth = 23;
+    params.wheel_teeth = -71;
+    params.normal_module = 3e-3;
+    params.normal_pressure_angle = pi / 9.0;
+    params.center_distance = 72e-3;
+    params.face_width = 30e-3;
+    GM_ASSERT_INT(gm_pair_init(&pair, &params), GM_OK);
+    for (int which = 0; which < 8; ++which) {
+        setup.datum_face = which & 1 ? GM_FACE_I : GM_FACE_II;
+        setup.counting = which & 2 ? GM_CLOCKWISE : GM_COUNTERCLOCKWISE;
+        setup.first_number = which & 4 ? 0 : 1;
+        setup.first_tooth = 9 * which;
+        gm_test_context("case %d", which);
+        try_displaced_gear(1, pair.wheel.reference_radius);
+    }
+
+    /* The measuring circle lies between tip and root. */
+    setup.pitch_diameter = 2.0 * pair.wheel.tip_radius;
+    try_displaced_gear(1, pair.wheel.tip_radius);
+    const double wrong[2] = {2.0 * pair.wheel.tip_radius - 1e-6,
+                             2.0 * pair.wheel.root_radius + 1e-6};
+    for (int k = 0; k < 2; ++k) {
+        setup.pitch_diameter = wrong[k];
+        GM_ASSERT_INT(gm_measured_pitch_build(&pitch, &report, &measured, &setup, &pair, 1, &error),
+                      GM_IO_ERR_OPTION);
+        assert_error(&error, "", 0, k == 0 ? "206.999 mm" : "220.501 mm",
+                     "from 207 mm (tip) to 220.5 mm (root)");
     }
 }
 
@@ -407,6 +459,7 @@ static void wrong_set_ups_are_refused(void) {
 int main(int argc, char **argv) {
     static const gm_test tests[] = {
         GM_TEST(a_displaced_gear_is_seen_however_it_stood_and_was_counted),
+        GM_TEST(a_displaced_ring_is_seen_so_too),
         GM_TEST(the_measuring_circle_counts),
         GM_TEST(single_and_cumulative_values_say_the_same),
         GM_TEST(what_rounding_leaves_of_the_sum_is_spread),

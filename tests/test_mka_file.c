@@ -192,6 +192,66 @@ static void another_gear_is_refused(void) {
                   GM_IO_OK);
 }
 
+/* A ring has the hand of its pinion, and its teeth are counted with either sign. */
+static void a_ring_is_read_as_one(void) {
+    static const char trace[] = "Profil:\nZahn-Nr.: 3 links / 3 Werte z= 6.5\n1 2 3\n";
+    static const struct {
+        const char *header;
+        const char *refusal; /* NULL: accepted */
+    } files[] = {
+        {HEADER("63", "rechts"), "must be an internal gear, as the wheel"},
+        {HEADER("63 Innenverzahnung ", "rechts"), NULL},
+        {HEADER("-63 Innenverzahnung ", "rechts"), NULL},
+        {HEADER("-63 Innenverzahnung ", "links"), "the helix must be right-handed"},
+        {HEADER("64 Innenverzahnung ", "rechts"), "number of teeth: must be 63"},
+    };
+    gm_pair_params params;
+    gm_pair_params_default(&params);
+    params.pinion_teeth = 21;
+    params.wheel_teeth = -63;
+    params.normal_module = 2e-3;
+    params.normal_pressure_angle = 20 * pi / 180;
+    params.helix_angle = 15.5 * pi / 180;
+    params.center_distance = 43.5e-3;
+    params.face_width = 12e-3;
+    gm_pair ring;
+    GM_ASSERT_INT(gm_pair_init(&ring, &params), GM_OK);
+
+    for (size_t i = 0; i < sizeof files / sizeof files[0]; ++i) {
+        char text[2000];
+        char *range = NULL;
+        snprintf(text, sizeof text, "%s%s", files[i].header, trace);
+
+        /* From the tip of the ring outwards. */
+        range = strstr(text, "42.000 42.500");
+        memcpy(range, "128.50       ", 13);
+        range = strstr(text, "47.000");
+        memcpy(range, "133.50", 6);
+        gm_traces_free(&traces);
+        const int status =
+            gm_traces_read(&traces, file_of(text), &ring, 1, GM_DECIMAL_POINT, &error);
+        gm_test_context("file %d: %s", (int)i, error.text);
+        GM_ASSERT_INT(status, files[i].refusal == NULL ? GM_IO_OK : GM_IO_ERR_FORMAT);
+        if (files[i].refusal != NULL) {
+            GM_ASSERT(strstr(error.text, files[i].refusal) != NULL);
+        } else if (traces.count == 1) {
+            const double base = ring.wheel.base_radius;
+            const double from = sqrt(64.25e-3 * 64.25e-3 - base * base);
+            const double to = sqrt(66.75e-3 * 66.75e-3 - base * base);
+            GM_ASSERT_REL(traces.traces[0].position[1], 0.5 * (from + to), 1e-12);
+        }
+    }
+    gm_test_context("%s", "");
+    gm_traces_free(&traces);
+    GM_ASSERT_INT(
+        gm_traces_read(
+            &traces,
+            file_of(HEADER("21 Innenverzahnung",
+                           "rechts") "Profil:\nZahn-Nr.: 3 links / 2 Werte z= 6.5\n1 2\n"),
+            &pair, 0, GM_DECIMAL_POINT, &error),
+        GM_IO_ERR_FORMAT);
+}
+
 static void what_is_not_understood_is_refused_with_its_line(void) {
     refuse(PLAIN "Zahn-Nr.: 1 links / 24  Werte  z= 7.5\n 1.0 2.0 3.0\n", 19,
            "must have 24 values (got 3)");
@@ -242,6 +302,7 @@ int main(int argc, char *argv[]) {
         GM_TEST(english_reads_as_well),
         GM_TEST(pitch_is_the_cumulative_column_of_both_flanks),
         GM_TEST(another_gear_is_refused),
+        GM_TEST(a_ring_is_read_as_one),
         GM_TEST(what_is_not_understood_is_refused_with_its_line),
         GM_TEST(numbers_may_have_a_comma_where_that_is_said),
     };

@@ -29,7 +29,10 @@ static void print_sources(const measured_gear *of, FILE *file) {
     const flanks_options *options = of->options;
 
     fprintf(file, "# %s of %d teeth, from measurements: gearflanks %s,",
-            options->wheel ? "wheel" : "pinion", of->gear->teeth, gm_version());
+            of->gear->sign < 0.0 ? "ring"
+            : options->wheel     ? "wheel"
+                                 : "pinion",
+            of->gear->teeth, gm_version());
     if (options->traces != NULL) {
         fprintf(file, " traces %s", options->traces);
     }
@@ -44,6 +47,7 @@ static void print_mapping(const measured_gear *of, FILE *file) {
     const gm_measurement *how = &of->options->measurement;
     const int from_one = how->datum_face == GM_FACE_I;
     const int wheel = of->options->wheel;
+    const int is_ring = of->gear->sign < 0.0;
     const int first = how->first_number;
     int tooth[4];
 
@@ -54,10 +58,14 @@ static void print_mapping(const measured_gear *of, FILE *file) {
     fprintf(file, "# datum face %s (t1 = %d): left flanks are %s, right flanks are %s\n",
             from_one ? "I" : "II", from_one ? 0 : 1, side_names[gm_measurement_side(how, GM_LEFT)],
             side_names[gm_measurement_side(how, GM_RIGHT)]);
-    /* From face II the pinion turns counter-clockwise, the wheel the other way. */
+
+    /* From face II the pinion turns counter-clockwise, an external wheel the other way, a ring as the pinion. */
     fprintf(file,
             "# seen from it the %s turns %s as it is driven forward, and teeth are counted %s\n",
-            wheel ? "wheel" : "pinion", from_one == !wheel ? "clockwise" : "counter-clockwise",
+            is_ring ? "ring"
+            : wheel ? "wheel"
+                    : "pinion",
+            from_one == (!wheel || is_ring) ? "clockwise" : "counter-clockwise",
             how->counting == GM_CLOCKWISE ? "clockwise" : "counter-clockwise");
     fprintf(file, "# measured teeth %d, %d, %d .. %d are teeth %d, %d, %d .. %d\n", first,
             first + 1, first + 2, first + of->gear->teeth - 1, tooth[0], tooth[1], tooth[2],

@@ -499,14 +499,14 @@ typedef struct gm_measurement {
     int first_tooth;  /**< which tooth of gearmesh that is, 0 .. z - 1 [0] */
     /** Deviations of traces: 0 = along the surface normal, 1 = in the transverse section along the base tangent [0] */
     int transverse;
-    /** Measuring circle of the pitch, from base to tip circle, m [NaN: reference diameter] */
+    /** Measuring circle of the pitch, from base to tip circle, of a ring from tip to root, m [NaN: reference diameter] */
     double pitch_diameter;
 } gm_measurement;
 
 /** Fills in the defaults; the datum face and the direction of counting are left to be said. */
 GM_API void gm_measurement_default(gm_measurement *measurement);
 
-/** GM_DRIVE or GM_COAST for a measured flank: from face II, left is drive, on both gears; -1 if the flank
+/** GM_DRIVE or GM_COAST for a measured flank: from face II, left is drive, on both gears and on a ring; -1 if the flank
  *  or the datum face is unknown. */
 GM_API int gm_measurement_side(const gm_measurement *measurement, int flank);
 

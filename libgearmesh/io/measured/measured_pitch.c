@@ -180,7 +180,7 @@ static void take_out_mean(builder *build, int side, double *place) {
 /* From how far a flank stands ahead on the machine, as an arc, to the material added on it. */
 static double material_per_arc(const builder *build, int side) {
     const double ahead = (side == GM_DRIVE) == !build->wheel ? 1.0 : -1.0;
-    return ahead * gmi_measurement_sense(build->measurement, build->wheel) *
+    return ahead * gmi_measurement_sense(build->measurement, build->pair, build->wheel) *
            build->gear->base_radius / gmi_measuring_radius(build->measurement, build->gear);
 }
 
@@ -242,8 +242,9 @@ static double square(vector of) {
  * gear. */
 static vector first_order(const builder *build, const double *material) {
     const int teeth = build->gear->teeth;
-    /* Teeth follow each other counter-clockwise on the pinion, clockwise on the wheel, seen from face II. */
-    const double step = (build->wheel ? -1.0 : 1.0) * build->gear->pitch_angle;
+    /* Teeth follow each other counter-clockwise on pinion and ring, clockwise on an external wheel, seen from face II. */
+    const int clockwise = build->wheel && build->gear->sign > 0.0;
+    const double step = (clockwise ? -1.0 : 1.0) * build->gear->pitch_angle;
     vector sum = {0.0, 0.0};
     for (int i = 0; i < teeth; ++i) {
         sum.x += 2.0 / teeth * material[i] * cos(step * i);
@@ -263,7 +264,9 @@ static double rest_of(vector a, vector b, vector *mean) {
 
 /*
  * A displaced gear adds on each flank what its displacement has along the flank's normal. The normal of a drive
- * flank stands at `lean` to the direction of its tooth, that of a coast flank at -lean, on both gears.
+ * flank stands at `lean` to the direction of its tooth (from the axis), that of a coast flank at -lean, on both gears.
+ * On an external gear the drive flank is the counter-clockwise one, and its normal leans outwards. On a ring it is the
+ * clockwise one, thicker by the involute function farther out, and its normal leans inwards.
  */
 static void fit_displacement(builder *build, const gm_pitch *pitch) {
     gm_measured_pitch_report *report = &build->report;
@@ -276,7 +279,8 @@ static void fit_displacement(builder *build, const gm_pitch *pitch) {
     const double base = build->gear->base_radius;
     const double radius = gmi_measuring_radius(build->measurement, build->gear);
     const double roll_angle = gmi_roll_length(radius, base) / base;
-    const double lean = 0.5 * GMI_PI + build->gear->base_half_thickness - roll_angle;
+    const double lean =
+        build->gear->sign * (0.5 * GMI_PI + build->gear->base_half_thickness) - roll_angle;
 
     /* Turned back by it, the first orders of both sides are the displacement, if there is one. */
     const vector drive = first_order(build, pitch->drive);

@@ -4,7 +4,7 @@
 /*
  * Which tooth and flank of the gear something is that was measured. Derived in docs/measured-flanks.md from the
  * frame of docs/conventions.md: seen from face II (against +z) the drive flank of a tooth with its tip up is the
- * left one, on both gears, as left flanks always meet left flanks.
+ * left one, on pinion, wheel and ring, as left flanks always meet left flanks.
  */
 
 #include "measurement.h"
@@ -43,11 +43,14 @@ int gm_measurement_side(const gm_measurement *measurement, int flank) {
     return (flank == GM_LEFT) == (measurement->datum_face == GM_FACE_II) ? GM_DRIVE : GM_COAST;
 }
 
-int gmi_measurement_sense(const gm_measurement *measurement, int wheel) {
+int gmi_measurement_sense(const gm_measurement *measurement, const gm_pair *pair, int wheel) {
     /* Counter-clockwise from face II is clockwise from face I. */
     const int counterclockwise =
         (measurement->counting == GM_COUNTERCLOCKWISE) == (measurement->datum_face == GM_FACE_II);
-    return counterclockwise == !wheel ? 1 : -1;
+
+    /* A ring turns, and its teeth follow each other, as those of the pinion. */
+    const int follows_pinion = !wheel || pair->wheel.sign < 0.0;
+    return counterclockwise == follows_pinion ? 1 : -1;
 }
 
 int gm_measurement_tooth(const gm_measurement *measurement, const gm_pair *pair, int wheel,
@@ -63,26 +66,14 @@ int gm_measurement_tooth(const gm_measurement *measurement, const gm_pair *pair,
     }
 
     /* Numbers grow with or against the direction in which the teeth of gearmesh follow each other. */
-    const int steps = gmi_measurement_sense(measurement, wheel) * (number - first);
+    const int steps = gmi_measurement_sense(measurement, pair, wheel) * (number - first);
     return (zero + steps + teeth) % teeth;
-}
-
-int gmi_measurement_check_gear(const gm_gear *gear, gm_io_error *error) {
-    if (!(gear->sign < 0.0)) {
-        return GM_IO_OK;
-    }
-    return gmi_error_set(error, GM_IO_ERR_OPTION, 0,
-                         "the gear that was measured: must have external teeth; measurements of a "
-                         "ring are not read, its deviation and pitch files are");
 }
 
 int gmi_measurement_check(const gm_measurement *measurement, const gm_pair *pair, int wheel,
                           gm_io_error *error) {
     const int teeth = gmi_gear_of(pair, wheel)->teeth;
-    int status = gmi_check_teeth(teeth, error);
-    if (status == GM_IO_OK) {
-        status = gmi_measurement_check_gear(gmi_gear_of(pair, wheel), error);
-    }
+    const int status = gmi_check_teeth(teeth, error);
     if (status != GM_IO_OK) {
         return status;
     }
@@ -111,20 +102,22 @@ int gmi_measurement_check(const gm_measurement *measurement, const gm_pair *pair
                              measurement->first_tooth);
     }
 
-    /* The measuring circle has to cut the flanks; NaN stands for that of reference. */
+    /* The measuring circle has to cut the flanks; NaN stands for that of reference. Those of a ring lie outside its tip. */
     const double diameter = measurement->pitch_diameter;
     const gm_gear *gear = gmi_gear_of(pair, wheel);
-    if (!isnan(diameter) &&
-        !(diameter >= 2.0 * gear->base_radius && diameter <= 2.0 * gear->tip_radius)) {
+    const int is_ring = gear->sign < 0.0;
+    const double smallest = 2.0 * fmax(gear->base_radius, is_ring ? gear->tip_radius : 0.0);
+    const double largest = 2.0 * (is_ring ? gear->root_radius : gear->tip_radius);
+    if (!isnan(diameter) && !(diameter >= smallest && diameter <= largest)) {
         char got[GMI_NUMBER_SIZE];
         char low[GMI_NUMBER_SIZE];
         char high[GMI_NUMBER_SIZE];
         gmi_error_option(error, "pitch_diameter");
         return gmi_error_set(error, GM_IO_ERR_OPTION, 0,
-                             "the measuring circle of the pitch: must be from %s mm (base) to %s "
-                             "mm (tip) in diameter (got %s mm)",
-                             gmi_number_text(low, 2.0 * gear->base_radius, 3, 7),
-                             gmi_number_text(high, 2.0 * gear->tip_radius, 3, 7),
+                             "the measuring circle of the pitch: must be from %s mm (%s) to %s "
+                             "mm (%s) in diameter (got %s mm)",
+                             gmi_number_text(low, smallest, 3, 7), is_ring ? "tip" : "base",
+                             gmi_number_text(high, largest, 3, 7), is_ring ? "root" : "tip",
                              isfinite(diameter) ? gmi_number_text(got, diameter, 3, 7)
                                                 : "infinite");
     }

@@ -17,17 +17,14 @@
 int gmi_measurement_check(const gm_measurement *measurement, const gm_pair *pair, int wheel,
                           gm_io_error *error);
 
-/** Refuses a ring: its roll lengths fall towards the tip, and its normals look inwards. */
-int gmi_measurement_check_gear(const gm_gear *gear, gm_io_error *error);
-
 /** Radius of the circle on which the pitch was measured (m): that of reference unless another one is given. */
 double gmi_measuring_radius(const gm_measurement *measurement, const gm_gear *gear);
 
 /**
- * 1 if teeth are counted in the direction in which the gear's angle grows, -1 if against it: pinion
- * counter-clockwise, wheel clockwise, both seen from face II.
+ * 1 if teeth are counted in the direction in which the gear's angle grows, -1 if against it: pinion and ring
+ * counter-clockwise, external wheel clockwise, all seen from face II.
  */
-int gmi_measurement_sense(const gm_measurement *measurement, int wheel);
+int gmi_measurement_sense(const gm_measurement *measurement, const gm_pair *pair, int wheel);
 
 /**
  * Tooth and side of what was measured, or an error that says which numbers are right.

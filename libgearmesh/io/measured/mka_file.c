@@ -63,6 +63,8 @@ typedef struct reader {
     const gm_pair *pair;       /* NULL = only the pitch is wanted */
     const gm_gear *gear;
     int is_wheel;
+    int is_internal; /* said by the line of the teeth, or external, or neither */
+    int is_external;
     int is_checked; /* the header belongs to the gear */
     gm_traces *traces;
     int trace_capacity;
@@ -231,7 +233,7 @@ static void read_numbers(const reader *from, char *text, header_line *into) {
     }
 }
 
-static int read_header_line(reader *from, int code, char *values) {
+static void read_header_line(reader *from, int code, char *values) {
     header_line *into = &from->header[code];
     into->count = 0;
     into->line = from->lines.line;
@@ -239,13 +241,14 @@ static int read_header_line(reader *from, int code, char *values) {
         read_angle(from, values, into);
     } else {
         static const char *const internal[] = {"innenverz", "internal", NULL};
-        if (code == TEETH && behind_word(values, internal) != NULL) {
-            return gmi_error_set(from->error, GM_IO_ERR_FORMAT, from->lines.line,
-                                 "must be an external gear (got an internal one)");
+        static const char *const external[] = {"enverzahnung", "external",
+                                               NULL}; /* Aussen-, in any code page */
+        if (code == TEETH) {
+            from->is_internal = behind_word(values, internal) != NULL;
+            from->is_external = !from->is_internal && behind_word(values, external) != NULL;
         }
         read_numbers(from, values, into);
     }
-    return GM_IO_OK;
 }
 
 /* `KEY value`: what is said of all numbers. */
@@ -279,13 +282,18 @@ static int read_preamble(reader *from, char *text) {
  * The gear
  * ------------------------------------------------------------------------------------------- */
 
-/* What a header line says of the gear must be what the gear has; a line that is not there says nothing. */
+/*
+ * What a header line says of the gear must be what the gear has; a line that is not there says nothing. Teeth of a ring
+ * are counted above or below 0.
+ */
 static int check_value(const reader *from, int code, const char *what, double right, double unit,
                        double tolerance) {
     const header_line *line = &from->header[code];
+    const int either_sign = code == TEETH && from->gear->sign < 0.0;
     char good[GMI_NUMBER_SIZE];
     char got[GMI_NUMBER_SIZE];
-    if (line->count == 0 || fabs(line->value[0] - right) <= tolerance) {
+    if (line->count == 0 || fabs(line->value[0] - right) <= tolerance ||
+        (either_sign && fabs(line->value[0] + right) <= tolerance)) {
         return GM_IO_OK;
     }
     return gmi_error_set(from->error, GM_IO_ERR_FORMAT, line->line,
@@ -295,10 +303,11 @@ static int check_value(const reader *from, int code, const char *what, double ri
                          gmi_number_text(got, line->value[0] / unit, 0, 6));
 }
 
-/* A right-handed pinion has a left-handed wheel. */
+/* A right-handed pinion has a left-handed wheel, or a right-handed ring. */
 static int check_hand(const reader *from) {
     const header_line *line = &from->header[HELIX_ANGLE];
-    const double right = (from->is_wheel ? -1.0 : 1.0) * from->pair->helix_angle;
+    const double hand = from->is_wheel ? -from->gear->sign : 1.0;
+    const double right = hand * from->pair->helix_angle;
     if (line->count == 0 || line->value[1] * right >= 0.0) {
         return GM_IO_OK;
     }
@@ -306,6 +315,18 @@ static int check_hand(const reader *from) {
                          "the helix must be %s-handed, as that of the %s in the parameter file "
                          "(got the other hand)",
                          right > 0.0 ? "right" : "left", from->is_wheel ? "wheel" : "pinion");
+}
+
+/* External or internal, where the line of the teeth says it. */
+static int check_form(const reader *from) {
+    const int is_ring = from->gear->sign < 0.0;
+    if (!(is_ring ? from->is_external : from->is_internal)) {
+        return GM_IO_OK;
+    }
+    return gmi_error_set(from->error, GM_IO_ERR_FORMAT, from->header[TEETH].line,
+                         "must be an %s gear, as the %s in the parameter file (got an %s one)",
+                         is_ring ? "internal" : "external", from->is_wheel ? "wheel" : "pinion",
+                         is_ring ? "external" : "internal");
 }
 
 static int check_gear(reader *from) {
@@ -317,7 +338,11 @@ static int check_gear(reader *from) {
     }
 
     from->is_checked = 1;
-    int status = check_value(from, TEETH, "number of teeth", from->gear->teeth, 1.0, 0.5);
+    int status = check_form(from);
+    if (status != GM_IO_OK) {
+        return status;
+    }
+    status = check_value(from, TEETH, "number of teeth", from->gear->teeth, 1.0, 0.5);
     if (status == GM_IO_OK) {
         status = check_value(from, MODULE, "normal module (mm)", 1e3 * pair->normal_module, 1.0,
                              1e-3 * 1e3 * pair->normal_module);
@@ -656,7 +681,10 @@ static int read_part(reader *from) {
     char *behind;
     const int code = header_code(text, &values);
     if (code > 0) {
-        return code < CODES ? read_header_line(from, code, values) : GM_IO_OK;
+        if (code < CODES) {
+            read_header_line(from, code, values);
+        }
+        return GM_IO_OK;
     }
 
     /* A head names a tooth and a flank, the title of a table a flank alone. */

@@ -85,19 +85,22 @@ static const double base_tolerance = 5e-6;
 /* The roll length of a diameter. */
 static int roll_of_diameter(const loader *load, const gmi_table *table, double diameter,
                             double *roll) {
-    const double base = load->gear->base_radius;
+    const gm_gear *gear = load->gear;
+    const double base = gear->base_radius;
 
-    /* Below the base circle there is no involute; a little below is its rounding. */
+    /* Below the base circle there is no involute; a little below is its rounding. The flank of a ring begins farther out. */
     if (!(0.5 * diameter >= (1.0 - base_tolerance) * base)) {
         char quoted[GMI_QUOTE_SIZE];
         char low[GMI_NUMBER_SIZE];
         char high[GMI_NUMBER_SIZE];
+        const int is_ring = gear->sign < 0.0;
+        const double most = 2.0 * (is_ring ? gear->root_radius : gear->tip_radius);
         return gmi_error_set(load->error, GM_IO_ERR_FORMAT, table->line,
-                             "diameter_mm: must be from %s (base circle) to %s (tip) (got %s)%s",
-                             gmi_number_text(low, 2.0 * base, 3, 7),
-                             gmi_number_text(high, 2.0 * load->gear->tip_radius, 3, 7),
-                             gmi_quote(quoted, table->fields[ROLL]),
-                             gmi_length_hint(diameter, 2.0 * load->gear->tip_radius));
+                             "diameter_mm: must be from %s (%s) to %s (%s) (got %s)%s",
+                             gmi_number_text(low, 2.0 * (is_ring ? gear->tip_radius : base), 3, 7),
+                             is_ring ? "tip" : "base circle", gmi_number_text(high, most, 3, 7),
+                             is_ring ? "root" : "tip", gmi_quote(quoted, table->fields[ROLL]),
+                             gmi_length_hint(diameter, most));
     }
 
     *roll = gmi_roll_length(0.5 * diameter, base);
@@ -275,10 +278,10 @@ int gm_traces_read(gm_traces *traces, const char *path, const gm_pair *pair, int
         return gmi_error_null(error);
     }
 
-    int status = gmi_measurement_check_gear(gmi_gear_of(pair, wheel), error);
-    if (status == GM_IO_OK && gmi_is_mka(path)) {
+    int status = GM_IO_OK;
+    if (gmi_is_mka(path)) {
         status = gmi_mka_traces(traces, path, pair, wheel, style, error);
-    } else if (status == GM_IO_OK) {
+    } else {
         loader load;
         memset(&load, 0, sizeof load);
         load.gear = gmi_gear_of(pair, wheel);

@@ -47,6 +47,38 @@ static int fail_face(const gmi_mapping *map, const gm_trace *trace, int point, d
         gmi_number_text(got, face, 3, 7), gmi_length_hint(reach, map->gear->face_width));
 }
 
+static int is_ring(const gm_gear *gear) {
+    return gear->sign < 0.0;
+}
+
+/* The roll length where the flank of a gear ends at its root, at most: the involute of a ring goes no farther out. */
+static double root_roll_length(const gm_gear *gear) {
+    return is_ring(gear) ? gmi_roll_length(gear->root_radius, gear->base_radius) : 0.0;
+}
+
+/* Profiles of a ring run from the tip to the root as roll lengths rise, between two circles that both end the flank. */
+static int fail_roll_of_ring(const gmi_mapping *map, const gm_trace *trace, int point, double roll,
+                             double reach) {
+    const gm_gear *gear = map->gear;
+    const double tip = gear->tip_roll_length;
+    const double root = root_roll_length(gear);
+    char name[GMI_TRACE_NAME_SIZE];
+    char got[2][GMI_NUMBER_SIZE];
+    char right[2][GMI_NUMBER_SIZE];
+    char diameter[2][GMI_NUMBER_SIZE];
+    return gmi_error_set(map->error, GM_IO_ERR_FORMAT, line_of(trace, point),
+                         "%s leaves the ring: must be at a roll length from %s mm (diameter %s mm, "
+                         "the tip) to %s mm "
+                         "(diameter %s mm, the root) (got %s mm, diameter %s mm)%s",
+                         gmi_trace_name(name, trace), gmi_number_text(right[0], tip, 3, 7),
+                         gmi_number_text(diameter[0], 2.0 * gear->tip_radius, 3, 7),
+                         gmi_number_text(right[1], root, 3, 7),
+                         gmi_number_text(diameter[1], 2.0 * gear->root_radius, 3, 7),
+                         gmi_number_text(got[0], roll, 3, 7),
+                         gmi_number_text(got[1], 2.0 * hypot(roll, gear->base_radius), 3, 7),
+                         gmi_length_hint(reach, root));
+}
+
 static int fail_roll(const gmi_mapping *map, const gm_trace *trace, int point, double roll,
                      double reach) {
     const double base = map->gear->base_radius;
@@ -55,6 +87,9 @@ static int fail_roll(const gmi_mapping *map, const gm_trace *trace, int point, d
     char got_diameter[GMI_NUMBER_SIZE];
     char right[GMI_NUMBER_SIZE];
     char right_diameter[GMI_NUMBER_SIZE];
+    if (is_ring(map->gear)) {
+        return fail_roll_of_ring(map, trace, point, roll, reach);
+    }
 
     /* Both lengths also as diameters, as the file may have either. */
     return gmi_error_set(map->error, GM_IO_ERR_FORMAT, line_of(trace, point),
@@ -72,9 +107,15 @@ static int is_on_face(double t1) {
     return t1 >= -overrun && t1 <= 1.0 + overrun;
 }
 
-/* A profile may begin anywhere below the active profile, but not below the base circle. */
+/*
+ * A profile may begin anywhere below the active profile: an external one on the base circle, that of a ring on the root
+ * circle, as its involute goes on outwards.
+ */
 static int is_on_profile(const gmi_mapping *map, double roll) {
-    return roll >= 0.0 && gmi_profile_place(map->gear, roll) <= 1.0 + overrun;
+    const gm_gear *gear = map->gear;
+    const double beyond = overrun * fabs(gear->tip_roll_length - gear->start_roll_length);
+    return gear->sign * (roll - root_roll_length(gear)) >= (is_ring(gear) ? -beyond : 0.0) &&
+           gmi_profile_place(gear, roll) <= 1.0 + overrun;
 }
 
 /* Lengths that can be worked with: no overflow on the way to a message. */
@@ -146,20 +187,30 @@ static int map_place(const gmi_mapping *map, const gm_trace *trace, double *at) 
         gmi_number_text(got, trace->at, 3, 7));
 }
 
-/* How many points of a trace there are up to the tip form circle; a chamfer behind it is no flank. */
-static int count_below_chamfer(const gmi_mapping *map, const gm_trace *trace) {
+/*
+ * Which points of a trace [begin, end) there are up to the tip form circle; a chamfer behind it is no flank. Roll lengths
+ * rise along the trace, to the tip of an external gear and from that of a ring.
+ */
+static void find_below_chamfer(const gmi_mapping *map, const gm_trace *trace, int *begin,
+                               int *end) {
     const double form_radius = 0.5 * map->options->tip_form_diameter;
+    *begin = 0;
+    *end = trace->count;
     if (trace->kind != GM_TRACE_PROFILE || isnan(form_radius)) {
-        return trace->count;
+        return;
     }
 
-    const double last = gmi_roll_length(form_radius, map->gear->base_radius);
-    int count = trace->count;
-    while (count > 0 && trace->position[count - 1] > last) {
-        --count;
+    const double form = gmi_roll_length(form_radius, map->gear->base_radius);
+    if (is_ring(map->gear)) {
+        while (*begin < *end && trace->position[*begin] < form) {
+            ++*begin;
+        }
+    } else {
+        while (*end > *begin && trace->position[*end - 1] > form) {
+            --*end;
+        }
     }
-    map->report->chamfer_points += trace->count - count;
-    return count;
+    map->report->chamfer_points += trace->count - (*end - *begin);
 }
 
 static int fail_chamfer(const gmi_mapping *map, const gm_trace *trace) {
@@ -167,8 +218,8 @@ static int fail_chamfer(const gmi_mapping *map, const gm_trace *trace) {
     char diameter[GMI_NUMBER_SIZE];
     gmi_error_option(map->error, "tip_form_diameter");
     return gmi_error_set(map->error, GM_IO_ERR_FORMAT, line_of(trace, 0),
-                         "%s: must have points up to the tip form circle (got none below %s mm)",
-                         gmi_trace_name(name, trace),
+                         "%s: must have points up to the tip form circle (got none %s %s mm)",
+                         gmi_trace_name(name, trace), is_ring(map->gear) ? "outside" : "below",
                          gmi_number_text(diameter, map->options->tip_form_diameter, 3, 7));
 }
 
@@ -179,18 +230,21 @@ static int map_points(const gmi_mapping *map, const gm_trace *trace, gmi_measure
     const double scale =
         sign * (map->measurement->transverse ? 1.0 / map->pair->normal_to_transverse : 1.0);
     const double reach = trace->position[trace->count - 1];
-    to->count = count_below_chamfer(map, trace);
+    int begin = 0;
+    int end = 0;
+    find_below_chamfer(map, trace, &begin, &end);
+    to->count = end - begin;
     if (to->count < 2) {
         return fail_chamfer(map, trace);
     }
 
     /* Each point must lie on the active flank; t grows from the start to the tip and from face I to face II. */
-    for (int i = 0; i < to->count; ++i) {
+    for (int i = begin; i < end; ++i) {
         const double position = trace->position[i];
-        const int place = to->turned ? trace->count - 1 - i : i;
+        const int place = to->turned ? end - 1 - i : i - begin;
         if (trace->kind == GM_TRACE_PROFILE) {
             if (!is_on_profile(map, position)) {
-                if (position > map->gear->tip_roll_length) { /* perhaps on a chamfer */
+                if (gmi_profile_place(map->gear, position) > 1.0) { /* perhaps on a chamfer */
                     gmi_error_option(map->error, "tip_form_diameter");
                 }
                 return fail_roll(map, trace, i, position, reach);
@@ -226,12 +280,14 @@ static int check_cover(const gmi_mapping *map, const gmi_measured *trace) {
         return GM_IO_OK;
     }
 
-    /* The message gives the lengths as they stand in the file, of the points that are left. */
+    /* The message gives the lengths as they stand in the file, of the points that are left, and of a flank rising. */
     const double first = length_of(map, trace, trace->turned ? to : from);
     const double last = length_of(map, trace, trace->turned ? from : to);
     const gm_trace *raw = trace->from;
     const int profile = raw->kind == GM_TRACE_PROFILE;
-    const double full = profile ? map->gear->tip_roll_length : map->gear->face_width;
+    const double least = profile ? length_of(map, trace, trace->turned ? 1.0 : 0.0) : 0.0;
+    const double full =
+        profile ? length_of(map, trace, trace->turned ? 0.0 : 1.0) : map->gear->face_width;
 
     char name[GMI_TRACE_NAME_SIZE];
     char got[2][GMI_NUMBER_SIZE];
@@ -244,8 +300,7 @@ static int check_cover(const gmi_mapping *map, const gmi_measured *trace) {
         map->error, GM_IO_ERR_FORMAT, gmi_measured_line(trace),
         "%s: must reach from %s to %s mm %s, of which %s may be missing at either end (got %s to "
         "%s mm)%s",
-        gmi_trace_name(name, raw),
-        gmi_number_text(right[0], profile ? map->gear->start_roll_length : 0.0, 3, 5),
+        gmi_trace_name(name, raw), gmi_number_text(right[0], least, 3, 5),
         gmi_number_text(right[1], full, 3, 5), profile ? "roll length" : "from the datum face",
         gmi_number_text(share, limit, 0, 3), gmi_number_text(got[0], first, 3, 5),
         gmi_number_text(got[1], last, 3, 5), gmi_length_hint(last, full));
@@ -255,7 +310,10 @@ static int map_trace(const gmi_mapping *map, const gm_trace *trace, gmi_measured
     to->from = trace;
     to->kind = trace->kind;
     to->count = trace->count;
-    to->turned = trace->kind == GM_TRACE_HELIX && map->measurement->datum_face == GM_FACE_II;
+
+    /* Positions rise, and t with them but for helices from face II and profiles of a ring, whose tip is its smallest. */
+    to->turned = trace->kind == GM_TRACE_HELIX ? map->measurement->datum_face == GM_FACE_II
+                                               : is_ring(map->gear);
 
     /* Which tooth and flank, and where on it. */
     int status =
