@@ -76,6 +76,91 @@ int gm_double_helical_pose(const gm_pair *half, double gap, const gm_pose *whole
 }
 
 /* ---------------------------------------------------------------------------------------------
+ * A wheel that moves
+ * ------------------------------------------------------------------------------------------- */
+
+/* Both halves at one position: the angles of the whole gears, and what each half does beside its pose. */
+typedef struct halves {
+    gm_position position;
+    gm_motion motion[2]; /* position: with the shift */
+    gm_pose place[2];    /* the pose that each half is in by then */
+} halves;
+
+/* The pose in which the whole was prepared, from those of its halves; without the axial shift, which the pinion follows. */
+static gm_pose pose_of_whole(const gm_pose *first, const gm_pose *second) {
+    const gm_pose whole = {
+        .center_distance_change =
+            0.5 * (first->center_distance_change + second->center_distance_change),
+        .offset = 0.5 * (first->offset + second->offset),
+        .skew = first->skew,
+        .inclination = first->inclination,
+    };
+    return whole;
+}
+
+static gm_pose sum_of_poses(const gm_pose *a, double factor, const gm_pose *b) {
+    const gm_pose sum = {
+        .center_distance_change = a->center_distance_change + factor * b->center_distance_change,
+        .offset = a->offset + factor * b->offset,
+        .axial_shift = a->axial_shift + factor * b->axial_shift,
+        .skew = a->skew + factor * b->skew,
+        .inclination = a->inclination + factor * b->inclination,
+    };
+    return sum;
+}
+
+/*
+ * The rate of gm_double_helical_pose(): the arm h sin(t) / t of a half goes with the tilt; that it changes itself is of second
+ * order in that, beyond what damping feels of a changing tilt. The half comes nearer by h (1 - cos(t)), with t t' = theta .
+ * theta' at h sin(t) / t theta . theta'.
+ */
+static void rate_of_halves(const gm_pair *half, double gap, const gm_pose *whole,
+                           const gm_pose *rate, gm_pose by_half[2]) {
+    const double h = 0.5 * (half->wheel.face_width + gap);
+    const double turn = hypot(whole->skew, whole->inclination);
+    const double arm = turn > 0.0 ? h * sin(turn) / turn : h;
+
+    for (int k = 0; k < 2; ++k) {
+        const double sign = k == 0 ? 1.0 : -1.0;
+        gm_pose *to = &by_half[k];
+        to->skew = sign * rate->skew;
+        to->inclination = sign * rate->inclination;
+        to->center_distance_change = rate->center_distance_change - arm * to->inclination;
+        to->offset = rate->offset + arm * to->skew;
+        to->axial_shift = arm * (whole->skew * rate->skew + whole->inclination * rate->inclination);
+    }
+}
+
+/* What the halves do where the wheel moves by this; nothing beside their poses where it stands, to the bit. */
+static int place_halves(const gm_double_helical *gears, const gm_motion *motion, halves *both) {
+    const gm_pair *pair = gears->half[0]->pair;
+    const gm_pose *first = &gears->half[0]->pose, *second = &gears->half[1]->pose;
+    const gm_pose none = {0.0, 0.0, 0.0, 0.0, 0.0};
+    both->position = motion->position;
+    both->place[0] = *first;
+    both->place[1] = *second;
+    for (int k = 0; k < 2; ++k) {
+        both->motion[k].position = motion->position;
+        both->motion[k].pose = both->motion[k].pose_rate = none;
+    }
+    if (gmi_is_at_rest(&motion->pose) && gmi_is_at_rest(&motion->pose_rate)) {
+        return GM_OK;
+    }
+
+    /* Where the whole is by then, and each half with it; beside where it was prepared. */
+    const gm_pose prepared = pose_of_whole(first, second);
+    const gm_pose whole = sum_of_poses(&prepared, 1.0, &motion->pose);
+    const int status = gm_double_helical_pose(pair, gears->gap, &whole, both->place);
+    gm_pose rates[2];
+    rate_of_halves(pair, gears->gap, &whole, &motion->pose_rate, rates);
+    for (int k = 0; k < 2; ++k) {
+        both->motion[k].pose = sum_of_poses(&both->place[k], -1.0, &gears->half[k]->pose);
+        both->motion[k].pose_rate = rates[k];
+    }
+    return status;
+}
+
+/* ---------------------------------------------------------------------------------------------
  * Both halves together
  * ------------------------------------------------------------------------------------------- */
 
@@ -98,11 +183,11 @@ static double tan_base_helix(const gm_pair *pair) {
     return pair->face_advance / pair->face_width;
 }
 
-static int evaluate_half(const gm_double_helical *gears, int k, const gm_position *position,
-                         double shift, int wanted, gm_mesh_result *result) {
-    gm_position at = *position;
-    at.offset += k == 0 ? shift : -shift;
-    return gm_mesh_evaluate_at(gears->half[k], &at, wanted, gears->workspace[k], result);
+static int evaluate_half(const gm_double_helical *gears, int k, halves *both, double shift,
+                         int wanted, gm_mesh_result *result) {
+    gm_motion *motion = &both->motion[k];
+    motion->position.offset = both->position.offset + (k == 0 ? shift : -shift);
+    return gm_mesh_evaluate_posed(gears->half[k], motion, wanted, gears->workspace[k], result);
 }
 
 /* At fixed phi_p a change of x is one of -phi_w. */
@@ -119,11 +204,11 @@ static double slope_of(const gm_pair *pair, const gm_mesh_result each[2]) {
  * The shift at which both halves carry the same force: their difference grows with it. Newton's method, within what is
  * known to enclose it. Where neither touches, any shift will do.
  */
-static int balance(const gm_double_helical *gears, const gm_position *position, int wanted,
-                   double *shift, gm_mesh_result each[2]) {
+static int balance(const gm_double_helical *gears, halves *both, int wanted, double *shift,
+                   gm_mesh_result each[2]) {
     const gm_pair *pair = gears->half[0]->pair;
     const double pitch = pair->transverse_base_pitch;
-    const double limit = 0.5 * pitch * (1.0 - 1e-9) - fabs(position->offset);
+    const double limit = 0.5 * pitch * (1.0 - 1e-9) - fabs(both->position.offset);
     double lower = -limit, upper = limit, reach = FIRST_STEP * pitch, step = pitch;
     if (!(fabs(*shift) < limit)) {
         *shift = 0.0;
@@ -131,8 +216,8 @@ static int balance(const gm_double_helical *gears, const gm_position *position, 
 
     for (int k = 0; k < STEPS; ++k) {
         for (int half = 0; half < 2; ++half) {
-            const int status = evaluate_half(gears, half, position, *shift,
-                                             wanted | GM_WANT_DERIVATIVES, &each[half]);
+            const int status =
+                evaluate_half(gears, half, both, *shift, wanted | GM_WANT_DERIVATIVES, &each[half]);
             if (status != GM_OK) {
                 return status;
             }
@@ -231,9 +316,9 @@ static void add_load(const double force[3], const double moment[3], const double
     }
 }
 
-static void add_wrenches(const gm_double_helical *gears, const gm_mesh_result each[2],
-                         gm_wrench *sum) {
-    const gm_pose *first = &gears->half[0]->pose, *second = &gears->half[1]->pose;
+static void add_wrenches(const gm_double_helical *gears, const gm_pose place[2],
+                         const gm_mesh_result each[2], gm_wrench *sum) {
+    const gm_pose *first = &place[0], *second = &place[1];
     const double width = 2.0 * gears->half[0]->pair->pinion.face_width + gears->gap;
     const gm_wrench none = {{0.0}, {0.0}, {0.0}, {0.0}};
     *sum = none;
@@ -254,8 +339,8 @@ static void add_wrenches(const gm_double_helical *gears, const gm_mesh_result ea
     }
 }
 
-static void add_halves(const gm_double_helical *gears, const gm_mesh_result each[2], int wanted,
-                       gm_mesh_result *sum) {
+static void add_halves(const gm_double_helical *gears, const gm_pose place[2],
+                       const gm_mesh_result each[2], int wanted, gm_mesh_result *sum) {
     const gm_pair *pair = gears->half[0]->pair;
     gmi_mesh_result_set_nan(sum);
     sum->force = each[0].force + each[1].force;
@@ -277,7 +362,7 @@ static void add_halves(const gm_double_helical *gears, const gm_mesh_result each
         sum->contact.d_pinion_angle = sum->contact.d_wheel_angle = gmi_nan();
     }
     if (wanted & GM_WANT_WRENCH) {
-        add_wrenches(gears, each, &sum->wrench);
+        add_wrenches(gears, place, each, &sum->wrench);
     }
 }
 
@@ -287,26 +372,42 @@ static void set_nan(gm_mesh_result each[2], gm_mesh_result *result) {
     gmi_mesh_result_set_nan(result);
 }
 
-int gm_double_helical_evaluate_at(const gm_double_helical *gears, const gm_position *position,
-                                  int wanted, double *apex, gm_mesh_result each[2],
-                                  gm_mesh_result *result) {
+int gm_double_helical_evaluate_posed(const gm_double_helical *gears, const gm_motion *motion,
+                                     int wanted, double *apex, gm_mesh_result each[2],
+                                     gm_mesh_result *result) {
     if (each == NULL || result == NULL) {
         return GM_ERR_NULL;
     }
-    int status = apex == NULL || position == NULL ? GM_ERR_NULL : check(gears);
+    halves both;
+    int status = apex == NULL || motion == NULL ? GM_ERR_NULL : check(gears);
+    if (status == GM_OK) {
+        status = place_halves(gears, motion, &both);
+    }
     if (status == GM_OK) {
         const double helix = tan_base_helix(gears->half[0]->pair);
         double shift = -*apex * helix;
-        status = balance(gears, position, wanted, &shift, each);
+        status = balance(gears, &both, wanted, &shift, each);
         *apex = status == GM_OK ? -shift / helix : *apex;
     }
 
     if (status != GM_OK) {
         set_nan(each, result);
     } else {
-        add_halves(gears, each, wanted, result);
+        add_halves(gears, both.place, each, wanted, result);
     }
     return status;
+}
+
+int gm_double_helical_evaluate_at(const gm_double_helical *gears, const gm_position *position,
+                                  int wanted, double *apex, gm_mesh_result each[2],
+                                  gm_mesh_result *result) {
+    const gm_pose none = {0.0, 0.0, 0.0, 0.0, 0.0};
+    gm_motion motion = {.pose = none, .pose_rate = none};
+    if (position != NULL) {
+        motion.position = *position;
+    }
+    return gm_double_helical_evaluate_posed(gears, position != NULL ? &motion : NULL, wanted, apex,
+                                            each, result);
 }
 
 /* ---------------------------------------------------------------------------------------------
@@ -330,7 +431,8 @@ static int find(const gm_double_helical *gears, double pinion_angle, double pini
                 gm_mesh_result *result) {
     double half_torque = 0.5 * wheel_torque;
     for (int k = 0; k < CORRECTIONS; ++k) {
-        gm_position position;
+        gm_motion motion = {.pose = {0.0}};
+        halves both;
         int status = find_halves(gears, pinion_angle, half_torque, offset);
         if (status != GM_OK) {
             return status;
@@ -338,16 +440,20 @@ static int find(const gm_double_helical *gears, double pinion_angle, double pini
 
         /* What both come to there, while they roll. */
         const double shift = 0.5 * (offset[0] - offset[1]);
-        status = gm_position_from_pinion_angle(gears->half[0]->pair, pinion_angle,
-                                               0.5 * (offset[0] + offset[1]), 0.0, &position);
-        position.pinion_speed = pinion_speed;
+        status =
+            gm_position_from_pinion_angle(gears->half[0]->pair, pinion_angle,
+                                          0.5 * (offset[0] + offset[1]), 0.0, &motion.position);
+        motion.position.pinion_speed = pinion_speed;
+        if (status == GM_OK) {
+            status = place_halves(gears, &motion, &both);
+        }
         for (int half = 0; half < 2 && status == GM_OK; ++half) {
-            status = evaluate_half(gears, half, &position, shift, GM_WANT_DERIVATIVES, &each[half]);
+            status = evaluate_half(gears, half, &both, shift, GM_WANT_DERIVATIVES, &each[half]);
         }
         if (status != GM_OK) {
             return status;
         }
-        add_halves(gears, each, GM_WANT_DERIVATIVES, result);
+        add_halves(gears, both.place, each, GM_WANT_DERIVATIVES, result);
         const double missing = wheel_torque / result->wheel_torque;
         if (!gears->half[0]->friction.is_on || !(fabs(missing - 1.0) > 1e-13) || !(missing > 0.0)) {
             return GM_OK;
