@@ -237,15 +237,21 @@ static gm_gradient float_by(const gm_pair *pair, const gm_mesh_result each[2]) {
 
 int file_mesh_evaluate(const file_mesh *made, const gm_position *position, int wanted,
                        file_mesh_float *floated, gm_mesh_result *result) {
+    const gm_motion motion = {.position = *position};
+    return file_mesh_evaluate_posed(made, &motion, wanted, floated, result);
+}
+
+int file_mesh_evaluate_posed(const file_mesh *made, const gm_motion *motion, int wanted,
+                             file_mesh_float *floated, gm_mesh_result *result) {
     memset(floated, 0, sizeof *floated);
     if (made->halves == 1) {
-        return gm_mesh_evaluate_at(made->mesh[0], position, wanted, made->workspace[0], result);
+        return gm_mesh_evaluate_posed(made->mesh[0], motion, wanted, made->workspace[0], result);
     }
 
     /* The float is sought from 0 each time, for the same bits. */
     gm_mesh_result each[2];
-    const int status = gm_double_helical_evaluate_at(&made->floating, position, wanted,
-                                                     &floated->shift, each, result);
+    const int status = gm_double_helical_evaluate_posed(&made->floating, motion, wanted,
+                                                        &floated->shift, each, result);
     if (status == GM_OK) {
         floated->by = float_by(file_mesh_pair(made), each);
     }

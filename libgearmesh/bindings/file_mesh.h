@@ -63,6 +63,10 @@ typedef struct file_mesh_float {
 int file_mesh_evaluate(const file_mesh *made, const gm_position *position, int wanted,
                        file_mesh_float *floated, gm_mesh_result *result);
 
+/* The same with the wheel in a motion beside its pose, as gm_mesh_evaluate_posed(). */
+int file_mesh_evaluate_posed(const file_mesh *made, const gm_motion *motion, int wanted,
+                             file_mesh_float *floated, gm_mesh_result *result);
+
 /* x in equilibrium with a torque on the wheel (m), as gm_rolling_equilibrium(). Status of gearmesh.h. */
 int file_mesh_equilibrium(const file_mesh *made, double pinion_angle, double pinion_speed,
                           double wheel_torque, double *offset);

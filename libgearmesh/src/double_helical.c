@@ -110,9 +110,8 @@ static gm_pose sum_of_poses(const gm_pose *a, double factor, const gm_pose *b) {
 }
 
 /*
- * The rate of gm_double_helical_pose(): the arm h sin(t) / t of a half goes with the tilt; that it changes itself is of second
- * order in that, beyond what damping feels of a changing tilt. The half comes nearer by h (1 - cos(t)), with t t' = theta .
- * theta' at h sin(t) / t theta . theta'.
+ * The rate of gm_double_helical_pose() in first order, as damping feels a changing tilt: that the arm changes, and comes nearer,
+ * are products of tilt and rate.
  */
 static void rate_of_halves(const gm_pair *half, double gap, const gm_pose *whole,
                            const gm_pose *rate, gm_pose by_half[2]) {
@@ -127,7 +126,7 @@ static void rate_of_halves(const gm_pair *half, double gap, const gm_pose *whole
         to->inclination = sign * rate->inclination;
         to->center_distance_change = rate->center_distance_change - arm * to->inclination;
         to->offset = rate->offset + arm * to->skew;
-        to->axial_shift = arm * (whole->skew * rate->skew + whole->inclination * rate->inclination);
+        to->axial_shift = 0.0;
     }
 }
 
@@ -476,11 +475,11 @@ int gm_double_helical_equilibrium(const gm_double_helical *gears, double pinion_
     /* Each half carries half the torque; between them they say where pinion and apex are. */
     if (status == GM_OK) {
         const double helix = tan_base_helix(gears->half[0]->pair);
-        double halves[2] = {guess - *apex * helix, guess + *apex * helix};
-        status = find(gears, pinion_angle, pinion_speed, wheel_torque, halves, each, result);
+        double offsets[2] = {guess - *apex * helix, guess + *apex * helix};
+        status = find(gears, pinion_angle, pinion_speed, wheel_torque, offsets, each, result);
         if (status == GM_OK) {
-            *offset = 0.5 * (halves[0] + halves[1]);
-            *apex = -0.5 * (halves[0] - halves[1]) / helix;
+            *offset = 0.5 * (offsets[0] + offsets[1]);
+            *apex = -0.5 * (offsets[0] - offsets[1]) / helix;
         }
     }
     if (status != GM_OK) {

@@ -25,6 +25,8 @@ enum {
     FORCE,
     TRANSMISSION_ERROR,
     APEX_SHIFT,
+    LOSS,
+    STORED_ENERGY,
     WRENCH,
     OUTPUTS = WRENCH + 12
 };
@@ -56,6 +58,8 @@ static const fmu_variable variables[] = {
            FORCE),
     OUTPUT("transmission_error", "m", "-x, along the line of action", TRANSMISSION_ERROR),
     OUTPUT("apex_shift", "m", "how far a double-helical pinion has floated along +z", APEX_SHIFT),
+    OUTPUT("loss", "W", "power that friction takes, >= 0", LOSS),
+    OUTPUT("stored_energy", "J", "in what is pressed together", STORED_ENERGY),
     OUTPUT("pinion_force.x", "N", "on the pinion", WRENCH),
     OUTPUT("pinion_force.y", "N", "likewise", WRENCH + 1),
     OUTPUT("pinion_force.z", "N", "likewise", WRENCH + 2),
@@ -136,22 +140,10 @@ static void differentiate(const file_mesh *made, const gm_motion *motion,
     jacobian->by[TRANSMISSION_ERROR][WHEEL_ANGLE] = pair->wheel.base_radius;
 }
 
-/* The wheel in a pose of its own at every call, but not between halves with a floating pinion, whose wheel stands. */
-static int evaluate_moving(const file_mesh *made, const double *input, const gm_motion *motion,
-                           int wanted, file_mesh_float *floated, gm_mesh_result *result) {
-    if (made->halves == 1) {
-        memset(floated, 0, sizeof *floated);
-        return gm_mesh_evaluate_posed(made->mesh[0], motion, wanted, made->workspace[0], result);
-    }
-    for (int k = POSE; k < INPUTS; ++k) {
-        if (input[k] != 0.0) {
-            return FMU_HALVES_MOVE;
-        }
-    }
-    return file_mesh_evaluate(made, &motion->position, wanted, floated, result);
-}
-
-static int evaluate(fmu_values *values, const file_mesh *made, fmu_jacobian *jacobian) {
+/* There are no states, so that all calls are for outputs. */
+static int evaluate(fmu_values *values, const file_mesh *made, int with_outputs,
+                    fmu_jacobian *jacobian) {
+    (void)with_outputs;
     const gm_pair *pair = file_mesh_pair(made);
     const gm_state state = {.pinion_angle = values->input[PINION_ANGLE],
                             .wheel_angle = values->input[WHEEL_ANGLE],
@@ -163,8 +155,9 @@ static int evaluate(fmu_values *values, const file_mesh *made, fmu_jacobian *jac
     file_mesh_float floated;
     int status = gm_position_from_state(pair, &state, &motion.position);
     if (status == GM_OK) {
-        const int wanted = GM_WANT_WRENCH | (jacobian != NULL ? GM_WANT_DERIVATIVES : 0);
-        status = evaluate_moving(made, values->input, &motion, wanted, &floated, &result);
+        const int wanted =
+            GM_WANT_WRENCH | GM_WANT_ENERGY | (jacobian != NULL ? GM_WANT_DERIVATIVES : 0);
+        status = file_mesh_evaluate_posed(made, &motion, wanted, &floated, &result);
     }
     if (status != GM_OK) {
         return status;
@@ -175,6 +168,8 @@ static int evaluate(fmu_values *values, const file_mesh *made, fmu_jacobian *jac
     values->output[FORCE] = result.force;
     values->output[TRANSMISSION_ERROR] = -motion.position.offset;
     values->output[APEX_SHIFT] = floated.shift;
+    values->output[LOSS] = result.loss;
+    values->output[STORED_ENERGY] = result.energy;
     const double *parts[] = {result.wrench.pinion_force, result.wrench.pinion_moment,
                              result.wrench.wheel_force, result.wrench.wheel_moment};
     for (int part = 0; part < 4; ++part) {

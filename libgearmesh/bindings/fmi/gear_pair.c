@@ -8,9 +8,20 @@
  */
 #include "model.h"
 
+#include <math.h>
+
 enum { ANGLE, SPEED, OFFSET, OFFSET_RATE, STATES };
 enum { DRIVE_TORQUE, LOAD_TORQUE, INPUTS };
-enum { WHEEL_ANGLE, WHEEL_SPEED, TRANSMISSION_ERROR, FORCE, APEX_SHIFT, OUTPUTS };
+enum {
+    WHEEL_ANGLE,
+    WHEEL_SPEED,
+    TRANSMISSION_ERROR,
+    FORCE,
+    APEX_SHIFT,
+    LOSS,
+    STORED_ENERGY,
+    OUTPUTS
+};
 
 static const fmu_variable variables[] = {
     {"time", "s", "simulation time", KIND_REAL, ROLE_TIME, offsetof(fmu_values, time), 0.0, 0},
@@ -44,6 +55,10 @@ static const fmu_variable variables[] = {
      ROLE_OUTPUT, offsetof(fmu_values, output[FORCE]), 0.0, 0},
     {"apex_shift", "m", "how far a double-helical pinion has floated along +z", KIND_REAL,
      ROLE_OUTPUT, offsetof(fmu_values, output[APEX_SHIFT]), 0.0, 0},
+    {"loss", "W", "power that friction takes, >= 0", KIND_REAL, ROLE_OUTPUT,
+     offsetof(fmu_values, output[LOSS]), 0.0, 0},
+    {"stored_energy", "J", "in what is pressed together", KIND_REAL, ROLE_OUTPUT,
+     offsetof(fmu_values, output[STORED_ENERGY]), 0.0, 0},
 #include "common_variables.inc"
     {"pinion_inertia", "kg.m2", "I_p, > 0", KIND_REAL, ROLE_PARAMETER,
      offsetof(fmu_values, pinion_inertia), 0.0, 0},
@@ -94,9 +109,16 @@ static void differentiate(const fmu_values *values, const gm_pair *pair,
     by[STATES + WHEEL_SPEED][SPEED] = r_bp / r_bw;
     by[STATES + WHEEL_SPEED][OFFSET_RATE] = -1.0 / r_bw;
     by[STATES + TRANSMISSION_ERROR][OFFSET] = -1.0;
+
+    /* What no one integrates is left to differences. */
+    for (int k = 0; k < STATES; ++k) {
+        by[STATES + LOSS][k] = NAN;
+        by[STATES + STORED_ENERGY][k] = NAN;
+    }
 }
 
-static int evaluate(fmu_values *values, const file_mesh *made, fmu_jacobian *jacobian) {
+static int evaluate(fmu_values *values, const file_mesh *made, int with_outputs,
+                    fmu_jacobian *jacobian) {
     const gm_pair *pair = file_mesh_pair(made);
     const double r_bp = pair->pinion.base_radius;
     const double r_bw = pair->wheel.base_radius;
@@ -110,9 +132,9 @@ static int evaluate(fmu_values *values, const file_mesh *made, fmu_jacobian *jac
                                                state[OFFSET_RATE], &position);
     if (status == GM_OK) {
         position.pinion_speed = state[SPEED];
-        status = file_mesh_evaluate(made, &position,
-                                    jacobian != NULL ? GM_WANT_DERIVATIVES : GM_WANT_FORCE,
-                                    &floated, &result);
+        const int wanted = (jacobian != NULL ? GM_WANT_DERIVATIVES : GM_WANT_FORCE) |
+                           (with_outputs ? GM_WANT_ENERGY : 0);
+        status = file_mesh_evaluate(made, &position, wanted, &floated, &result);
     }
     if (status != GM_OK) {
         return status;
@@ -133,6 +155,8 @@ static int evaluate(fmu_values *values, const file_mesh *made, fmu_jacobian *jac
     values->output[TRANSMISSION_ERROR] = -state[OFFSET];
     values->output[FORCE] = result.force;
     values->output[APEX_SHIFT] = floated.shift;
+    values->output[LOSS] = result.loss;
+    values->output[STORED_ENERGY] = result.energy;
 
     values->indicator[GM_DRIVE] = state[OFFSET] - file_mesh_clearance(made, GM_DRIVE);
     values->indicator[GM_COAST] = -state[OFFSET] - file_mesh_clearance(made, GM_COAST);

@@ -28,7 +28,7 @@ static int evaluate(fmu_integrator *integrator, double time, N_Vector state,
     fmu_values *values = &integrator->values;
     values->time = time;
     memcpy(values->state, NV_DATA_S(state), (size_t)model.states * sizeof(double));
-    return model.evaluate(values, integrator->made, jacobian);
+    return model.evaluate(values, integrator->made, 0, jacobian);
 }
 
 static int right_hand_side(sunrealtype time, N_Vector state, N_Vector derivative, void *data) {

@@ -130,20 +130,14 @@ static int prepare(fmu_instance *instance) {
  * Evaluation
  * ------------------------------------------------------------------------------------------- */
 
-static const char *text_of(int status) {
-    return status == FMU_HALVES_MOVE ? "motion, motion_rate: must be 0 with double_helical_gap, "
-                                       "whose wheel stands in its pose"
-                                     : gm_status_text(status);
-}
-
 /* The mesh at the values as they are; what the model says of them with its Jacobian unless that is NULL. */
 static int evaluate(fmu_instance *instance, fmu_jacobian *jacobian) {
     if (!instance->is_prepared && prepare(instance) != 0) {
         return -1;
     }
-    const int status = model.evaluate(&instance->values, &instance->made, jacobian);
+    const int status = model.evaluate(&instance->values, &instance->made, 1, jacobian);
     if (status != GM_OK) {
-        failed(instance, text_of(status));
+        failed(instance, gm_status_text(status));
         return status;
     }
     instance->is_evaluated = 1;
@@ -301,7 +295,7 @@ int fmu_step(fmu_instance *instance, double end) {
         }
         const int status = fmu_integrate(instance, end);
         if (status != 0) {
-            failed(instance, status > 0 ? text_of(status) : "the integration failed");
+            failed(instance, status > 0 ? gm_status_text(status) : "the integration failed");
             return -1;
         }
     }
@@ -356,14 +350,16 @@ static double step_of(const fmu_variable *variable) {
     return 1e-6;
 }
 
-/* Rows of one input that the model does not know, by central differences of the outputs. */
+/* Outputs by a state or an input, where the model does not know, by central differences. */
 static int differences(const fmu_instance *instance, int column, unsigned reference,
                        fmu_jacobian *jacobian) {
     fmu_values aside[2] = {instance->values, instance->values};
     const double step = step_of(&model.variables[reference]);
     for (int side = 0; side < 2; ++side) {
-        aside[side].input[column - model.states] += side == 0 ? -step : step;
-        const int status = model.evaluate(&aside[side], &instance->made, NULL);
+        double *place = column < model.states ? &aside[side].state[column]
+                                              : &aside[side].input[column - model.states];
+        *place += side == 0 ? -step : step;
+        const int status = model.evaluate(&aside[side], &instance->made, 1, NULL);
         if (status != GM_OK) {
             return status;
         }
@@ -387,13 +383,13 @@ int fmu_directional(fmu_instance *instance, const unsigned *unknown, size_t unkn
         }
     }
 
-    /* All derivatives that the model knows, and those by the wanted inputs that it does not. */
+    /* All derivatives that the model knows, and those by the wanted states and inputs that it does not. */
     fmu_jacobian jacobian;
     memset(&jacobian, 0, sizeof jacobian);
     int status = evaluate(instance, &jacobian);
     for (size_t i = 0; i < known_count && status == GM_OK; ++i) {
         const int column = column_of(known[i]);
-        if (column >= model.states) {
+        if (column >= 0) {
             status = differences(instance, column, known[i], &jacobian);
         }
     }

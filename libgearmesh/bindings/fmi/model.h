@@ -14,7 +14,7 @@
 enum {
     MAX_STATES = 4,
     MAX_INPUTS = 14,
-    MAX_OUTPUTS = 17,
+    MAX_OUTPUTS = 19,
     INDICATORS = 2,
     TEXTS = 8,
     TEXT_SIZE = 1024
@@ -81,13 +81,11 @@ typedef struct fmu_model {
     int inputs;
     int outputs;
 
-    /* Derivatives, outputs and indicators of the values; the Jacobian unless it is NULL. Status of gearmesh.h, or
-     * FMU_HALVES_MOVE. */
-    int (*evaluate)(fmu_values *values, const file_mesh *made, fmu_jacobian *jacobian);
+    /* Derivatives and indicators of the values, and unless a solver asks in the middle of a step, outputs; the Jacobian unless
+     * it is NULL. Status of gearmesh.h. */
+    int (*evaluate)(fmu_values *values, const file_mesh *made, int with_outputs,
+                    fmu_jacobian *jacobian);
 } fmu_model;
-
-/* Beside the status of gearmesh.h: a double-helical pair between shafts of which the wheel's moves. */
-enum { FMU_HALVES_MOVE = -100 };
 
 extern const fmu_model model; /* the one that this FMU is */
 
