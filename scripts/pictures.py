@@ -138,11 +138,10 @@ def time_signal(result, folder, speed_rpm=None):
     first, last = max(0, min(first, row - 8)), min(len(turn), max(last, row + 8))
     rows = slice(int(first), int(last))
 
-    # Which flank touches: 0 none, 1 that of the mean force, 2 the other one.
+    # Which flanks touch: 0 none, 1 those that drive forward, 2 those of coast.
     force_N = columns["contact_force_N"]
-    direction = np.sign(force_N.mean()) or 1.0
     none = columns[results.PAIRS_COLUMN][rows] == 0 if results.PAIRS_COLUMN in columns else force_N[rows] == 0.0
-    flank = np.where(none, 0, np.where(direction * force_N[rows] < 0.0, 2, 1))
+    flank = np.where(none, 0, np.where(force_N[rows] < 0.0, 2, 1))
     te_um = columns[summary.TE_COLUMN]
     rate_mm_per_s = 1e-3 * np.gradient(te_um, columns["time_s"])
     table = np.column_stack([1e3 * (columns["time_s"][rows] - columns["time_s"][rows][0]), force_N[rows], te_um[rows],
@@ -153,7 +152,7 @@ def time_signal(result, folder, speed_rpm=None):
     for name, column in (("force", 1), ("te", 2), ("rate", 3)):
         values[f"{name}_low"], values[f"{name}_high"] = padded(table[:, column])
     values["share_text"] = (f"in these cycles {100 * np.mean(flank == 0):.3g} % without contact, "
-                            f"{100 * np.mean(flank == 2):.3g} % on the other flank")
+                            f"{100 * np.mean(flank == 2):.3g} % on coast flanks")
     return "plot_signal.gp", values
 
 

@@ -2,14 +2,14 @@
 # SPDX-License-Identifier: BSD-3-Clause
 #
 # Time signal of the force and phase portrait of the transmission error; scripts/plot sets the variables. Colours say
-# which flank touches: blue that of the mean force, orange the other one, grey none.
+# which flanks touch: blue those that drive the wheel forward, orange those of coast, grey none.
 
 load 'style.gp'
 
 set border 3
 set grid xtics ytics lt 1 lw 0.6 lc rgb '#d8d8d8'
 array flank_colours[3] = ['#909090', '#0072b2', '#d55e00']
-array flank_names[3] = ['no contact', 'contact', 'contact on the other flank']
+array flank_names[3] = ['no contact', 'drive flanks', 'coast flanks']
 
 do for [format in formats] {
     eval terminal(format, 'plot_signal', 1400, 1150)

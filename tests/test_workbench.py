@@ -170,15 +170,18 @@ class Pictures(Case):
         """Force on one flank, on none, on the other one, by turns; the rate is that of the transmission error."""
         columns = self.run_up()
         third = np.arange(len(columns["time_s"])) % 3
-        columns["contact_force_N"] = np.choose(third, [300.0, 0.0, -50.0])
         columns["pairs_in_contact"] = np.choose(third, [2, 0, 1])
         columns["dte_um"] = 1e6 * 0.02 * columns["time_s"]
-        _, values = pictures.time_signal(self.result(columns), self.folder, 1500.0)
-        table = self.data("signal.dat")
-        np.testing.assert_array_equal(table[:, 4], np.where(table[:, 1] > 0, 1, np.where(table[:, 1] < 0, 2, 0)))
+
+        # Whichever of them carries more in the mean: a run may turn round.
+        for forces in ([50.0, 0.0, -300.0], [300.0, 0.0, -50.0]):
+            columns["contact_force_N"] = np.choose(third, forces)
+            _, values = pictures.time_signal(self.result(columns), self.folder, 1500.0)
+            table = self.data("signal.dat")
+            np.testing.assert_array_equal(table[:, 4], np.where(table[:, 1] > 0, 1, np.where(table[:, 1] < 0, 2, 0)))
         np.testing.assert_allclose(table[:, 3], 20.0, rtol=1e-3)  # mm/s
         self.assertAlmostEqual(table[-1, 0], 1e3 * 16 / 23 / 25, delta=1.0)  # 16 of 23 teeth at 25 turns a second
-        self.assertRegex(values["share_text"], r"3\d\.?\d* % without contact, 3\d\.?\d* % on the other flank")
+        self.assertRegex(values["share_text"], r"3\d\.?\d* % without contact, 3\d\.?\d* % on coast flanks")
 
     def test_one_turn_and_its_spectrum(self):
         result = self.result(self.run_up())
