@@ -166,6 +166,8 @@ int model_init(gear_model *model, const config *conf, const gear_mesh *gears) {
     model->mesh = conf->model;
     model->jumps =
         conf->model == MODEL_3D && gears->pair.face_advance == 0.0 && !config_has_corners(conf);
+
+    /* What drives, and what is carried. */
     if (drive_create(&model->drive, conf) != 0) {
         return EXIT_RUN_FAILED;
     }
@@ -175,9 +177,11 @@ int model_init(gear_model *model, const config *conf, const gear_mesh *gears) {
     model->load.ripple = conf->load_ripple;
     model->load.per_speed = conf->load_per_speed;
     model->load.per_speed_squared = conf->load_per_speed_squared;
+
     init_bodies(model, conf);
     init_flanks(model);
     init_vibration(model);
+
     if (init_response(model) != 0 || mesh_cache_create(&model->cache, conf, gears) != 0) {
         model_free(model);
         return EXIT_RUN_FAILED;

@@ -216,6 +216,8 @@ static int close_together(output_file *output, const char *incomplete, result_fi
         result_file *files[2];
         const result_file *wrong;
         int count = 0;
+
+        /* Both or none. */
         if (!output->is_stream) {
             files[count] = &output->result;
             ++count;
@@ -224,11 +226,13 @@ static int close_together(output_file *output, const char *incomplete, result_fi
             files[count] = other;
             ++count;
         }
+
         exit_code = result_files_replace(files, count, &wrong);
         if (exit_code != EXIT_DONE) {
             message_of_program(output->messages, "%s: %s", wrong->wrong_path, wrong->reason);
         }
     }
+
     if (exit_code == EXIT_DONE) {
         tell_result(output, incomplete == NULL ? output->result.path : output->result.part,
                     incomplete);

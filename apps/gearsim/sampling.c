@@ -82,6 +82,8 @@ static void set_columns(sampling *s, const int columns[], enum sample_kind kinds
         s->counts_pairs |= column->need == NEEDS_PAIRS;
         s->show[k] = takes_mean(s, column) ? column->mean : column->value;
         s->shown[k] = kinds[k] == SAMPLE_BEHIND ? &s->behind : &s->sample;
+
+        /* What has to be known for it: of the samples, of their means, or of the row alone. */
         switch (kinds[k]) {
         case SAMPLE_BEHIND:
             s->mean_kind = SAMPLE_BOX;

@@ -55,6 +55,8 @@ static int load_flanks(gm_flanks **flanks, const gm_pair *pair, int gear,
     gm_io_error error;
     gm_flanks_options_default(&options);
     options.normal_factor = pair->normal_to_transverse;
+
+    /* Deviations, pitch, or both; an error is of the file that is read. */
     int status = GM_IO_OK;
     if (has_deviations) {
         status = gm_deviations_read(&deviations, deviations_path, teeth, &error);
@@ -66,6 +68,7 @@ static int load_flanks(gm_flanks **flanks, const gm_pair *pair, int gear,
         status = gm_flanks_build(flanks, teeth, has_deviations ? &deviations : NULL,
                                  has_pitch ? &pitch : NULL, &options, NULL, &error);
     }
+
     gm_deviations_free(&deviations);
     gm_pitch_free(&pitch);
     if (status != GM_IO_OK) {

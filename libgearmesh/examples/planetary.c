@@ -207,8 +207,8 @@ static void set_speeds(const gearbox *box, double *speeds) {
 }
 
 /*
- * Share of the load that planet 0 carries, if it carries any: springs of both meshes in a row; 5 um along the way are 5 um cos(alpha_wt)
- * along each line of action.
+ * Share of the load that planet 0 carries, if it carries any: springs of both meshes in a row. 5 um along the way are
+ * 5 um cos(alpha_wt) along each line of action.
  */
 static double share_by_springs(const gearbox *box) {
     const gm_pair *sun = gm_mesh_pair(box->at_sun), *ring = gm_mesh_pair(box->at_ring);
@@ -240,10 +240,13 @@ static int observe(void *cvode, gearbox *box, N_Vector state, N_Vector rates, FI
             derivatives(time, state, rates, box) != 0) {
             return 1;
         }
+
+        /* All is told from here on. */
         if (row == 0) {
             memcpy(before, y, sizeof before);
             energy = kinetic(box, y) + box->stored;
         }
+
         if (file != NULL) {
             fprintf(file, "%.6f", time);
         }

@@ -83,10 +83,13 @@ static OWN_STACK void find_parabola(const gmi_corner *corner, double roll,
         found->pair_from = from;
         found->pair_to = to;
     }
+
+    /* Two parabolas from joint to joint that meet half-way, with the slope that both then have there. */
     const gmi_corner_joint *begins = &found->begins, *ends = &found->ends;
     const double half = 0.5 * (found->pair_to - from);
     const double middle_slope =
         (ends->gap - begins->gap) / half - 0.5 * (begins->slope + ends->slope);
+
     if (roll < from + half) {
         found->from = from;
         found->gap = begins->gap;

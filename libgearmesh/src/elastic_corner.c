@@ -238,6 +238,8 @@ static int add_edges(const gmi_elastic_tips *tips, int role, int count, const in
     }
 #endif
     find_edges(tips, role, wanted, at);
+
+    /* Each gap, and what follows from it, goes to its point. */
     for (int k = 0; k < count; ++k) {
         const int p = list[k];
         work->deviation[p] -= at->gap[k];

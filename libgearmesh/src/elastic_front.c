@@ -342,6 +342,8 @@ void gmi_elastic_find_runs(gmi_elastic_work *work) {
     gmi_elastic_run *run = work->run;
     work->begin = count > 0 ? line[0].element : 0;
     work->end = count > 0 ? end_of(&line[count - 1]) : 0;
+
+    /* Elements from the first line on, in runs with the same lines. */
     int low = 0, high = 0;
     for (int e = work->begin; e < work->end; e = run++->last + 1) {
         /* Those that began before, and those that begin here. */
@@ -349,8 +351,10 @@ void gmi_elastic_find_runs(gmi_elastic_work *work) {
         while (high < count && line[high].element == e) {
             ++high;
         }
+
         const int ending = ended(line, low, before, e + 1);
         const int alone = ended(line, before, high, e + 1);
+
         run->first = run->last = e;
         run->low = low;
         run->ending = ending;

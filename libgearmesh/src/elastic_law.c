@@ -204,6 +204,7 @@ static void set_layers(gmi_elastic *law, const gmi_elastic_params *params) {
     const double along_tooth = GMI_ELASTIC_TOOTH_LENGTH * m_n * cosine;
     const double along_rim = GMI_ELASTIC_RIM_LENGTH * m_n * cosine;
     const double per_rim = 1.0 / law->rim_compliance;
+
     for (int k = 0; k < law->stations; ++k) {
         law->tooth.diagonal[k] = law->tooth.beside[k] = 0.0;
         law->rim.diagonal[k] = law->rim.beside[k] = 0.0;
@@ -217,10 +218,13 @@ static void set_layers(gmi_elastic *law, const gmi_elastic_params *params) {
         add_element(&law->tooth, k, law->spacing, along_tooth * along_tooth * (1.0 - softening));
         add_element(&law->rim, k, law->spacing, along_rim * along_rim);
     }
+
+    /* The rim is as stiff all along the face. */
     for (int k = 0; k < law->stations; ++k) {
         law->rim.diagonal[k] *= per_rim;
         law->rim.beside[k] *= per_rim;
     }
+
     set_tails(&law->tooth, law->stations);
     set_tails(&law->rim, law->stations);
 }
@@ -259,11 +263,13 @@ int gmi_elastic_init(gmi_elastic *law, const gmi_elastic_params *params,
         const gmi_elastic_gear_params *gear = &params->gear[g];
         const gmi_tooth_params data = tooth_params(params, gear);
         *wheel = g;
+
         *fault = gmi_tooth_init(&pair.tooth[g], &data);
         const double fillet_end = cosine * pair.tooth[g].fillet_roll_length;
         if (*fault == GMI_TOOTH_FINE && contact_start[g] < fillet_end - 1e-9 * fabs(fillet_end)) {
             *fault = GMI_TOOTH_CONTACT;
         }
+
         if (*fault == GMI_TOOTH_FINE) {
             *fault = set_table(&law->gear[g], &pair, g, gear->start_roll_length,
                                gear->tip_roll_length, &law->least_compliance[g]);

@@ -251,12 +251,16 @@ int gmi_elastic_mesh_init(gmi_elastic_mesh *made, const gm_mesh_params *params, 
                  gear_params(&pair->wheel, at, GM_WHEEL, params->wheel_youngs_modulus,
                              params->wheel_poisson_ratio)},
     };
+
+    /* Where contact begins on each gear. */
     const double contact_start[2] = {
         fmax(at->start_roll_length[GM_PINION], at->line_of_action - at->tip_roll_length[GM_WHEEL]),
         fmax(at->start_roll_length[GM_WHEEL], at->line_of_action - at->tip_roll_length[GM_PINION])};
+
     if (!is_given_well(params, pair, field, requirement)) {
         return GM_ERR_GEOMETRY;
     }
+
     int fault;
     int role;
     const int status = gmi_elastic_init(&made->law, &law, contact_start, &fault, &role);
@@ -363,11 +367,15 @@ static int place(side_view *view, const gm_position *position, int wanted, gmi_e
     if (count > GMI_ELASTIC_NUMBERS_MAX) {
         return GM_STATE_OUT_OF_RANGE;
     }
+
+    /* Softer teeth, where there are any. */
     const int is_even = view->elastic->tooth_stiffness[GM_PINION] == NULL &&
                         view->elastic->tooth_stiffness[GM_WHEEL] == NULL;
     if (!is_even) {
         set_softness(view, count);
     }
+
+    /* The lines of contact between the faces at this position. */
     gmi_elastic_lines_at lines = {
         .origin = view->lines.origin + view->lines.advance * at->face_from,
         .pitch = pair->transverse_base_pitch,
@@ -388,6 +396,7 @@ static int place(side_view *view, const gm_position *position, int wanted, gmi_e
         .pinion_softness = is_even ? NULL : view->softness[GM_PINION],
         .wheel_softness = is_even ? NULL : view->softness[GM_WHEEL],
     };
+
     if (view->has_tips) {
         set_cuts(&view->tips, view->elastic->usual_approach, lines.cut);
     }

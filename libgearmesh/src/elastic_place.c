@@ -395,6 +395,8 @@ static int place_teeth(const gmi_elastic *law, gmi_elastic_work *work) {
     const gmi_elastic_lines_at *at = &work->at;
     const int slots = work->slots, count = 2 * slots;
     double *wheel_roll = work->scratch, *cell = work->force, *place = work->stiffness;
+
+    /* Where the points of all lines are, ... */
     for (int row = 0; row < work->count; ++row) {
         const gmi_elastic_line *line = &work->line[row];
         const double origin = at->origin + (double)line->index * at->pitch;
@@ -405,6 +407,8 @@ static int place_teeth(const gmi_elastic *law, gmi_elastic_work *work) {
                          wheel_roll + p);
         }
     }
+
+    /* ... and those behind a cut. */
     for (int k = 0; k < work->cuts; ++k) {
         const gmi_elastic_cut *cut = &work->cut[k];
         const double origin = at->origin + (double)work->line[cut->row].index * at->pitch;
@@ -416,16 +420,21 @@ static int place_teeth(const gmi_elastic *law, gmi_elastic_work *work) {
             wheel_roll[p] = at->line_of_action - work->roll[p];
         }
     }
+
+    /* Beyond the path teeth are read as at its end. */
     if (at->goes_on) {
         const double inside = JUST_WITHIN * (at->upper - at->lower);
         keep_within(count, at->lower + inside, at->upper - inside, at->line_of_action, work->roll,
                     wheel_roll, work->beyond);
     }
+
+    /* Whole teeth as drawn: the table of the pair has both in one. Else the table of each gear. */
     if (at->pinion_softness == NULL && at->wheel_softness == NULL && at->slopes < 2 &&
         at->line_of_action == law->line_of_action) {
         read_pair(&law->pair, work);
         return 1;
     }
+
     read_table(&law->gear[0], count, work->roll, cell, place, work->table[0], work->table[2]);
     read_table(&law->gear[1], count, wheel_roll, cell, place, work->table[1], work->table[3]);
 
@@ -441,6 +450,7 @@ static int place_teeth(const gmi_elastic *law, gmi_elastic_work *work) {
         const gmi_elastic_line *line = &work->line[g / 2];
         const int p = (whole ? 0 : line->slot) + g % 2 * slots;
         const int n = whole ? slots : line->slots;
+
         if (!whole) {
             const int number = line->index - at->first;
             teeth.softness[0] = at->pinion_softness != NULL ? at->pinion_softness[number] : 1.0;
@@ -449,6 +459,7 @@ static int place_teeth(const gmi_elastic *law, gmi_elastic_work *work) {
                                    teeth.softness[1] * law->least_compliance[1] >
                                law->rim_compliance;
         }
+
         join_teeth(n, &teeth, work->table[0] + 2 * p, work->table[1] + 2 * p, work->tooth + p,
                    work->rate + p);
         if (at->slopes || at->goes_on) {
@@ -630,17 +641,21 @@ double gmi_elastic_load_at(const gmi_elastic *law, const gmi_elastic_work *work,
     const double kept = fmin(fmax(on_line, at->lower + inside), at->upper - inside);
     const double roll = at->goes_on ? kept : on_line;
     const double wheel_roll = at->line_of_action - roll;
+
     const int number = line->index - at->first;
     const tooth_pair teeth = {{at->pinion_softness != NULL ? at->pinion_softness[number] : 1.0,
                                at->wheel_softness != NULL ? at->wheel_softness[number] : 1.0},
                               law->rim_compliance,
                               at->line_of_action,
                               {law->gear[0].per_cell, law->gear[1].per_cell}};
+
     double pinion[2], wheel[2], pinion_slope[2], wheel_slope[2], tooth, rate;
     double cell, within, tooth_by_roll, rate_by_roll, by_action[2];
     read_table(&law->gear[0], 1, &roll, &cell, &within, pinion, pinion_slope);
     read_table(&law->gear[1], 1, &wheel_roll, &cell, &within, wheel, wheel_slope);
     join_teeth(1, &teeth, pinion, wheel, &tooth, &rate);
+
+    /* Beyond the path they go on as they sloped at its end. */
     if (roll != on_line) {
         const double moved = gmi_elastic_hold_at(at, on_line - roll).moved;
         join_slopes(1, &teeth, pinion, wheel, pinion_slope, wheel_slope, &tooth, &tooth_by_roll,

@@ -375,6 +375,7 @@ int gmi_elastic_solve(const gmi_elastic *law, gmi_elastic_work *work, double app
         answer_nothing(work, result);
         return GM_OK;
     }
+
     const size_t bytes = sizeof(double) * (size_t)(work->lines_max + 1) * (size_t)work->stations;
     predict(work, approach);
     if (!begin_at_state(law, work, approach)) {
@@ -385,19 +386,25 @@ int gmi_elastic_solve(const gmi_elastic *law, gmi_elastic_work *work, double app
             return GM_OK;
         }
     }
+
+    /* Newton's steps, until the energy to be gained from another one is nothing. */
     double last = (double)INFINITY;
     double scale = work->warm > 0 ? work->energy : (double)INFINITY;
     const double root = work->warm > 0 ? CONVERGED : CONVERGED_COLD;
     for (int iteration = 1; iteration <= GMI_ELASTIC_ITERATIONS; ++iteration) {
         const double fall = find_step(law, work);
+
+        /* Hardly less to be gained than before: the last step went too far. */
         if (last < (double)INFINITY && !(fall < SLOW * SLOW * last)) {
             shorten(law, work, approach, last);
             (void)begin_at_state(law, work, approach);
             last = (double)INFINITY;
             continue;
         }
+
         gmi_elastic_follow(work);
         move_state(work, 1.0, work->change);
+
         if (fall <= root * root * scale) {
             finish(law, work, approach, result);
             scale = result->energy;

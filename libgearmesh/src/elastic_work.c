@@ -92,12 +92,14 @@ void gmi_elastic_work_init(gmi_elastic_work *work, int stations, int lines, void
                                            &work->scratch,
                                            &work->pull,
                                            &work->tooth_adjoint};
+
     for (int k = 0; k < POINT_ARRAYS; ++k) {
         *points[k] = take(&next, sizes.points);
     }
     for (int k = 0; k < TABLE_ARRAYS; ++k) {
         work->table[k] = take(&next, 2 * sizes.points);
     }
+
     work->matrix = take(&next, GMI_ELASTIC_MATRICES * sizes.slots);
     for (int k = 0; k < PART_ARRAYS; ++k) {
         work->parts[k] = take(&next, sizes.slots);

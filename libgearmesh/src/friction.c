@@ -395,15 +395,19 @@ void gmi_rubbing_add(const gmi_sliding *sliding, double advance, const gmi_load 
         .slope = (sliding->pinion_speed + sliding->wheel_speed) * advance - sliding->sideways[1],
         .apart = load->contact[1] / load->contact[0] - t1,
     };
+
+    /* Its friction, and the moment of that about the middle of the load. */
     gmi_part_friction at;
     gmi_friction_of_part(sliding, &part, &at);
     for (int weight = 0; weight < GMI_WEIGHTS; ++weight) {
         total->force[weight] += at.share.value * force[weight];
     }
+
     const double lean = at.lean.value * force[GMI_WHOLE];
     total->force[GMI_BY_T1] += lean;
     total->force[GMI_BY_RHO] += advance * lean;
     total->loss += at.share.value * part.speed * force[GMI_WHOLE] + part.slope * lean;
+
     if (by != NULL) {
         add_part_derivatives(sliding, advance, &at, load, load_by, rho_p, t1, by);
     }
@@ -427,6 +431,8 @@ void gmi_rubbing_finish(const gmi_sliding *sliding, const gmi_load *load,
     if (force > 0.0) { /* else damping has taken the force of the side away */
         mu = gmi_friction_common(sliding, force);
     }
+
+    /* The coefficient changes with the load, and with the speed of rolling. */
     if (by != NULL) {
         double power_by[GMI_VARIABLES] = {0.0};
         const gmi_rolling_by rolling = gmi_rolling_differentiate(sliding);
@@ -436,6 +442,7 @@ void gmi_rubbing_finish(const gmi_sliding *sliding, const gmi_load *load,
         power_by[GMI_BY_LENGTH] -= mu.power * rolling.length;
         power_by[GMI_BY_PINION_SPEED] = -mu.power * rolling.pinion_speed;
         power_by[GMI_BY_WHEEL_SPEED] = -mu.power * rolling.wheel_speed;
+
         for (int weight = 0; weight < GMI_WEIGHTS; ++weight) {
             for (int k = 0; k < GMI_VARIABLES; ++k) {
                 by->force[k][weight] =
@@ -443,6 +450,7 @@ void gmi_rubbing_finish(const gmi_sliding *sliding, const gmi_load *load,
             }
         }
     }
+
     for (int weight = 0; weight < GMI_WEIGHTS; ++weight) {
         total->force[weight] *= mu.value;
     }
@@ -661,6 +669,7 @@ static void finish_tip(const gmi_varying *mu, gmi_tip_friction *tip) {
 
 void gmi_friction_finish(const gmi_sliding *sliding, const gmi_varying *force,
                          gmi_friction_sum *total, gmi_tip_friction *tip) {
+    /* The coefficient, with how it changes. */
     const gmi_friction_sum parts = *total;
     const gmi_friction_sum none = {.loss = 0.0};
     gmi_varying mu = {.value = 0.0};
@@ -674,12 +683,14 @@ void gmi_friction_finish(const gmi_sliding *sliding, const gmi_varying *force,
                 (force->by[k] / force->value - sliding->rolling.by[k] / sliding->rolling.value);
         }
     }
+
     if (tip != NULL) {
         finish_tip(&mu, tip);
     }
     if (!(force->value > 0.0)) {
         return;
     }
+
     gmi_varying_add_product(&mu, &parts.force, &total->force);
     gmi_varying_add_product(&mu, &parts.moment, &total->moment);
     total->force_t1 = mu.value * parts.force_t1;

@@ -248,9 +248,12 @@ static double bearing_length(const gm_mesh *mesh, const side_lines *found, int i
     if (mesh->has_corners) { /* what touches beyond is known of the whole side */
         return length_on_path(mesh, &found->path, index);
     }
+
     if (!found->has_tips || advance == 0.0) {
         return (part.to - part.from) * width;
     }
+
+    /* What lies within the path, ... */
     const gmi_elastic_work *work = found->work;
     const double origin = found->lines.origin + (double)index * mesh->pair->transverse_base_pitch;
     const double lower =
@@ -258,6 +261,8 @@ static double bearing_length(const gm_mesh *mesh, const side_lines *found, int i
     const double upper =
         fmin(work->at.upper, origin + fmax(advance * part.from, advance * part.to));
     double length = fmax(upper - lower, 0.0) * width / fabs(advance);
+
+    /* ... and points beyond it that carry. */
     const gmi_elastic_line *line = &work->line[row];
     for (int half = 0; half < 2; ++half) {
         const int from = line->slot + half * work->slots;

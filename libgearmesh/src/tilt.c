@@ -163,6 +163,7 @@ static void place_gradient(const tilted *line, double t1, int place, double by[G
         by[GMI_BY_ALONG] = -p * u;
         by[GMI_BY_AXIAL] = p * a;
         break;
+
     case ROLL_WHEEL:
         by[GMI_BY_ORIGIN] = -1.0 - tau * g - q * a * tau;
         by[GMI_BY_DELTA] = 1.0;
@@ -171,6 +172,7 @@ static void place_gradient(const tilted *line, double t1, int place, double by[G
         by[GMI_BY_ACROSS] = tau * rho_w;
         by[GMI_BY_AXIAL] = q * a;
         break;
+
     case FACE_WHEEL:
         by[GMI_BY_ORIGIN] = g;
         by[GMI_BY_LENGTH] = -g;
@@ -178,13 +180,16 @@ static void place_gradient(const tilted *line, double t1, int place, double by[G
         by[GMI_BY_ACROSS] = -rho_w;
         by[GMI_BY_AXIAL] = -1.0;
         break;
+
     case TABLE_PINION:
         by[GMI_BY_ORIGIN] = 1.0;
         break;
+
     case TABLE_WHEEL:
         by[GMI_BY_ORIGIN] = -1.0;
         by[GMI_BY_DELTA] = by[GMI_BY_LENGTH] = 1.0;
         break;
+
     default:
         break;
     }

@@ -126,6 +126,7 @@ void gmi_wrench_add_tip(const gm_pair *pair, const gmi_engagement *at, const gmi
         z_force[k] = pair->face_start * force[k] + pair->face_width * force_t1;
         axial[k] = away * (load->across * n[k] + load->along * e[k]) * axial_share;
     }
+
     const double tilting[2] = {axial[1] - z_force[1], z_force[0] - axial[0]};
     const double shorter = sign * tip_base * load->arm;
     for (int k = 0; k < 2; ++k) {
