@@ -383,7 +383,7 @@ class Indicators(unittest.TestCase):
         _, share = indicators.energy_shares(runup.short_time_spectra(run), gears())
         self.assertAlmostEqual(share, 1 / 3, delta=0.02)
 
-    def test_visibility(self):
+    def test_visibility_is_1_of_a_line_and_0_of_noise(self):
         def visible(amplitude_N):
             run = run_up(lambda t, a: amplitude_N * np.cos(45 * a) + np.random.default_rng(1).normal(size=len(t)),
                          2000.0, 10000.0)
@@ -403,7 +403,7 @@ class Indicators(unittest.TestCase):
         value_N = indicators.high_frequency_rms(runup.short_time_spectra(run), gears())
         self.assertAlmostEqual(value_N, np.sqrt(0.5), delta=0.03)
 
-    def test_loss_of_contact(self):
+    def test_loss_of_contact_is_the_share_of_rows_without(self):
         pairs = np.ones(256000)
         pairs[:2560] = 0
         self.assertEqual(indicators.loss_of_contact(run_up(lambda t, a: 0.0, pairs=pairs)), 0.01)

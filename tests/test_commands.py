@@ -84,7 +84,7 @@ class Completion(unittest.TestCase):
                           "flanks.wheel_tooth_stiffness="])
         self.assertEqual(complete("gearsim", "--template", "st"), ["static"])
 
-    def test_bash(self):
+    def test_bash_completes_options_and_keys(self):
         def complete(*words):
             line = " ".join(words)
             code = (
@@ -99,7 +99,7 @@ class Completion(unittest.TestCase):
         self.check_both(complete)
 
     @unittest.skipUnless(shutil.which("zsh"), "needs zsh")
-    def test_zsh(self):
+    def test_zsh_completes_options_and_keys(self):
         """With stand-ins for what zsh has only while somebody types."""
 
         def complete(*words):

@@ -115,7 +115,7 @@ class BadFiles(Folder):
         self.write(HEADER + rows(0, "drive", 1))
         self.assertEqual(self.flanks("gear.csv", "--no-pictures").returncode, 0)
 
-    def test_missing_file(self):
+    def test_a_missing_file_is_named(self):
         result = self.flanks("nowhere.csv")
         self.assertEqual(result.returncode, 2)
         self.assertIn("nowhere.csv: cannot be read: No such file", result.stderr)
@@ -148,7 +148,7 @@ class BadFiles(Folder):
         self.assert_refused(HEADER + rows(17, "drive", 1), 2, "tooth: must be 0 to 16, or * (got 17)", arguments=("--gear-teeth", "17"))
         self.assert_refused(HEADER + rows(123456, "drive", 1), 2, "tooth: must be 0 to 999, or * (got 123456)")
 
-    def test_grids(self):
+    def test_grids_that_are_none_are_refused(self):
         lines = rows(0, "drive", 1).splitlines(keepends=True)
         second = rows(1, "*", 1).splitlines(keepends=True)
         self.assert_refused(HEADER + "".join(lines + second[:-1]), 17, "tooth 1, flank *", "got none for t1 = 1, t2 = 1")
@@ -168,7 +168,7 @@ class BadFiles(Folder):
         self.assert_refused(good + b"0,drive,0,0,1\r0\n", 17, "carriage return")
         self.assert_refused(good + b"0,drive,0,0," + b"1" * 1000, 17, "at most 1000 characters")
 
-    def test_pitch_files(self):
+    def test_pitch_files_that_are_none_are_refused(self):
         for text, words in (
             ("0,drive,1\n1,drive,1\n0,drive,2\n", ["pitch.csv:4:", "tooth 0, flank drive", "line 2"]),
             ("0,drive,nan\n", ["pitch.csv:2:", "nan"]),
@@ -182,7 +182,7 @@ class BadFiles(Folder):
                 self.assertIn(word, result.stderr)
             self.assertEqual(sorted(os.listdir(self.folder)), ["gear.csv", "pitch.csv"])
 
-    def test_options(self):
+    def test_options_out_of_range_are_refused(self):
         self.write(HEADER + rows(0, "drive", 1) + rows(4, "*", 1))
         for option, value, word in (
             ("--tooth", "5", "must be from 0 to 4 (got 5)"),

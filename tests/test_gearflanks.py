@@ -196,7 +196,7 @@ class Evaluate(Case):
         self.assertEqual(len(rows), 2 * TEETH[gear])
         return {(int(row["tooth"]), row["flank"]): row for row in rows}
 
-    def test_pitch(self):
+    def test_single_and_total_pitch_follow_from_the_file(self):
         for gear, teeth in TEETH.items():
             measured = self.flank_values(gear)
             pitch = {(int(r["tooth"]), r["flank"]): float(r["deviation_um"]) for r in file_rows(gear + "_pitch.csv")}
@@ -285,7 +285,7 @@ class Refusals(Case):
     def tearDown(self):
         self.assertFalse(os.path.exists(self.path("f.csv")))
 
-    def test_options(self):
+    def test_options_that_do_not_go_together_are_refused(self):
         self.refused("an INI file is missing")
         self.refused("--gear is missing", PARAMS, "--evaluate")
         self.refused("--class or --scatter is missing", PARAMS, "--gear", "pinion")
@@ -306,7 +306,7 @@ class Refusals(Case):
         self.refused("not together with --evaluate: --class", *self.make, "--evaluate")
         self.refused("only together with --evaluate: --teeth", *self.make, "--teeth")
 
-    def test_values(self):
+    def test_values_out_of_range_are_refused(self):
         for option, value, right in (
             ("--gear", "ring", "pinion or wheel"),
             ("--class", "6.5", "1 to 11"),
@@ -326,7 +326,7 @@ class Refusals(Case):
         ):
             self.refused(right, *self.make, option, value)
 
-    def test_files(self):
+    def test_files_that_cannot_be_read_are_named(self):
         bad = self.write("bad.csv", "tooth,flank,deviation_um\n0,drive,x\n")
         self.refused(f"{bad}:2: ", PARAMS, "--gear", "pinion", "--evaluate", "--pitch", bad)
         self.refused("no.ini", "no.ini", "--gear", "pinion", "--evaluate")

@@ -304,7 +304,7 @@ class RoundTrip(Case):
         traces = [line for group in (profiles, helices) for rows in group.values() for line in rows]
         return TRACE_HEADER + "".join(traces), PITCH_HEADER + "".join(pitch)
 
-    def test_made_flanks(self):
+    def test_made_flanks_come_back_as_they_were(self):
         for gear, face, counting, left_is_drive, order_kept in self.WAYS:
             made = ("--flanks", "f.csv", "--pitch", "p.csv", "--nodes", "13x15")
             self.accepted(PARAMS, "--gear", gear, "--class", "6", "--seed", "5", *made)
@@ -368,7 +368,7 @@ class Refusals(Case):
         self.traces = self.each(5, lambda um: -um)
         self.bad_traces(0, ["16 of 16 traces that stand out", "material added: must be > 0", "(see --hollow)"])
 
-    def test_lengths(self):
+    def test_lengths_in_other_units_are_refused(self):
         rows = self.traces
         self.traces = self.each(4, lambda mm: mm / 10)
         self.bad_traces(5, ["(base circle)", "centimetres"])
@@ -401,7 +401,7 @@ class Refusals(Case):
         self.traces = self.change(rows, r"(\d)\.(\d\d\n)", r"\1,\2")
         self.bad_traces(5, ["(got 7", "decimal comma"])
 
-    def test_pitch(self):
+    def test_pitch_with_missing_or_double_teeth_is_refused(self):
         rows = list(self.pitch)
         self.pitch = rows[:50] + rows[51:]
         self.bad_pitch(0, ["none for tooth 24", "each of the 45 teeth"])
@@ -416,7 +416,7 @@ class Refusals(Case):
         self.pitch = self.change(rows, r"\.(\d)\n", r",\1\n")
         self.bad_pitch(4, ["(got 4", "decimal comma"])
 
-    def test_options(self):
+    def test_options_that_are_missing_are_named(self):
         some = EXAMPLE[:3]
         files = ("--traces", TRACES, "--flanks", "f.csv")
         self.refused("--datum-face is missing", *some, *files, "--count", "clockwise")
@@ -437,7 +437,7 @@ class Refusals(Case):
             "--pitch", "p.csv", "--hollow",
         )
 
-    def test_values(self):
+    def test_values_out_of_range_are_refused(self):
         for option, value, right in (
             ("--datum-face", "1", "I or II"),
             ("--count", "left", "clockwise or counterclockwise"),

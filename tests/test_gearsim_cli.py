@@ -431,7 +431,7 @@ class Template(Case):
 class Text(Case):
     """How the text of an INI file reads."""
 
-    def test_missing_file(self):
+    def test_a_missing_parameter_file_is_named(self):
         self.refused("run.ini: ", "No such file", params=None)
 
     def test_folder_in_place_of_the_file(self):
@@ -655,7 +655,7 @@ class Values(Case):
                     text = with_key(text, "gears", key, value)
                 self.refused(*fragments, params=text, arguments=["--check"])
 
-    def test_ranges(self):
+    def test_values_out_of_range_are_refused(self):
         for section, key, values, requirement in [
                 ("gears", "pinion_teeth", ["0", "-45", "2", "100001"], "from 3 to 100000"),
                 ("gears", "wheel_teeth", ["0", "-2", "2", "-100001"], "from 3 to 100000, or from -100000 to -3"),
@@ -710,7 +710,7 @@ class Values(Case):
             with self.subTest(override):
                 self.accepted("run.ini", "--check", "--set", override)
 
-    def test_whole_numbers(self):
+    def test_whole_numbers_take_no_fraction(self):
         for section, key, requirement in [("gears", "pinion_teeth", "from 3 to 100000"),
                                           ("output", "oversampling", "from 1 to 64"), ("output", "digits", "from 3 to 17"),
                                           ("analysis", "positions", "from 1 to 100000000")]:
@@ -727,7 +727,7 @@ class Values(Case):
         for value in ["-1", "1.5", "1e3", "0x1", "one", "-0"]:
             self.refused_value("load", "seed", value, "from 0 to 18446744073709551615")
 
-    def test_choices(self):
+    def test_other_choices_are_refused(self):
         for section, key, choices in [("gears", "base_helix", "iso | paper"), ("mesh", "model", "simple | 3d"),
                                       ("flanks", "deviation_direction", "normal | transverse"),
                                       ("drive", "kind", "speed | torque"), ("analysis", "type", "dynamic | static"),
@@ -1198,7 +1198,7 @@ class Flanks(Case):
         self.write("run.ini", with_key(PARAMS, "flanks", "pinion", "flanks.csv"))
         self.assertEqual(self.accepted("run.ini", "--check").stderr, "")
 
-    def test_missing_file(self):
+    def test_a_missing_flank_file_is_named(self):
         self.refused_file(None, "flanks.csv: ", "no such file")
 
     def test_folder_in_its_place(self):
@@ -1233,7 +1233,7 @@ class Flanks(Case):
             with self.subTest(value):
                 self.refused_file(DEVIATIONS.replace("*,*,1,0,0", f"*,*,1,0,{value}"), "flanks.csv:4: ", value)
 
-    def test_pitch_file(self):
+    def test_pitch_files_that_are_none_are_refused(self):
         header = "tooth,flank,deviation_um\n"
         self.refused_file(header + "0,drive,1\n45,drive,1\n", "pitch.csv:3: ", "45", key="pinion_pitch", name="pitch.csv")
         self.refused_file(header + "0,drive,1\n0,drive,1\n", "pitch.csv:3: ", key="pinion_pitch", name="pitch.csv")
@@ -1414,7 +1414,7 @@ class Tables(Case):
         self.refused("table.csv", f"run.ini:{line_of(params, 'file = ')}: {section}.file: names this file", *fragments,
                      params=params, arguments=["--check"])
 
-    def test_right_tables(self):
+    def test_right_tables_are_taken(self):
         for section, column in (("drive", "speed_rpm"), ("load", "torque_Nm")):
             for text in ["time_s,{}\n0,20\n100,30\n", "\ufeff# made\r\ntime_s , {}\r\n\r\n-1,20\r\n100,-3e1\r\n",
                          "time_s,{}\n0,20\n1,20\n1,20\n100,30"]:
@@ -1465,7 +1465,7 @@ class Tables(Case):
         self.refused_table("drive", head + "0,1\n1,2\n", ":3: speed_rpm must end with the value it begins with",
                            "(got 1 and 2 rpm)", repeat="on")
 
-    def test_missing_file(self):
+    def test_a_missing_table_is_named(self):
         params = self.params("load")
         self.refused("table.csv: cannot be read", "load.file: names this file", params=params, arguments=["--check"])
 
@@ -1504,7 +1504,7 @@ class Ripple(Case):
                 self.refused_value(section, "ripple", value, fragment)
         self.refused("--set drive.ripple: ", "(got 0:1:0)", arguments=["--set", "drive.ripple=2:5:0, 0:1:0"])
 
-    def test_right_ripple(self):
+    def test_right_ripple_is_taken(self):
         text = PARAMS.replace("[drive]\n", "[drive]\nripple = 2:5:0, 4.5:1:-90\n")
         text = text.replace("[load]\n", "[load]\nripple = 2:1:0\n")
         self.write("run.ini", text)

@@ -116,7 +116,7 @@ class Ends(runs.Case):
             rows = self.assert_part_is_the_beginning("^interrupted at t = [0-9.]+ s$")
             self.assertGreater(rows, BLOCK_ROWS)
 
-    def test_full_disk(self):
+    def test_a_full_disk_ends_the_run_and_leaves_the_old_result(self):
         """A limit on the size of a file stands for it."""
         result = self.gearsim(self.ENDLESS, "--output", "run.h5",
                               preexec_fn=uncounted.limit_files(2000000))

@@ -770,7 +770,7 @@ class Rattle(Case):
         for method in ("adams", "bdf", "erk"):
             self.assert_converges(f"solver.method={method}")
 
-    def test_torque_driven(self):
+    def test_a_torque_driven_pinion_converges_too(self):
         self.roughen(5)
         self.assert_converges("drive.kind=torque", "drive.torque_Nm=3.3", f"bodies.pinion_inertia_kg_m2={I_P}")
 
@@ -779,7 +779,7 @@ class Rattle(Case):
         self.assert_converges("load.mean_Nm=-3")
         self.assert_converges("drive.start_rpm=-3000", "drive.end_rpm=-3001")
 
-    def test_lookup(self):
+    def test_the_lookup_converges_too(self):
         self.roughen(5)
         self.assert_converges("solver.lookup=on")
 
@@ -1125,7 +1125,7 @@ class Ring(Case):
             "gears.backlash_um=60", "gears.pinion_tip_diameter_mm=", "gears.wheel_tip_diameter_mm=",
             "gears.pinion_rack_dedendum=", "gears.wheel_rack_dedendum=", f"load.mean_Nm={TORQUE}"]
 
-    def test_geometry(self):
+    def test_geometry_of_a_ring_is_that_of_its_formulae(self):
         g = self.geometry(self.RING)
         alpha = math.acos(57 * math.cos(math.radians(20)) / 57.4)
         self.assert_close(g["working_pressure_angle_deg"], math.degrees(alpha), 1e-13)
@@ -1392,7 +1392,7 @@ class Ends(Case):
             self.assertIn("interrupted at t = ", errors)
             self.assertGreater(self.assert_part_has_whole_lines("interrupted at t = [0-9.]+ s$"), 100)
 
-    def test_full_disk(self):
+    def test_a_full_disk_ends_the_run_and_leaves_the_old_result(self):
         """A limit on the size of a file stands for it. The mark finds its place wherever a row ends."""
         for size in range(300000, 300160, 20):
             result = self.gearsim(self.ENDLESS, "--output", "run.csv",
@@ -1403,7 +1403,7 @@ class Ends(Case):
             self.assertGreater(os.path.getsize(self.path("run.csv.part")), 299000)
             os.remove(self.path("run.csv.part"))
 
-    def test_full_disk_static(self):
+    def test_a_full_disk_ends_a_static_run_too(self):
         result = self.gearsim(["analysis.type=static", "analysis.positions=20000"], "--output", "run.csv",
                               preexec_fn=uncounted.limit_files(300000))
         self.assertEqual(result.returncode, 1, result.stderr)

@@ -214,7 +214,7 @@ class Slips(unittest.TestCase):
                 self.assertIn("was it meant as the transverse module? write 3\n", result.stderr)
                 self.assertNotIn("was it meant", self.check(settings + given + "gears.normal_module_mm=3").stderr)
 
-    def test_rings(self):
+    def test_rings_have_slips_of_their_own(self):
         """The difference of the teeth decides, and shifts of the pinion alone move the axes to the other side."""
         helix = 20
         transverse = 2 / math.cos(math.radians(helix))

@@ -19,7 +19,7 @@ static int same_as_printf(double value, int digits) {
     return GM_ASSERT_STRING(got, expected) && GM_ASSERT_INT(length, strlen(expected));
 }
 
-static void special_values(void) {
+static void special_values_are_written_as_printf_does(void) {
     const double values[] = {0.0,
                              -0.0,
                              1.0,
@@ -85,7 +85,7 @@ static void around_powers_of_ten(void) {
 }
 
 /* Exact ties (k + 1/2 with few bits), which printf rounds to even. */
-static void ties(void) {
+static void ties_are_rounded_as_printf_does(void) {
     for (int k = 0; k < 3000; ++k) {
         for (int digits = 1; digits <= 6; ++digits) {
             if (!same_as_printf(k + 0.5, digits) || !same_as_printf((k + 0.5) / 1024.0, digits)) {
@@ -96,7 +96,7 @@ static void ties(void) {
 }
 
 /* All exponents that a result can have, all numbers of digits. */
-static void random_values(void) {
+static void random_values_are_written_as_printf_does(void) {
     uint64_t seed = 1;
 
     for (int i = 0; i < 300000; ++i) {
@@ -109,7 +109,7 @@ static void random_values(void) {
 }
 
 /* Numbers as people write them: with few digits, so that the rest is exactly zero or a tie. */
-static void short_decimals(void) {
+static void short_decimals_are_written_as_printf_does(void) {
     uint64_t seed = 2;
 
     for (int i = 0; i < 300000; ++i) {
@@ -151,11 +151,11 @@ static void every_place_of_the_point(void) {
 
 int main(int argc, char **argv) {
     static const gm_test tests[] = {
-        GM_TEST(special_values),
+        GM_TEST(special_values_are_written_as_printf_does),
         GM_TEST(around_powers_of_ten),
-        GM_TEST(ties),
-        GM_TEST(random_values),
-        GM_TEST(short_decimals),
+        GM_TEST(ties_are_rounded_as_printf_does),
+        GM_TEST(random_values_are_written_as_printf_does),
+        GM_TEST(short_decimals_are_written_as_printf_does),
         GM_TEST(times_of_rows),
         GM_TEST(every_place_of_the_point),
     };

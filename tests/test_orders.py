@@ -238,7 +238,7 @@ class Lines(unittest.TestCase):
             with self.assertRaisesRegex(program.InputError, "--orders: must be"):
                 lines.orders_asked(text)
 
-    def test_units_of_columns(self):
+    def test_units_are_read_from_names_of_columns(self):
         for name, expected in (("contact_force_N", ("contact force", "N")), ("a [m/s²]", ("a", "m/s²")),
                                ("Druck (Pa)", ("Druck", "Pa")), ("F / kN", ("F", "kN")), ("p", ("p", "")),
                                ("penetration_rate_um_per_s", ("penetration rate", "µm/s"))):
@@ -450,7 +450,7 @@ class Files(Case):
 class Workbench(Case):
     """UFF58, in the environment of scripts/setup --workbench."""
 
-    def test_uff(self):
+    def test_uff_is_read_as_csv_is(self):
         np.save(self.path("table.npy"), np.column_stack([self.values, self.speed_rpm]))
         code = """if 1:
             import numpy as np, pyuff

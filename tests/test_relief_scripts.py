@@ -649,7 +649,7 @@ class Parts(unittest.TestCase):
                 for other, its in zip(labels[:number, :2], half):
                     self.assertTrue(np.any(np.abs(at - other) > np.add(own, its)))
 
-    def test_ranges(self):
+    def test_ranges_are_spread_evenly(self):
         np.testing.assert_allclose(loaded_te.span("1:3:5"), [1, 1.5, 2, 2.5, 3])
         np.testing.assert_allclose(loaded_te.span("2", 5), [2])
         np.testing.assert_allclose(loaded_te.span("2:4", 3), [2, 3, 4])

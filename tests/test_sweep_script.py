@@ -210,7 +210,7 @@ class Runs(Case):
             self.assertEqual([f"{value:.10g}" for value in file["loads.1.te_peak_to_peak_um"]],
                              [row["loads.1.te_peak_to_peak_um"] for row in self.table()])
 
-    def test_pictures(self):
+    def test_pictures_of_responses_scatter_and_quantiles(self):
         done = call("sweep", "p.ini", "--vary", "load.mean_Nm=100:300:3", "--vary",
                     "modifications.pinion_tip_relief_um=uniform(0,20)", "--samples", "2", *self.LOADS[2:], folder=self.folder)
         self.assertEqual((done.returncode, done.stderr), (0, ""))

@@ -22,7 +22,7 @@ BLOCK = re.compile(r"<!-- Run by the test script.tutorial. -->\n```sh\n(.*?)```"
 
 
 class Tutorial(unittest.TestCase):
-    def test_all_of_it(self):
+    def test_every_command_does_what_the_page_says(self):
         with open(TUTORIAL, encoding="utf-8") as file:
             text = file.read()
         blocks = BLOCK.findall(text)

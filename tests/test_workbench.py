@@ -82,7 +82,7 @@ class Summaries(Case):
     def summary(self, *arguments):
         return self.call("summary", *arguments)
 
-    def test_a_run_up(self):
+    def test_a_run_up_in_words_and_numbers(self):
         self.write("a.csv", HEAD + "# eigenfrequency_Hz = 700\n# output.oversampling = 1\n", self.run_up())
         one = json.loads(self.summary("a.csv", "--json"))[0]
         self.assertEqual((one["kind"], one["gears"]["wheel_teeth"], len(one["warnings"])), ("dynamic", -71, 1))
@@ -116,7 +116,7 @@ class Summaries(Case):
         self.write("still.csv", HEAD, still)
         self.assertIn("tooth orders of the force: no number (the pinion stands still)", self.summary("still.csv"))
 
-    def test_static_runs(self):
+    def test_a_static_run_in_words_and_numbers(self):
         for cycles in (1, 23):
             self.write("s.csv", HEAD, self.static(100 * cycles, cycles))
             one = json.loads(self.summary("s.csv", "--json"))[0]
