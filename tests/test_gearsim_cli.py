@@ -972,6 +972,24 @@ class Geometry(Case):
         text = self.accepted("run.ini", "--geometry", "--set", "flanks.pinion_second_half=none.csv").stderr
         self.assertIn("--set flanks.pinion_second_half: warning: not used with one helix", text)
 
+    def test_the_limit_of_a_pose_is_told_and_holds(self):
+        for key, amount, others in [("center_distance_change_um", 6000, []), ("center_distance_change_um", -2000, []),
+                                    ("offset_um", 40000, []), ("axial_shift_um", -17500, []), ("skew_mrad", 60, ["inclination_mrad=3"]),
+                                    ("inclination_mrad", -100, ["gears.double_helical_gap_mm=2", "mesh.law=iso6336"])]:
+            more = [text if "." in text.split("=")[0] else f"pose.{text}" for text in others]
+            arguments = [part for text in [f"pose.{key}={amount}", *more] for part in ("--set", text)]
+            self.write("run.ini", without_key(PARAMS, "stiffness_N_per_m") if "mesh.law=iso6336" in others else PARAMS)
+            said = self.run_gearsim("run.ini", "--check", *arguments)
+            self.assertEqual(said.returncode, 2)
+            self.assertIn("here up to", said.stderr, arguments)
+            limit = float(re.search(r"over the face; here up to (\S+) \(got", said.stderr).group(1))
+            self.assertLess(0, limit / amount)
+
+            # That will do, and a hundredth more will not.
+            for factor, code in ((1.0, 0), (1.011, 2)):
+                arguments[1] = f"pose.{key}={factor * limit!r}"
+                self.assertEqual(self.run_gearsim("run.ini", "--check", *arguments).returncode, code, (arguments, factor))
+
     def test_pose_out_of_mesh(self):
         for key, amount in [("center_distance_change_um", 6000), ("center_distance_change_um", -2000), ("offset_um", 40000),
                             ("axial_shift_um", -17500), ("skew_mrad", 60), ("inclination_mrad", -60)]:

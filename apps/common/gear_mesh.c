@@ -7,6 +7,7 @@
 #include "tooth_stiffness.h"
 
 #include <math.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -37,33 +38,85 @@ static int load_flanks(gear_mesh *mesh, const config *conf) {
     return status;
 }
 
+/* Whether a mesh of these gears can be in this pose, both halves of a double-helical one; the law has no part in that. */
+static int is_in_mesh(const gear_mesh *mesh, const gm_pose *pose) {
+    union {
+        double alignment;
+        char bytes[8192];
+    } memory;
+    gm_mesh *prepared;
+    gm_mesh_params params;
+    gm_mesh_params_default(&params);
+    params.stiffness = 1.0;
+    gm_pose poses[2] = {*pose, *pose};
+    if (mesh->halves == 2) {
+        gm_double_helical_pose(&mesh->pair, mesh->gap, pose, poses);
+    }
+    for (int half = 0; half < mesh->halves; ++half) {
+        params.pose = poses[half];
+        if (gm_mesh_init(&prepared, &params, &mesh->pair, NULL, NULL, memory.bytes,
+                         sizeof memory.bytes) != GM_OK) {
+            return 0;
+        }
+    }
+    return 1;
+}
+
+/* What share of an amount, one of those of the pose, leaves the gears in mesh with the others as they are: by halving; 0 if
+ * they are not in mesh without it. */
+static double largest_share(const gear_mesh *mesh, const gm_pose *pose, double *amount) {
+    const double all = *amount;
+    double low = 0.0;
+    double high = 1.0;
+    *amount = 0.0;
+    if (!is_in_mesh(mesh, pose)) {
+        return 0.0;
+    }
+    for (int k = 0; k < 30; ++k) {
+        const double middle = 0.5 * (low + high);
+        *amount = middle * all;
+        *(is_in_mesh(mesh, pose) ? &low : &high) = middle;
+    }
+    return low;
+}
+
 /* The key of the pose that moves the wheel most is the one to look at. */
-static int refuse_pose(const config *conf, const gm_pair *pair) {
-    const double half_face = 0.5 * pair->face_width;
-    const struct {
+static int refuse_pose(const config *conf, const gear_mesh *mesh) {
+    const double half_face = 0.5 * mesh->pair.face_width;
+    gm_pose pose = conf->pose;
+    struct {
         const char *key;
-        double amount; /* as the key gives it */
-        double move;   /* (m) */
+        double *amount; /* (m, rad) */
+        double unit;    /* of the key */
+        double arm;     /* by which it moves the wheel (1, m) */
     } moves[] = {
-        {"pose.center_distance_change_um", 1e6 * conf->pose.center_distance_change,
-         conf->pose.center_distance_change},
-        {"pose.offset_um", 1e6 * conf->pose.offset, conf->pose.offset},
-        {"pose.axial_shift_um", 1e6 * conf->pose.axial_shift, conf->pose.axial_shift},
-        {"pose.skew_mrad", 1e3 * conf->pose.skew, half_face * conf->pose.skew},
-        {"pose.inclination_mrad", 1e3 * conf->pose.inclination, half_face * conf->pose.inclination},
+        {"pose.center_distance_change_um", &pose.center_distance_change, 1e-6, 1.0},
+        {"pose.offset_um", &pose.offset, 1e-6, 1.0},
+        {"pose.axial_shift_um", &pose.axial_shift, 1e-6, 1.0},
+        {"pose.skew_mrad", &pose.skew, 1e-3, half_face},
+        {"pose.inclination_mrad", &pose.inclination, 1e-3, half_face},
     };
     int largest = 0;
-
     for (int k = 1; k < (int)(sizeof moves / sizeof moves[0]); ++k) {
-        if (fabs(moves[k].move) > fabs(moves[largest].move)) {
+        if (fabs(moves[k].arm * *moves[k].amount) >
+            fabs(moves[largest].arm * *moves[largest].amount)) {
             largest = k;
         }
+    }
+
+    /* The limit to three digits, rounded towards 0, so that it is one that will do. */
+    const double amount = *moves[largest].amount / moves[largest].unit;
+    char limit[64] = "";
+    const double most = amount * largest_share(mesh, &pose, moves[largest].amount);
+    if (most != 0.0) {
+        const double digit = pow(10.0, floor(log10(fabs(most))) - 2.0);
+        snprintf(limit, sizeof limit, "; here up to %.9g", trunc(most / digit) * digit);
     }
     config_complain(conf, moves[largest].key,
                     "must leave the gears in mesh, with tips that reach each other and stay clear "
                     "of the roots, faces that overlap, and tilts of less than an eighth of the "
-                    "transverse base pitch over the face (got %.9g)",
-                    moves[largest].amount);
+                    "transverse base pitch over the face%s (got %.9g)",
+                    limit, amount);
     return EXIT_BAD_INPUT;
 }
 
@@ -253,7 +306,7 @@ static double damping_of_ratio(const gear_mesh *mesh, const config *conf) {
 static int refuse(const config *conf, const gear_mesh *mesh, const gm_mesh_params *params,
                   int status, void *memory, size_t size) {
     if (status == GM_POSE_OUT_OF_MESH) {
-        return refuse_pose(conf, &mesh->pair);
+        return refuse_pose(conf, mesh);
     }
     if (status == GM_ERR_GEOMETRY && conf->law == LAW_ELASTIC) {
         return refuse_elastic(conf, &mesh->pair, params, memory, size);
