@@ -143,13 +143,32 @@ static size_t hunting_pass(const fixture *f, const gm_position *position) {
            (size_t)position->wheel_tooth;
 }
 
-/* Starts of the columns before and behind a phase. */
-static const double *starts_around(const fixture *f, const gm_position *position) {
+/* The column of a pass at a place among its phases; p_bt is phase 0 of the pass in which both gears are a tooth further on. */
+static size_t hunting_column(const fixture *f, const gm_position *position, int index) {
+    gm_position next = *position;
+    next.pinion_tooth = (position->pinion_tooth + f->pair.pinion.teeth - 1) % f->pair.pinion.teeth;
+    next.wheel_tooth = (position->wheel_tooth + f->pair.wheel.teeth - 1) % f->pair.wheel.teeth;
+    return index < f->cache->columns
+               ? hunting_pass(f, position) * (size_t)f->cache->columns + (size_t)index
+               : hunting_pass(f, &next) * (size_t)f->cache->columns;
+}
+
+/* Starts of the columns before and behind a phase, and the phases of both. */
+typedef struct neighbours {
+    double start[2], phase[2];
+} neighbours;
+
+static neighbours columns_around(const fixture *f, const gm_position *position) {
+    neighbours found;
     int index = 0;
-    while (index + 2 < f->cache->columns && f->cache->phases[index + 1] <= position->phase) {
+    while (index + 1 < f->cache->columns && f->cache->phases[index + 1] <= position->phase) {
         ++index;
     }
-    return f->cache->starts + hunting_pass(f, position) * (size_t)f->cache->columns + index;
+    for (int i = 0; i < 2; ++i) {
+        found.start[i] = f->cache->starts[hunting_column(f, position, index + i)].delta;
+        found.phase[i] = f->cache->phases[index + i];
+    }
+    return found;
 }
 
 /* ---------------------------------------------------------------------------------------------
@@ -283,16 +302,14 @@ static double error_of_nodes(int side, double depth) {
     double squares = 0.0;
     for (int i = 0; i < 500; ++i) {
         gm_position position = random_position(&f, &seed);
-        const int column = gm_test_integer(&seed, 0, f.cache->columns - 2);
+        const int column = gm_test_integer(&seed, 0, f.cache->columns - 1);
         const int node = gm_test_integer(&seed, 1, f.cache->nodes - 2);
         position.phase = f.cache->phases[column];
         (void)looked_up_at(&f, &position); /* fills it */
         position.offset = offset_of(&f, 0.0);
         (void)looked_up_at(&f, &position);
-        const double start =
-            f.cache
-                ->starts[hunting_pass(&f, &position) * (size_t)f.cache->columns + (size_t)column];
-        position.offset = offset_of(&f, start + node * f.cache->step);
+        const gmi_cache_start *start = &f.cache->starts[hunting_column(&f, &position, column)];
+        position.offset = offset_of(&f, start->delta + (node - start->ahead) * f.cache->step);
         const gm_penetration exact = exact_at(&f, &position);
         const gm_penetration r = looked_up_at(&f, &position);
         if (!was_looked_up(&f, &r)) {
@@ -375,8 +392,8 @@ static void beyond_the_depth_it_is_exact(void) {
             gm_position position = random_position(&f, &seed);
             position.offset = offset_of(&f, 0.0);
             (void)looked_up_at(&f, &position);
-            const double *starts = starts_around(&f, &position);
-            const double end = fmin(starts[0], starts[1]) + 4e-6;
+            const neighbours near = columns_around(&f, &position);
+            const double end = fmin(near.start[0], near.start[1]) + 4e-6;
             position.offset = offset_of(
                 &f, end + 1e-12 + (i % 2 == 0 ? 0.0 : gm_test_uniform(&seed, 0.0, 0.4 * p_bt)));
             const gm_penetration exact = exact_at(&f, &position);
@@ -402,20 +419,19 @@ static void assert_zero_below_first_touch(double depth) {
         GM_ASSERT(r.penetration == 0.0 && r.drive_contact == 0.0 && r.rate == 0.0);
         GM_ASSERT(r.d_pinion_angle == 0.0 && r.d_wheel_angle == 0.0);
         GM_ASSERT_INT(r.drive_pairs, 0);
-        GM_ASSERT(i > 0 || isnan(starts_around(&f, &position)[0]));
+        GM_ASSERT(i > 0 || isnan(columns_around(&f, &position).start[0]));
         /* ... and below that of its columns there is nothing either, nor in truth at the columns. */
         position.offset = offset_of(&f, 0.0);
         (void)looked_up_at(&f, &position);
-        const double *starts = starts_around(&f, &position);
-        GM_ASSERT(starts[0] > f.cache->lowest && starts[1] > f.cache->lowest);
-        const double first = fmin(starts[0], starts[1]);
+        const neighbours near = columns_around(&f, &position);
+        GM_ASSERT(near.start[0] > f.cache->lowest && near.start[1] > f.cache->lowest);
+        const double first = fmin(near.start[0], near.start[1]);
         position.offset = offset_of(&f, gm_test_uniform(&seed, f.cache->lowest, first));
         r = looked_up_at(&f, &position);
         GM_ASSERT(r.penetration == 0.0 && r.drive_contact == 0.0 && r.rate == 0.0);
         GM_ASSERT(r.d_pinion_angle == 0.0 && r.d_wheel_angle == 0.0);
         position.offset = offset_of(&f, first);
-        position.phase = f.cache->phases[starts + (first == starts[1]) - f.cache->starts -
-                                         (ptrdiff_t)hunting_pass(&f, &position) * f.cache->columns];
+        position.phase = near.phase[first == near.start[1]];
         GM_ASSERT(exact_at(&f, &position).drive == 0.0);
         /* A start is not needlessly far below: one bisection step, depth / 4096. */
         position.offset = offset_of(&f, first + depth / 4000.0);
@@ -520,8 +536,8 @@ static void bad_states_are_refused_as_without_a_cache(void) {
 
     gm_test_context("none was filled");
     for (size_t i = 0; i < (size_t)f.cache->passes * (size_t)f.cache->columns; ++i) {
-        if (!isnan(f.cache->starts[i])) {
-            GM_ASSERT_NAN(f.cache->starts[i]);
+        if (!isnan(f.cache->starts[i].delta)) {
+            GM_ASSERT_NAN(f.cache->starts[i].delta);
             break;
         }
     }
@@ -651,7 +667,7 @@ static void assert_columns_begin_at(fixture *f, double touch) {
     const double depth = f->cache->depth, fine = depth / 4096.0;
     GM_ASSERT_INT(gm_cache_fill(f->cache, 0, f->cache->passes, NULL), GM_OK);
     for (int column = 0; column < f->cache->columns; ++column) {
-        GM_ASSERT_ABS(f->cache->starts[column], touch - 0.5 * fine, 0.5000001 * fine);
+        GM_ASSERT_ABS(f->cache->starts[column].delta, touch - 0.5 * fine, 0.5000001 * fine);
     }
 
     /*
@@ -738,7 +754,7 @@ static void columns_begin_where_the_exact_sum_does(void) {
         int without = 0;
         for (int column = 0; column < f.cache->columns; ++column) {
             gm_test_context("missing %d, column %d", missing, column);
-            const double start = f.cache->starts[column];
+            const double start = f.cache->starts[column].delta;
             gm_position position = {.phase = f.cache->phases[column]};
             if (start < HUGE_VAL) {
                 position.offset = offset_of(&f, start);
@@ -809,6 +825,40 @@ static void passes_are_those_that_happen(void) {
     }
 }
 
+/* The last column of a pass is the first of the next one, in which both gears are a tooth further on: between its own column
+ * before it and that one, the sum is as exact as anywhere. */
+static void a_pass_ends_where_the_next_one_begins(void) {
+    const gm_cache_params params = default_params();
+    fixture f;
+    make_paper(&f, &params);
+    const double p_bt = f.pair.transverse_base_pitch;
+    uint64_t seed = UINT64_C(91);
+    int count = 0;
+    for (int i = 0; i < 300; ++i) {
+        gm_test_context("state %d", i);
+        gm_position end = random_position(&f, &seed), begin = end;
+        end.phase = p_bt;
+        end.offset = offset_of(&f, gm_test_uniform(&seed, -10e-6, 10e-6));
+        begin = end;
+        begin.phase = 0.0;
+        begin.pinion_tooth = (end.pinion_tooth + 44) % 45;
+        begin.wheel_tooth = (end.wheel_tooth + 40) % 41;
+        const gm_penetration a = looked_up_at(&f, &end), b = looked_up_at(&f, &begin);
+        if (was_looked_up(&f, &a) && was_looked_up(&f, &b)) {
+            GM_ASSERT_NEAR(a.drive, b.drive, 1e-14, 0.0);
+            GM_ASSERT_NEAR(by_x(&f, &a), by_x(&f, &b), 1e-12, 1e-12);
+            ++count;
+        }
+
+        /* And just before the end, of what the column there holds. */
+        end.phase = p_bt * (1.0 - 1e-6);
+        const gm_penetration exact = exact_at(&f, &end), r = looked_up_at(&f, &end);
+        GM_ASSERT_ABS(r.drive, exact.drive, 3e-3 * sum_at_20_Nm);
+    }
+    GM_ASSERT(count > 150);
+    free_fixture(&f);
+}
+
 /* Teeth that never meet, as with 40/30 teeth assembled one tooth further. */
 static void strangers_are_evaluated_exactly(void) {
     static small_flanks own[2];
@@ -871,7 +921,7 @@ static void threads_may_fill_and_then_share(void) {
         GM_ASSERT_INT(work[t].status, GM_OK);
     }
     for (size_t i = 0; i < (size_t)passes * (size_t)filled.cache->columns; ++i) {
-        if (isnan(filled.cache->starts[i])) {
+        if (isnan(filled.cache->starts[i].delta)) {
             GM_ASSERT_INT(i, -1);
             break;
         }
@@ -911,7 +961,7 @@ static void only_what_is_met_is_filled(void) {
     }
     int filled = 0;
     for (size_t i = 0; i < (size_t)f.cache->passes * (size_t)f.cache->columns; ++i) {
-        filled += !isnan(f.cache->starts[i]);
+        filled += !isnan(f.cache->starts[i].delta);
     }
     GM_ASSERT_INT(filled, 20);
     free_fixture(&f);
@@ -935,9 +985,9 @@ static void memory_grows_with_the_resolution_alone(void) {
         const size_t size = gm_cache_size(&in_phase, ideal);
         GM_ASSERT(size >= before);
         before = size;
-        /* 16 bytes per node at least, and 9 columns more than cells at most: at the kinks. */
+        /* 16 bytes per node, 24 per column, and 8 columns more than cells at most: at the kinks. */
         GM_ASSERT(size >= (size_t)cells * 17 * 16);
-        GM_ASSERT(size <= sizeof(gm_cache) + ((size_t)cells + 10) * (17 * 16 + 16));
+        GM_ASSERT(size <= sizeof(gm_cache) + ((size_t)cells + 9) * (17 * 16 + 24));
         const gm_cache_params in_depth = params_of(GM_DRIVE, 16, cells, 20e-6);
         const gm_cache_params one_more = params_of(GM_DRIVE, 16, cells + 1, 20e-6);
         GM_ASSERT(gm_cache_size(&in_depth, ideal) < gm_cache_size(&one_more, ideal));
@@ -1220,6 +1270,13 @@ static void what_a_cache_does_not_hold_of_corners_is_exact(void) {
         if (i % 4 == 0) {
             GM_ASSERT_INT(found.contact.drive_pairs, exact.contact.drive_pairs);
             GM_ASSERT_INT(found.contact.coast_pairs, exact.contact.coast_pairs);
+            int pairs[2];
+            GM_ASSERT_INT(gm_mesh_pairs_at(f->mesh, &position, NULL, pairs), GM_OK);
+            GM_ASSERT_INT(pairs[GM_DRIVE], exact.contact.drive_pairs);
+            GM_ASSERT_INT(pairs[GM_COAST], exact.contact.coast_pairs);
+            position.phase = (double)NAN;
+            GM_ASSERT_INT(gm_mesh_pairs_at(f->mesh, &position, NULL, pairs), GM_STATE_NOT_FINITE);
+            GM_ASSERT(pairs[GM_DRIVE] == 0 && pairs[GM_COAST] == 0);
         } else {
             GM_ASSERT(memcmp(&found.force, &exact.force, sizeof found.force) == 0);
             GM_ASSERT(found.wheel_torque == exact.wheel_torque);
@@ -1251,7 +1308,7 @@ static void a_pair_that_hardly_touches_is_measured_in_bounded_time(void) {
     int without = 0;
     const int all = f.cache->passes * f.cache->columns;
     for (int i = 0; i < all; ++i) {
-        without += !(f.cache->starts[i] < HUGE_VAL);
+        without += !(f.cache->starts[i].delta < HUGE_VAL);
     }
     GM_ASSERT(without > 0 && without < all);
     free(f.cache);
@@ -1302,6 +1359,7 @@ int main(int argc, char **argv) {
         GM_TEST(what_a_cache_does_not_hold_of_corners_is_exact),
         GM_TEST(a_pair_that_hardly_touches_is_measured_in_bounded_time),
         GM_TEST(passes_are_those_that_happen),
+        GM_TEST(a_pass_ends_where_the_next_one_begins),
         GM_TEST(strangers_are_evaluated_exactly),
         GM_TEST(threads_may_fill_and_then_share),
         GM_TEST(only_what_is_met_is_filled),

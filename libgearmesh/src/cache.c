@@ -4,10 +4,11 @@
 /*
  * A cache in place of the 3D model for one flank side: per tooth pass a table over phase and delta.
  *
- * A column is one phase of one tooth pass. Its nodes stand at equal steps of delta from where that phase begins to
- * touch; each keeps the exact sum, the exact derivatives by delta and phase, and the mixed derivative from its
- * neighbours. Between nodes a bicubic Hermite polynomial gives the sum and its derivatives. Columns start where
- * they begin to touch because that varies by tens of micrometres from tooth to tooth, and what lies below is zero.
+ * A column is one phase of one tooth pass. Its first node is where that phase begins to touch, the others stand at equal
+ * steps of delta behind it; each keeps the exact sum, the exact derivatives by delta and phase, and the mixed derivative
+ * from its neighbours. Between nodes a bicubic Hermite polynomial gives the sum and its derivatives. Columns start where
+ * they begin to touch because that varies by tens of micrometres from tooth to tooth, and what lies below is zero. The
+ * phase p_bt of a pass is phase 0 of the next one, and its column is that one's.
  *
  * In phase the sum has kinks: where a line of contact enters or leaves the field of action through a corner, four
  * times per base pitch. Columns stand just before and just behind each kink, so that all other cells are smooth. A
@@ -92,6 +93,15 @@ static void set_teeth(const gm_cache *cache, int pass, gm_position *position) {
         (pass % per_tooth) * cache->common + position->pinion_tooth % cache->common;
 }
 
+/* The pass that follows, in which both gears are one tooth further on: as in position.c. */
+static int pass_behind(const gm_cache *cache, int pass) {
+    gm_position next;
+    set_teeth(cache, pass, &next);
+    next.pinion_tooth = gmi_next_tooth(next.pinion_tooth, -1, cache->pinion_period);
+    next.wheel_tooth = gmi_next_tooth(next.wheel_tooth, -1, cache->wheel_period);
+    return pass_of(cache, &next);
+}
+
 /* ---------------------------------------------------------------------------------------------
  * Phases of the columns
  * ------------------------------------------------------------------------------------------- */
@@ -151,7 +161,7 @@ static int find_knots(const gm_cache *cache, double knots[KNOTS]) {
     return count;
 }
 
-/* Knots, and equal steps between them of at most p_bt / cells. Returns the number of columns; phases may be NULL. */
+/* Knots, and equal steps between them of at most p_bt / cells. Returns the number of columns before p_bt; phases may be NULL. */
 static int place_columns(const gm_cache *cache, int cells, double *phases) {
     const double p_bt = cache->pair->transverse_base_pitch;
     double knots[KNOTS];
@@ -179,7 +189,7 @@ static int place_columns(const gm_cache *cache, int cells, double *phases) {
     if (phases != NULL) {
         phases[columns] = p_bt;
     }
-    return columns + 1;
+    return columns;
 }
 
 /* ---------------------------------------------------------------------------------------------
@@ -259,11 +269,12 @@ static size_t all_columns(const gm_cache *cache) {
     return (size_t)cache->passes * (size_t)cache->columns;
 }
 
-/* Bytes: the object, a phase per column, a start per column of every pass, then nodes and arms. 0 if too many. */
+/* Bytes: the object, a phase per column and p_bt, a start per column of every pass, then nodes and arms. 0 if too many. */
 static size_t bytes_of(const gm_cache *cache) {
     const uint64_t values = NODE_VALUES + (cache->has_corners ? 2 : 0);
-    const uint64_t column = sizeof(double) + (uint64_t)cache->nodes * values * sizeof(float);
-    const uint64_t bytes = sizeof *cache + (uint64_t)cache->columns * sizeof(double) +
+    const uint64_t column =
+        sizeof(gmi_cache_start) + (uint64_t)cache->nodes * values * sizeof(float);
+    const uint64_t bytes = sizeof *cache + (uint64_t)(cache->columns + 1) * sizeof(double) +
                            (uint64_t)all_columns(cache) * column;
     return bytes <= SIZE_MAX / 2 ? (size_t)bytes : 0;
 }
@@ -296,12 +307,12 @@ int gm_cache_init(gm_cache **cache, const gm_cache_params *params, const gm_mesh
     gm_cache *made = (gm_cache *)memory;
     *made = described;
     made->phases = (double *)(made + 1);
-    made->starts = made->phases + made->columns;
+    made->starts = (gmi_cache_start *)(made->phases + made->columns + 1);
     made->values = (float *)(made->starts + all_columns(made));
     made->arms = made->values + all_columns(made) * (size_t)made->nodes * NODE_VALUES;
     (void)place_columns(made, params->phase_cells, made->phases);
     for (size_t column = 0; column < all_columns(made); ++column) {
-        made->starts[column] = gmi_nan(); /* not filled */
+        made->starts[column].delta = gmi_nan(); /* not filled */
     }
     *cache = made;
     return GM_OK;
@@ -375,13 +386,14 @@ static float *arms_of(const gm_cache *cache, size_t column) {
 }
 
 /* d2 sum / d phase d delta from the neighbours: it has to be the same for both cells, and not more. */
-static void set_mixed(float *values, int nodes) {
+static void set_mixed(float *values, int nodes, double ahead) {
     for (int n = 0; n < nodes; ++n) {
         const int before = n > 0 ? n - 1 : 0;
         const int behind = n < nodes - 1 ? n + 1 : n;
         const float change = values[behind * NODE_VALUES + NODE_BY_PHASE] -
                              values[before * NODE_VALUES + NODE_BY_PHASE];
-        values[n * NODE_VALUES + NODE_MIXED] = change / (float)(behind - before);
+        const double steps = (double)(behind - before) - (before == 0 ? ahead : 0.0);
+        values[n * NODE_VALUES + NODE_MIXED] = change / (float)steps;
     }
 }
 
@@ -391,17 +403,17 @@ static void set_node(const gm_cache *cache, float *node, double value, const gmi
     node[NODE_BY_PHASE] = (float)(cache->side == GM_DRIVE ? sum->by_origin : -sum->by_origin);
 }
 
-/* Walks at a delta, for nodes first .. first + count - 1 of a column that begins at `start`. */
-static void walk_at(const gm_cache *cache, gm_position *position, double delta, double start,
+/* Walks at a delta, for nodes first .. first + count - 1 at equal steps of which `origin` is the first. */
+static void walk_at(const gm_cache *cache, gm_position *position, double delta, double origin,
                     int first, int count, gmi_depths *depths) {
     const gm_mesh *mesh = cache->mesh;
     position->offset = gmi_side_sign(cache->side) * (delta + 0.5 * mesh->engagement.backlash);
     memset(depths, 0, sizeof *depths);
     depths->count = count;
     for (int n = 0; n < count; ++n) {
-        depths->shift[n] = start - delta + (double)(first + n) * cache->step;
+        depths->shift[n] = origin - delta + (double)(first + n) * cache->step;
     }
-    depths->largest = count > 0 ? depths->shift[count - 1] : -HUGE_VAL;
+    depths->largest = depths->shift[count - 1];
     depths->per_shift = cache->per_step;
     depths->touch = HUGE_VAL;
     gmi_side_sum_depths(mesh->pair, &mesh->engagement, &mesh->side[cache->side], cache->side,
@@ -417,51 +429,110 @@ static void set_nodes(const gm_cache *cache, float *values, int first, const gmi
 }
 
 /*
- * A column from a few walks. The first ones find where contact begins: each is off by what is of second order in its
- * distance. They begin where the tips of even flanks would touch, so that no column depends on another one. The last of
- * them, where contact begins, serves the nodes as well; of a column with many nodes the first ones.
+ * About where contact begins: by the highest of some places on each line, at delta = 0. Infinite without any line. Lines
+ * whose flanks reach nowhere as high as the highest so far are left out.
  */
-static OWN_STACK double walk_column(const gm_cache *cache, gm_position *position, float *values) {
-    enum { WALKS = 8 };
-    const double fine = ldexp(cache->depth, -START_BISECTIONS);
-    int first = cache->nodes < GMI_DEPTHS_MAX ? cache->nodes : GMI_DEPTHS_MAX;
-    gmi_depths depths;
-    double start = 0.0, touch = 0.0, moved = HUGE_VAL;
-    for (int k = 0; k < 2 || (k < WALKS && fabs(moved) > 0.45 * fine); ++k) {
-        start = touch - 0.5 * fine; /* a little below */
-        walk_at(cache, position, touch, start, 0, k > 0 ? first : 0, &depths);
-        moved = depths.touch;
-        if (!(moved < HUGE_VAL)) {
-            return HUGE_VAL;
+static OWN_STACK double guess_touch(const gm_cache *cache, gm_position *position) {
+    enum { PLACES = 9 };
+    const gm_pair *pair = cache->pair;
+    const gmi_engagement *at = &cache->mesh->engagement;
+    const gmi_side *side = &cache->mesh->side[cache->side];
+    position->offset = gmi_side_sign(cache->side) * (0.5 * at->backlash);
+
+    gmi_lines lines;
+    gmi_lines_find(pair, at, cache->side, position, &lines);
+    const gmi_line_ends ends = gmi_line_ends_find(pair, at, &lines);
+    const double wheel_reach = at->line_of_action + lines.delta - at->wheel_profile_start;
+    double highest = -HUGE_VAL;
+
+    gmi_teeth teeth = gmi_lines_teeth(pair, cache->side, position, &lines);
+    for (int k = lines.first; k <= lines.last; ++k) {
+        const gmi_flank pinion = gmi_flank_of(side->pinion, teeth.pinion);
+        const gmi_flank wheel = gmi_flank_of(side->wheel, teeth.wheel);
+        const gmi_interval part = gmi_line_clip(&ends, k);
+        if (part.from < part.to && pinion.peak + wheel.peak > highest) {
+            /* The line in the terms of its tables, as in penetration.c. */
+            const double rho = lines.origin + (double)k * pair->transverse_base_pitch;
+            const gmi_line line = {.from = part.from,
+                                   .to = part.to,
+                                   .overlap = pinion.pitch + wheel.pitch,
+                                   .pinion = pinion.values,
+                                   .wheel = wheel.values,
+                                   .pinion_profile = (rho - pair->pinion.start_roll_length) *
+                                                     side->pinion_grid.per_rho,
+                                   .wheel_profile = (wheel_reach - rho) * side->wheel_grid.per_rho};
+            for (int i = 0; i < PLACES; ++i) {
+                const double t1 = part.from + (part.to - part.from) / (PLACES - 1) * i;
+                highest = gmi_larger(
+                    highest, gmi_line_value(&line, &side->pinion_grid, &side->wheel_grid, t1));
+            }
         }
-        touch += moved;
+        teeth.pinion = gmi_next_tooth(teeth.pinion, teeth.step, pair->pinion.teeth);
+        teeth.wheel = gmi_next_tooth(teeth.wheel, teeth.step, pair->wheel.teeth);
     }
-    set_nodes(cache, values, 0, &depths);
+    return -highest;
+}
+
+/*
+ * A column from a walk where contact about begins: it says where that is, and what is at the nodes, which need not begin
+ * there but in the cell before. Mostly the guess is near enough for that, and always what a walk has said. No column
+ * depends on another one.
+ */
+static OWN_STACK gmi_cache_start walk_column(const gm_cache *cache, gm_position *position,
+                                             float *values) {
+    enum { WALKS = 8 };
+    static const double usual = 0.75, middle = 0.5, most = 0.95; /* parts of the first cell */
+    const gmi_cache_start none = {HUGE_VAL, 0.0};
+    const double below = 0.5 * ldexp(cache->depth, -START_BISECTIONS);
+    const int last = cache->nodes - 1;
+    int count = last < GMI_DEPTHS_MAX ? last : GMI_DEPTHS_MAX;
+    double place = guess_touch(cache, position), origin = 0.0;
+    if (!(place < HUGE_VAL)) {
+        return none;
+    }
+
+    /* Some place on a line may well be higher than those looked at: contact then begins before the guess. */
+    gmi_depths depths;
+    gmi_cache_start start = {0.0, -1.0};
+    for (int k = 0; k < WALKS && !(start.ahead >= 0.0 && start.ahead <= most); ++k) {
+        origin = place - (k == 0 ? usual : middle) * cache->step;
+        walk_at(cache, position, place, origin, 1, count, &depths);
+        if (!(depths.touch < HUGE_VAL)) {
+            return none;
+        }
+        place += depths.touch;
+        start.ahead = (place - below - origin) * cache->per_step;
+    }
+    start.ahead = gmi_larger(0.0, gmi_smaller(start.ahead, most));
+    start.delta = origin + start.ahead * cache->step;
+    set_nodes(cache, values, 1, &depths);
 
     /* The others from walks in their middle. */
-    while (first < cache->nodes) {
-        const int left = cache->nodes - first;
-        const int count = left < GMI_DEPTHS_MAX ? left : GMI_DEPTHS_MAX;
-        const double middle = start + ((double)first + 0.5 * (double)count) * cache->step;
-        walk_at(cache, position, middle, start, first, count, &depths);
+    for (int first = 1 + count; first <= last; first += count) {
+        const int left = last + 1 - first;
+        count = left < GMI_DEPTHS_MAX ? left : GMI_DEPTHS_MAX;
+        const double centre = origin + ((double)first + 0.5 * (double)count) * cache->step;
+        walk_at(cache, position, centre, origin, first, count, &depths);
         set_nodes(cache, values, first, &depths);
-        first += count;
     }
 
     /* Even flanks touch all at once, others with a power of 1.5: the slope of a parabola to the next node serves both. */
-    const float slope = 2.0F * values[NODE_VALUES + NODE_SUM] - values[NODE_VALUES + NODE_BY_DELTA];
-    values[NODE_SUM] = 0.0F;
+    const float *next = values + NODE_VALUES;
+    const float width = (float)(1.0 - start.ahead);
+    const float slope = 2.0F * next[NODE_SUM] / width - next[NODE_BY_DELTA];
+    values[NODE_SUM] = values[NODE_BY_PHASE] = 0.0F;
     values[NODE_BY_DELTA] = slope > 0.0F ? slope : 0.0F;
 
     return start;
 }
 
 /* Nodes from the first touch on, each by an evaluation; none where no line exists. */
-static double evaluate_column(const gm_cache *cache, gm_position *position, size_t column,
-                              gm_workspace *workspace) {
-    const double start = find_start(cache, position, workspace);
+static OWN_STACK gmi_cache_start evaluate_column(const gm_cache *cache, gm_position *position,
+                                                 size_t column, gm_workspace *workspace) {
+    const gmi_cache_start begin = {find_start(cache, position, workspace), 0.0};
+    const double start = begin.delta;
     if (!(start < HUGE_VAL)) {
-        return start;
+        return begin;
     }
 
     /* Even flanks touch all at once: the slope at the start is the one behind it. */
@@ -478,29 +549,35 @@ static double evaluate_column(const gm_cache *cache, gm_position *position, size
             memcpy(arms_of(cache, column) + 2 * n, arm, sizeof arm);
         }
     }
-    return start;
+    return begin;
 }
 
-static void fill_column(gm_cache *cache, int pass, int index, gm_workspace *workspace) {
-    const size_t column = (size_t)pass * (size_t)cache->columns + (size_t)index;
+/* Column `index` of a pass: its last one, at p_bt, is the first of the next. */
+static size_t column_of(const gm_cache *cache, int pass, int index) {
+    return index < cache->columns ? (size_t)pass * (size_t)cache->columns + (size_t)index
+                                  : (size_t)pass_behind(cache, pass) * (size_t)cache->columns;
+}
+
+static void fill_column(gm_cache *cache, size_t column, gm_workspace *workspace) {
     float *values = values_of(cache, column);
-    gm_position position = {.phase = cache->phases[index]};
+    const int pass = (int)(column / (size_t)cache->columns);
+    gm_position position = {.phase = cache->phases[column % (size_t)cache->columns]};
     set_teeth(cache, pass, &position);
 
-    const double start = gmi_side_has_depths(cache->mesh, cache->side)
-                             ? walk_column(cache, &position, values)
-                             : evaluate_column(cache, &position, column, workspace);
-    if (start < HUGE_VAL) {
-        set_mixed(values, cache->nodes);
+    const gmi_cache_start start = gmi_side_has_depths(cache->mesh, cache->side)
+                                      ? walk_column(cache, &position, values)
+                                      : evaluate_column(cache, &position, column, workspace);
+    if (start.delta < HUGE_VAL) {
+        set_mixed(values, cache->nodes, start.ahead);
     }
     cache->starts[column] = start;
 }
 
 /* Filled already, or fills it. */
-static void need_column(gm_cache *cache, int pass, int index, gm_workspace *workspace) {
-    const double start = cache->starts[(size_t)pass * (size_t)cache->columns + (size_t)index];
+static void need_column(gm_cache *cache, size_t column, gm_workspace *workspace) {
+    const double start = cache->starts[column].delta;
     if (start != start) {
-        fill_column(cache, pass, index, workspace);
+        fill_column(cache, column, workspace);
     }
 }
 
@@ -513,7 +590,7 @@ int gm_cache_fill(gm_cache *cache, int first_pass, int count, gm_workspace *work
     }
     for (int pass = first_pass; pass < first_pass + count; ++pass) {
         for (int index = 0; index < cache->columns; ++index) {
-            need_column(cache, pass, index, workspace);
+            need_column(cache, column_of(cache, pass, index), workspace);
         }
     }
     return GM_OK;
@@ -554,42 +631,55 @@ typedef struct column_value {
     double sum, by_delta, by_phase, mixed;
 } column_value;
 
+/* Where a column is at a delta, in steps; contact begins where the part of the first one is gone that is ahead of it. */
+static inline double place_in(const gm_cache *cache, size_t column, double delta) {
+    const gmi_cache_start *start = &cache->starts[column];
+    return (delta - start->delta) * cache->per_step + start->ahead;
+}
+
 /* Returns 0 beyond the last node. */
 static int read_column(const gm_cache *cache, size_t column, double delta, column_value *value) {
-    const double place = (delta - cache->starts[column]) * cache->per_step;
+    const double place = place_in(cache, column, delta);
+    const double ahead = cache->starts[column].ahead;
     const column_value none = {0.0, 0.0, 0.0, 0.0};
     *value = none;
 
     /* Before the first node nothing touches; beyond the last one nothing is known. */
-    if (!(place > 0.0)) {
+    if (!(place > ahead)) {
         return 1;
     }
     if (place >= (double)(cache->nodes - 1)) {
         return 0;
     }
 
-    /* The nodes around it. */
+    /* The nodes around it, the first cell from where contact begins. */
     const int n = (int)place;
+    double share = place - (double)n, width = 1.0, per_width = 1.0;
+    if (n == 0) {
+        width = 1.0 - ahead;
+        per_width = 1.0 / width;
+        share = (place - ahead) * per_width;
+    }
     const float *a = values_of(cache, column) + (size_t)n * NODE_VALUES;
     const float *b = a + NODE_VALUES;
-    const double a_sum = (double)a[NODE_SUM], a_by_delta = (double)a[NODE_BY_DELTA];
-    const double b_sum = (double)b[NODE_SUM], b_by_delta = (double)b[NODE_BY_DELTA];
-    const double a_by_phase = (double)a[NODE_BY_PHASE], a_mixed = (double)a[NODE_MIXED];
-    const double b_by_phase = (double)b[NODE_BY_PHASE], b_mixed = (double)b[NODE_MIXED];
+    const double a_sum = (double)a[NODE_SUM], a_by_delta = width * (double)a[NODE_BY_DELTA];
+    const double b_sum = (double)b[NODE_SUM], b_by_delta = width * (double)b[NODE_BY_DELTA];
+    const double a_by_phase = (double)a[NODE_BY_PHASE], a_mixed = width * (double)a[NODE_MIXED];
+    const double b_by_phase = (double)b[NODE_BY_PHASE], b_mixed = width * (double)b[NODE_MIXED];
 
     /* Cubic in delta: the sum and its slope, and their derivatives by the phase. */
-    const hermite at = hermite_value(place - (double)n);
-    const hermite slope = hermite_slope(place - (double)n);
+    const hermite at = hermite_value(share);
+    const hermite slope = hermite_slope(share);
     value->sum = combine(&at, a_sum, a_by_delta, b_sum, b_by_delta);
-    value->by_delta = combine(&slope, a_sum, a_by_delta, b_sum, b_by_delta);
+    value->by_delta = per_width * combine(&slope, a_sum, a_by_delta, b_sum, b_by_delta);
     value->by_phase = combine(&at, a_by_phase, a_mixed, b_by_phase, b_mixed);
-    value->mixed = combine(&slope, a_by_phase, a_mixed, b_by_phase, b_mixed);
+    value->mixed = per_width * combine(&slope, a_by_phase, a_mixed, b_by_phase, b_mixed);
     return 1;
 }
 
 /* The column before or at a phase in [0, p_bt], not the last one. */
 static int column_before(const gm_cache *cache, double phase) {
-    int before = 0, behind = cache->columns - 1;
+    int before = 0, behind = cache->columns;
     while (behind - before > 1) {
         const int middle = (before + behind) / 2;
         if (cache->phases[middle] <= phase) {
@@ -631,7 +721,7 @@ static void join_columns(const gm_cache *cache, int index, double phase, const c
 
 /* Straight in delta along one column: 0 where nothing touches. */
 static gmi_cache_arm arm_in_column(const gm_cache *cache, size_t column, double delta, int role) {
-    const double place = (delta - cache->starts[column]) * cache->per_step;
+    const double place = place_in(cache, column, delta);
     gmi_cache_arm arm = {0.0, 0.0, 0.0};
     if (place > 0.0) {
         const int n = (int)place;
@@ -644,14 +734,14 @@ static gmi_cache_arm arm_in_column(const gm_cache *cache, size_t column, double 
 }
 
 /* And straight in the phase between two of them. */
-static void look_up_arms(const gm_cache *cache, size_t column, int index, double phase,
+static void look_up_arms(const gm_cache *cache, const size_t columns[2], int index, double phase,
                          double delta, gmi_cache_arm arms[2]) {
     const double width = cache->phases[index + 1] - cache->phases[index];
     const double share = (phase - cache->phases[index]) / width;
     const double per_width = gmi_side_sign(cache->side) / width;
     for (int role = GM_PINION; role <= GM_WHEEL; ++role) {
-        const gmi_cache_arm a = arm_in_column(cache, column, delta, role);
-        const gmi_cache_arm b = arm_in_column(cache, column + 1, delta, role);
+        const gmi_cache_arm a = arm_in_column(cache, columns[0], delta, role);
+        const gmi_cache_arm b = arm_in_column(cache, columns[1], delta, role);
         arms[role].value = a.value + share * (b.value - a.value);
         arms[role].by_delta = a.by_delta + share * (b.by_delta - a.by_delta);
         arms[role].by_origin = (b.value - a.value) * per_width;
@@ -671,23 +761,23 @@ int gmi_cache_look_up(gm_cache *cache, const gm_position *position, gm_workspace
 
     /* Teeth that never meet, or a phase outside the table: the exact evaluation answers. */
     const int pass = pass_of(cache, position);
-    if (pass < 0 || position->phase < 0.0 || position->phase > cache->phases[cache->columns - 1]) {
+    if (pass < 0 || position->phase < 0.0 || position->phase > cache->phases[cache->columns]) {
         return 0;
     }
 
     /* Both columns around the phase, filled where they are not yet. */
     const int index = column_before(cache, position->phase);
-    const size_t column = (size_t)pass * (size_t)cache->columns + (size_t)index;
-    need_column(cache, pass, index, workspace);
-    need_column(cache, pass, index + 1, workspace);
+    const size_t columns[2] = {column_of(cache, pass, index), column_of(cache, pass, index + 1)};
+    need_column(cache, columns[0], workspace);
+    need_column(cache, columns[1], workspace);
 
     column_value a, b;
-    if (!read_column(cache, column, delta, &a) || !read_column(cache, column + 1, delta, &b)) {
+    if (!read_column(cache, columns[0], delta, &a) || !read_column(cache, columns[1], delta, &b)) {
         return 0;
     }
     join_columns(cache, index, position->phase, &a, &b, sum);
     if (cache->has_corners && sum->sum > 0.0) {
-        look_up_arms(cache, column, index, position->phase, delta, arms);
+        look_up_arms(cache, columns, index, position->phase, delta, arms);
     }
     return 1;
 }
@@ -715,7 +805,7 @@ int gm_cache_error(gm_cache *cache, int states, unsigned seed, gm_workspace *wor
         return GM_ERR_PARAMETER;
     }
 
-    const double last_phase = cache->phases[cache->columns - 1];
+    const double last_phase = cache->phases[cache->columns];
     double sum_largest = 0.0, sum_squares = 0.0, contact_largest = 0.0, contact_squares = 0.0;
     uint64_t random = seed;
     for (int i = 0; i < states; ++i) {
@@ -724,8 +814,9 @@ int gm_cache_error(gm_cache *cache, int states, unsigned seed, gm_workspace *wor
         gm_position position = {.phase = gmi_random_unit(&random) * last_phase};
         const int index = column_before(cache, position.phase);
         set_teeth(cache, pass, &position);
-        need_column(cache, pass, index, workspace);
-        const double start = cache->starts[(size_t)pass * (size_t)cache->columns + (size_t)index];
+        const size_t column = column_of(cache, pass, index);
+        need_column(cache, column, workspace);
+        const double start = cache->starts[column].delta;
         const double depth = gmi_random_unit(&random) * cache->depth;
         if (!(start < HUGE_VAL)) {
             continue; /* no line of contact at this phase: nothing to be off by */

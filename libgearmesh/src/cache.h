@@ -8,6 +8,12 @@
 #include "contact.h"
 #include "internal.h"
 
+/* The first node of a column: where contact begins. */
+typedef struct gmi_cache_start {
+    double delta; /* (m); NaN = not filled yet, infinite = no contact */
+    double ahead; /* what the first cell is shorter by than a step, in steps: 0 .. 1 */
+} gmi_cache_start;
+
 struct gm_cache {
     const gm_mesh *mesh;
     const gm_pair *pair; /* of the mesh */
@@ -16,19 +22,17 @@ struct gm_cache {
     int wheel_period;    /* likewise */
     int common;          /* greatest common divisor of both */
     int passes;          /* tooth passes: least common multiple of both periods */
-    int columns;         /* phases per tooth pass */
+    int columns;         /* phases per tooth pass before p_bt */
     int has_corners;     /* of a constant stiffness: torques need arms too */
     int nodes;           /* places in delta per phase */
     double depth;        /* as in the parameters (m) */
     double step;         /* of delta (m) */
     double per_step;     /* its inverse (1/m) */
     double lowest;       /* nothing touches at or below this delta (m) */
-    double *phases;      /* [columns] 0 .. p_bt (m) */
+    double *phases;      /* [columns + 1] 0 .. p_bt (m) */
 
-    /* [passes][columns] delta of the first node (m), NaN = not filled yet, infinite = no contact */
-    double *starts;
-
-    float *values; /* [passes][columns][nodes][4] */
+    gmi_cache_start *starts; /* [passes][columns] */
+    float *values;           /* [passes][columns][nodes][4] */
     float *
         arms; /* [passes][columns][nodes][enum gm_role] with corners: integral of f gap' at that tip (m) */
 };

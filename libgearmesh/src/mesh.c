@@ -761,6 +761,18 @@ static int counts_alone(const gm_mesh *mesh) {
            !mesh->side[GM_COAST].starts_deeper;
 }
 
+/* The force of a mesh that has a cache, exactly: a look-up would count nothing. */
+static OWN_STACK int evaluate_beside_cache(const gm_mesh *mesh, const gm_position *position,
+                                           gm_workspace *workspace, gm_mesh_result *result) {
+    const gm_position posed = gmi_mesh_posed(mesh, position);
+    int status = check_evaluation(mesh, &posed, GM_WANT_FORCE, workspace);
+    if (status == GM_OK && mesh->friction.is_on) {
+        status = gmi_check_speed(posed.pinion_speed);
+    }
+    return status == GM_OK ? gmi_mesh_evaluate_exact(mesh, &posed, GM_WANT_FORCE, workspace, result)
+                           : status;
+}
+
 int gm_mesh_pairs_at(const gm_mesh *mesh, const gm_position *position, gm_workspace *workspace,
                      int pairs[2]) {
     if (pairs == NULL) {
@@ -776,10 +788,11 @@ int gm_mesh_pairs_at(const gm_mesh *mesh, const gm_position *position, gm_worksp
         return status;
     }
 
-    /* Any evaluation counts them, but that of a cache. */
-    const int wanted = mesh != NULL && mesh->cache != NULL ? GM_WANT_PAIRS : GM_WANT_FORCE;
+    /* Any exact evaluation counts them. */
     gm_mesh_result result;
-    const int status = gm_mesh_evaluate_at(mesh, position, wanted, workspace, &result);
+    const int status = mesh != NULL && position != NULL && mesh->cache != NULL
+                           ? evaluate_beside_cache(mesh, position, workspace, &result)
+                           : gm_mesh_evaluate_at(mesh, position, GM_WANT_FORCE, workspace, &result);
     if (status == GM_OK) {
         pairs[GM_DRIVE] = result.contact.drive_pairs;
         pairs[GM_COAST] = result.contact.coast_pairs;

@@ -1565,14 +1565,14 @@ GM_API void gm_cache_params_default(gm_cache_params *params);
 /**
  * Bytes of memory that gm_cache_init() needs: 16 bytes for each of passes * columns * (depth_cells + 1)
  * nodes, 24 with corner contact of a constant stiffness, and some. There is one tooth pass if all teeth of a gear have the same flank, on both gears,
- * else up to z_p z_w / gcd(z_p, z_w): 28.2 MB for the 1845 of 45/41 teeth with the defaults.
+ * else up to z_p z_w / gcd(z_p, z_w): 27.3 MB for the 1845 of 45/41 teeth with the defaults.
  *
  * @return 0 where gm_cache_init() would refuse
  */
 GM_API size_t gm_cache_size(const gm_cache_params *params, const gm_mesh *mesh);
 
 /**
- * Prepares an empty cache in memory of the caller. Apart from 8 bytes per column the memory is not touched
+ * Prepares an empty cache in memory of the caller. Apart from 16 bytes per column the memory is not touched
  * before it is needed.
  *
  * @param[out] cache        the cache, which begins at `memory`; NULL on an error. It refers to the mesh
@@ -1612,9 +1612,9 @@ GM_API int gm_cache_fill(gm_cache *cache, int first_pass, int count, gm_workspac
  * which are -1 where the cache answered. Where nothing touches, the sum is exactly 0.
  *
  * Accuracy for the reference pair and flanks of data/paper/ with the defaults, under 1 to 40 N m: sum
- * 2.5e-4 root mean square and 3e-3 at most of its mean under 20 N m (4.9 um); touching fraction (1.3 of
+ * 2.5e-4 root mean square and 4e-3 at most of its mean under 20 N m (4.9 um); touching fraction (1.3 of
  * it on average) 0.01 and 0.15. libgearmesh/docs/cache.md has other resolutions, gm_cache_error()
- * measures any pair. Cost: about 780 instructions, and about 13 exact evaluations for a column (one
+ * measures any pair. Cost: about 780 instructions, and about 11 exact evaluations for a column (one
  * phase of one tooth pass) that is met for the first time.
  *
  * @return GM_OK, GM_ERR_NULL (no mesh), GM_ERR_PARAMETER (the cache is of another mesh)
