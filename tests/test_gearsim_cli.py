@@ -732,7 +732,7 @@ class Values(Case):
                                       ("flanks", "deviation_direction", "normal | transverse"),
                                       ("drive", "kind", "speed | torque"), ("analysis", "type", "dynamic | static"),
                                       ("analysis", "period", "mesh | pinion | hunting"),
-                                      ("solver", "method", "bdf | adams"), ("solver", "lookup", "off | on | auto")]:
+                                      ("solver", "method", "bdf | adams"), ("solver", "lookup", "off | on | auto | always")]:
             for value in ["other", "3D"]:
                 with self.subTest(f"{key} = {value}"):
                     self.refused_value(section, key, value, f"must be {choices}")
@@ -778,7 +778,7 @@ class Values(Case):
                      arguments=corner + [word for text in few for word in ("--set", text)])
         self.write("run.ini", PARAMS)
         self.accepted("run.ini", "--check", *corner, "--set", "mesh.friction_coefficient=0.1")
-        self.accepted("run.ini", "--check", *corner, "--set", "solver.lookup=on")
+        self.accepted("run.ini", "--check", *corner, "--set", "solver.lookup=always")
         result = self.accepted("run.ini", "--check", *corner, "--set", "mesh.model=simple")
         self.assertIn("--set mesh.corner_contact: warning: not used with mesh.model = simple\n", result.stderr)
 
@@ -786,14 +786,17 @@ class Values(Case):
         spur = ["--set", "gears.helix_angle_deg=0", "--set", "gears.center_distance_mm=71.5"]
         for key in ("pinion", "wheel"):
             spur += ["--set", f"gears.{key}_tip_diameter_mm=" + ("77.6" if key == "pinion" else "71.0")]
-        lookup = ["--set", "solver.lookup=on"]
-        self.refused("--set solver.lookup: ", "(got on)", "must be off", arguments=spur + lookup)
+        lookup = ["--set", "solver.lookup=always"]
+        self.refused("--set solver.lookup: ", "(got always)", "must be off, on or auto", "spur gears have no tables",
+                     arguments=spur + lookup)
         self.write("run.ini", PARAMS)
         self.accepted("run.ini", "--check", *spur)
+        self.accepted("run.ini", "--check", *spur, "--set", "solver.lookup=on")
         self.accepted("run.ini", "--geometry", *spur, *lookup)
         self.accepted("run.ini", "--check", *lookup)
-        self.refused("--set solver.lookup_depth_um: ", "(got 2000)", "at most a quarter of the base pitch, 14",
-                     arguments=lookup + ["--set", "solver.lookup_depth_um=2000"])
+        for use in ("on", "always"):
+            self.refused("--set solver.lookup_depth_um: ", "(got 2000)", "at most a quarter of the base pitch, 14",
+                         arguments=["--set", f"solver.lookup={use}", "--set", "solver.lookup_depth_um=2000"])
         self.accepted("run.ini", "--check", "--set", "solver.lookup_depth_um=2000")
 
     def test_many_faults_are_told_at_once_but_not_all(self):
@@ -959,7 +962,8 @@ class Geometry(Case):
         self.refused("--set gears.helix_angle_deg: ", "must not be 0 with gears.double_helical_gap_mm",
                      arguments=[*halves, "--set", "gears.helix_angle_deg=0", "--set", "gears.center_distance_mm=71.5",
                                 "--set", "gears.pinion_tip_diameter_mm=77.6", "--set", "gears.wheel_tip_diameter_mm=71"])
-        self.refused("--set solver.lookup: ", "must be off for double-helical pairs", arguments=[*halves, "--set", "solver.lookup=on"])
+        self.refused("--set solver.lookup: ", "double-helical pairs have no tables", "(got always)",
+                     arguments=[*halves, "--set", "solver.lookup=always"])
         self.refused("flanks.wheel_second_half_pitch: ", "names this file",
                      arguments=[*halves, "--set", "flanks.wheel_second_half_pitch=none.csv"])
         self.refused("flanks.pinion_second_half: ", "names this file",

@@ -186,7 +186,7 @@ class Elastic(unittest.TestCase):
 
         # And the same from look-up tables.
         for threads in ("0", "3"):
-            cached = self.rows(gears, "--set", "solver.lookup=on", "--set", f"solver.lookup_threads={threads}")
+            cached = self.rows(gears, "--set", "solver.lookup=always", "--set", f"solver.lookup_threads={threads}")
             for a, b in zip(rows, cached):
                 self.assertAlmostEqual(float(a["dte_um"]), float(b["dte_um"]), delta=0.1)
 
@@ -199,7 +199,7 @@ class Elastic(unittest.TestCase):
         tight = ["--set", "solver.relative_tolerance=1e-7", "--set", "solver.absolute_tolerance_um=1e-7"]
         forces = []
         for arguments, looks_up in ((["--set", "solver.lookup=off"], False), ([], True), (tight, False),
-                                    ([*tight, "--set", "solver.lookup=on"], True)):
+                                    ([*tight, "--set", "solver.lookup=always"], True)):
             forces.append([float(row["contact_force_N"]) for row in self.rows(gears, *arguments)][1000:])
             with open(os.path.join(self.folder, "run.csv"), encoding="utf-8") as file:
                 head = "".join(line for line in file if line.startswith("#"))

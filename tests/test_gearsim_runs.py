@@ -781,7 +781,7 @@ class Rattle(Case):
 
     def test_the_lookup_converges_too(self):
         self.roughen(5)
-        self.assert_converges("solver.lookup=on")
+        self.assert_converges("solver.lookup=always")
 
     def test_weak_noise_counts_as_none(self):
         self.roughen(5)
@@ -856,7 +856,7 @@ class Lookup(Case):
 
     def test_run_differs_by_its_error(self):
         exact = self.run_columns(self.LOADED)
-        close = self.run_columns([*self.LOADED, "solver.lookup=on"])
+        close = self.run_columns([*self.LOADED, "solver.lookup=always"])
         # 3e-3 of 4.9 um in the sum at most, and most of it at tooth frequency, below resonance: over 1.5 touching faces.
         self.assertLess(largest_difference(close["dte_um"], exact["dte_um"]), 0.01)
         self.assertNotEqual(close["dte_um"], exact["dte_um"])
@@ -874,7 +874,7 @@ class Lookup(Case):
         for settings in (self.LOADED, even):
             corners = [*settings, "mesh.corner_contact=on"]
             exact = self.run_columns([*corners, "solver.lookup=off"])
-            close = self.run_columns([*corners, "solver.lookup=on"])
+            close = self.run_columns([*corners, "solver.lookup=always"])
             without = self.run_columns([*settings, "solver.lookup=off"])
             self.assertLess(largest_difference(close["dte_um"], exact["dte_um"]), 0.02)
             self.assertNotEqual(close["dte_um"], exact["dte_um"])
@@ -883,23 +883,43 @@ class Lookup(Case):
             forces = exact["contact_force_N"]
             self.assertLess(largest_difference(close["contact_force_N"], forces), 0.002 * statistics.mean(forces))
 
-    def test_auto_is_for_runs_that_are_long_to_their_tables(self):
-        """Of both gears 1845 tooth passes have 27675 columns of 12 evaluations each; of the pinion alone 45 have 675."""
+    def test_on_and_auto_are_for_runs_that_are_long_to_their_tables(self):
+        """Of the pinion alone 45 tooth passes have 630 columns, as dear as 7.7 evaluations: of 8 a pass, at least, 700 passes."""
         one = [*MEASURED[:2], "output.columns=dte_um", "output.oversampling=1"]
-        # 15 evaluations for each of 1.6 s times 675 passes a second, at least in the mean; driven by 22.5 N m of which
-        # 22.0 carry the load, up to 2280 rpm.
+        # 1.6 s times 675 passes a second, at least in the mean; driven by 22.5 N m of which 22.0 carry the load, up to 2280
+        # rpm, or with as much more in the beginning and less in the end.
         long = [*one, "drive.start_rpm=900", "drive.end_rpm=900", "analysis.duration_s=1.6"]
         table = [*one, "drive.start_rpm=", "drive.end_rpm=", f"drive.file={self.path('speed.csv')}", "analysis.duration_s=1.6"]
         driven = [*one, *TORQUE, "drive.torque_Nm=22.5", "drive.start_rpm=300", "drive.end_rpm=", "analysis.duration_s=1.6"]
+        torques = [*one, "drive.kind=torque", f"bodies.pinion_inertia_kg_m2={I_P}", f"drive.file={self.path('torque.csv')}",
+                   "drive.start_rpm=300", "drive.end_rpm=", "analysis.duration_s=1.6"]
         with open(self.path("speed.csv"), "w") as file:
             file.write("time_s,speed_rpm\n0,600\n1.6,1200\n")
-        for settings, chosen, other in ((self.LOADED, "off", "on"), ([*one, *VALUES, "output.rate_Hz=1000"], "off", "on"),
-                                        (long, "on", "off"), (table, "on", "off"), (driven, "on", "off"),
-                                        ([*driven, "drive.torque_Nm=21.9"], "off", "on")):
-            auto, same, different = [self.run_columns([*settings, f"solver.lookup={use}"])["dte_um"]
-                                     for use in ("auto", chosen, other)]
-            self.assertTrue(auto == same, settings)
-            self.assertTrue(auto != different, settings)
+        for text, chosen in (("0,22.9\n1.6,21.7\n", "always"), ("0,21.7\n1.6,22.9\n", "off")):
+            with open(self.path("torque.csv"), "w") as file:
+                file.write("time_s,torque_Nm\n" + text)
+            self.assertEqual(self.tables_of(torques, "on")[0] is not None, chosen == "always", text)
+        for settings, chosen, other in ((self.LOADED, "off", "always"),
+                                        ([*one, *VALUES, "output.rate_Hz=1000", "analysis.duration_s=0.02"], "off", "always"),
+                                        (long, "always", "off"), (table, "always", "off"), (driven, "always", "off"),
+                                        ([*driven, "drive.torque_Nm=21.9"], "off", "always")):
+            rows = {use: self.run_columns([*settings, f"solver.lookup={use}"])["dte_um"]
+                    for use in ("auto", "on", chosen, other)}
+            for use in ("auto", "on"):
+                self.assertTrue(rows[use] == rows[chosen], (settings, use))
+                self.assertTrue(rows[use] != rows[other], (settings, use))
+
+    def test_a_run_that_ends_at_a_speed_is_as_long_as_it_takes(self):
+        """22.5 N m of which 22.0 carry the load make 400 rpm of 300 in 0.08 s, and 2280 in 1.6 s."""
+        one = [*MEASURED[:2], *TORQUE, "drive.torque_Nm=22.5", "drive.start_rpm=300", "drive.end_rpm=", "analysis.duration_s=1.6"]
+        self.assertIsNone(self.tables_of([*one, "analysis.stop_rpm=400"], "on")[0])
+        self.assertIsNotNone(self.tables_of([*one, "analysis.stop_rpm=3000"], "on")[0])
+
+    def test_a_run_to_and_fro_meets_what_it_turns(self):
+        """From -900 to 900 rpm the pinion turns half as far as at 900 rpm."""
+        one = [*MEASURED[:2], "drive.start_rpm=-900", "drive.end_rpm=900"]
+        self.assertIsNone(self.tables_of([*one, "analysis.duration_s=1.6"], "on")[0])
+        self.assertIsNotNone(self.tables_of([*one, "analysis.duration_s=2.4"], "on")[0])
 
     def tables_of(self, settings, lookup="auto"):
         """What the head of a result says of the tables, None without any; and what was said beside it."""
@@ -916,23 +936,32 @@ class Lookup(Case):
                    "gears.pinion_rack_dedendum=", "gears.wheel_rack_dedendum=", "gears.pinion_tip_diameter_mm=",
                    "gears.wheel_tip_diameter_mm="]
         self.assertIsNone(self.tables_of(steady)[0])
+        self.assertIn("note: the run is exact: a look-up takes longer than these flanks; with", self.tables_of(steady, "on")[1])
         self.assertIsNone(self.tables_of([*steady, *MEASURED])[0])
         for dear in (relief, ["pose.skew_mrad=0.1"], ["mesh.corner_contact=on"], elastic):
             self.assertIsNotNone(self.tables_of([*steady, *dear])[0], dear)
-        # With friction or spur gears there are none, and nobody asked for them.
-        for without in (["mesh.friction_coefficient=0.05"], ["gears.helix_angle_deg=0", "gears.center_distance_mm=71.4"]):
-            self.assertIsNone(self.tables_of([*steady, *relief, *without])[0], without)
+        # With friction or spur gears there are none: who did not ask for them is told nothing.
+        for without, why in ((["mesh.friction_coefficient=0.05"], "with friction there are no tables"),
+                             (["gears.helix_angle_deg=0", "gears.center_distance_mm=71.4"], "spur gears have no tables")):
+            found, said = self.tables_of([*steady, *relief, *without])
+            self.assertIsNone(found, without)
+            self.assertNotIn("the run is exact", said)
+            found, said = self.tables_of([*steady, *relief, *without], "on")
+            self.assertIsNone(found, without)
+            self.assertIn(f"solver.lookup: note: the run is exact: {why}, as ", said)
 
     def test_auto_leaves_no_larger_error_than_the_solver(self):
         """8 x 16 cells are off by less than the solver at 1e-4, none by less than it below 1e-5."""
         relief = ["modifications.pinion_tip_relief_um=5", "modifications.pinion_tip_relief_length_mm=1",
                   "drive.start_rpm=3000", "drive.end_rpm=3000"]
-        short = [*relief, "analysis.duration_s=0.02"]
+        short = [*relief, "analysis.duration_s=0.1"]
         self.assertTrue(self.tables_of(short)[0].startswith("8 x 16 cells"))
         self.assertTrue(self.tables_of([*short, "solver.relative_tolerance=2e-5"])[0].startswith("16 x 20 cells"))
         self.assertIsNone(self.tables_of([*short, "solver.relative_tolerance=5e-6"])[0])
+        # Who asks for them has them all the same.
+        self.assertTrue(self.tables_of([*short, "solver.relative_tolerance=5e-6"], "on")[0].startswith("16 x 20 cells"))
         # Finer ones as the run gets longer and they cost next to nothing.
-        self.assertTrue(self.tables_of([*relief, "analysis.duration_s=0.5"])[0].startswith("64 x 40 cells"))
+        self.assertTrue(self.tables_of([*relief, "analysis.duration_s=2"])[0].startswith("64 x 40 cells"))
         # Against the model itself at a tight tolerance, tables add nothing to speak of to the error of the run.
         forces = [self.run_columns([*relief, "analysis.duration_s=0.1", "load.mean_Nm=60", "output.columns=contact_force_N",
                                     *others])["contact_force_N"][400:]
@@ -949,17 +978,21 @@ class Lookup(Case):
         self.assertIsNotNone(self.tables_of(noisy)[0])
         self.assertIsNone(self.tables_of([*noisy, "solver.lookup_threads=1"])[0])  # which fills all of them
 
-    def test_who_asks_for_tables_is_told_where_they_take_longer(self):
+    def test_who_asks_for_tables_is_told_where_they_would_take_longer(self):
+        """And how long a run has to be: a tenth more than that is long enough, a tenth less is not."""
         short = [*MEASURED, "drive.start_rpm=3000", "drive.end_rpm=3000", "analysis.duration_s=0.01"]
-        found, said = self.tables_of(short, "on")
-        self.assertTrue(found.startswith("8 x 16 cells"))
-        self.assertIn("--set solver.lookup: note: off is faster: the run has some 3.4e+02 evaluations", said)
+        self.assertTrue(self.tables_of(short, "always")[0].startswith("8 x 16 cells"))
         found, said = self.tables_of(short, "auto")
         self.assertIsNone(found)
-        self.assertNotIn("off is faster", said)
-        relief = ["modifications.pinion_tip_relief_um=5", "modifications.pinion_tip_relief_length_mm=1"]
-        self.assertNotIn("off is faster", self.tables_of([*relief, "analysis.duration_s=0.2", "drive.start_rpm=3000",
-                                                          "drive.end_rpm=3000"], "on")[1])
+        self.assertNotIn("the run is exact", said)
+        found, said = self.tables_of(short, "on")
+        self.assertIsNone(found)
+        told = re.search("--set solver.lookup: note: the run is exact: filling the tables would take longer than they save in "
+                         "0.01 s; a run like this gains from some ([0-9.]+) s on\n", said)
+        self.assertIsNotNone(told, said)
+        for share in (0.9, 1.1):
+            checked = self.gearsim([*short[:-1], f"analysis.duration_s={share * float(told[1])}", "solver.lookup=on"], "--check")
+            self.assertEqual("the run is exact" in checked.stderr, share < 1.0, checked.stderr)
 
     def test_rows_do_not_depend_on_what_is_written(self):
         one = [*MEASURED[:2], *VALUES, "drive.start_rpm=900", "drive.end_rpm=900", "analysis.duration_s=0.25"]
@@ -968,26 +1001,32 @@ class Lookup(Case):
 
     def test_coast_flanks_are_looked_up_under_a_driving_load(self):
         driving = [*self.LOADED, "load.mean_Nm=-80"]
-        exact, close = self.run_columns(driving), self.run_columns([*driving, "solver.lookup=on"])
+        exact, close = self.run_columns(driving), self.run_columns([*driving, "solver.lookup=always"])
         self.assertLess(largest_difference(close["dte_um"], exact["dte_um"]), 0.01)
         self.assertNotEqual(close["dte_um"], exact["dte_um"])
 
     def test_depth_is_kept(self):
-        # Beyond the depth the model itself answers, so that a hair's depth changes nothing.
-        shallow = [*self.LOADED, "solver.lookup=on", "solver.lookup_depth_um=0.01", "output.columns=dte_um"]
+        # Beyond the depth the model itself answers, so that a hair's depth changes nothing, and who asks is told so.
+        found, said = self.tables_of([*self.LOADED, "solver.lookup_depth_um=0.01"], "on")
+        self.assertIsNone(found)
+        self.assertIn("the run is exact: the load presses the flanks deeper than lookup_depth_um", said)
+        shallow = [*self.LOADED, "solver.lookup=always", "solver.lookup_depth_um=0.01", "output.columns=dte_um"]
         exact = self.run_columns([*self.LOADED, "output.columns=dte_um"])
         self.assertLess(largest_difference(self.run_columns(shallow)["dte_um"], exact["dte_um"]), 1e-6)
 
     def test_threads_that_fill_it_change_nothing(self):
         """No column depends on another one, nor on who fills it. Of the pinion alone, 45 tooth passes."""
-        one = [*MEASURED[:2], "solver.lookup=on", "output.columns=contact_force_N"]
+        one = [*MEASURED[:2], "solver.lookup=always", "output.columns=contact_force_N"]
         met, filled, shared = [self.run_columns([*one, f"solver.lookup_threads={count}"]) for count in (0, 1, 50)]
         self.assertEqual(met, filled)
         self.assertEqual(met, shared)
 
     def test_result_says_so(self):
-        self.run_columns(["solver.lookup=on", "solver.lookup_depth_um=15"])
-        self.assertIn("# solver.lookup = on\n# solver.lookup_depth_um = 15\n", self.text("run.csv"))
+        self.run_columns(["solver.lookup=always", "solver.lookup_depth_um=15"])
+        self.assertIn("# solver.lookup = always\n# solver.lookup_depth_um = 15\n", self.text("run.csv"))
+        self.assertIn("# lookup_tables = 8 x 16 cells of base pitch and depth, 15 um deep\n", self.text("run.csv"))
+        self.run_columns(["solver.lookup=on"])
+        self.assertNotIn("# lookup_tables", self.text("run.csv"))
         self.run_columns()
         self.assertIn("# solver.lookup = auto\n", self.text("run.csv"))
 
@@ -1476,8 +1515,8 @@ class Progress(Case):
         return text.decode().split("\r")
 
     def test_terminal_shows_how_far_the_look_up_is_filled(self):
-        """42435 columns take longer than the fifth of a second until something is shown."""
-        filling = [*Ends.ENDLESS, *MEASURED, "solver.lookup=on", "solver.lookup_threads=2"]
+        """25830 columns take longer than the fifth of a second until something is shown."""
+        filling = [*Ends.ENDLESS, *MEASURED, "solver.lookup=always", "solver.lookup_threads=2"]
         updates = [part for part in self.shown(filling) if "look-up" in part]
         self.assertRegex(updates[0], r"filling the look-up, [0-9]{1,2} %")
         self.assertLessEqual(len(updates), 10)

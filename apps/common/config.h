@@ -26,7 +26,7 @@ enum static_period { PERIOD_MESH, PERIOD_PINION, PERIOD_HUNTING };
 enum solver_method { METHOD_BDF, METHOD_ADAMS, METHOD_ERK };
 enum table_interpolation { INTERPOLATION_LINEAR, INTERPOLATION_CUBIC };
 enum table_repeat { REPEAT_OFF, REPEAT_ON };
-enum lookup_use { LOOKUP_OFF, LOOKUP_ON, LOOKUP_AUTO };
+enum lookup_use { LOOKUP_OFF, LOOKUP_ON, LOOKUP_AUTO, LOOKUP_ALWAYS };
 enum wrench_use { WRENCH_OFF, WRENCH_ON };
 enum deviation_direction { DEVIATION_NORMAL, DEVIATION_TRANSVERSE };
 

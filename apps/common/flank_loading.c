@@ -208,6 +208,8 @@ int gear_flanks_load(gear_flanks *flanks, const config *conf, const gm_pair *pai
     if (status == 0 && (has_deviations || has_pitch || has_design)) {
         status = build_flanks(flanks, conf, pair, &task, &design,
                               has_deviations ? &deviations : NULL, has_pitch ? &pitch : NULL);
+        flanks->face_nodes = deviations.face_nodes;
+        flanks->profile_nodes = deviations.profile_nodes;
     }
     gm_deviations_free(&deviations);
     gm_pitch_free(&pitch);

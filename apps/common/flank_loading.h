@@ -11,8 +11,9 @@
 
 /* All zero = ideal. */
 typedef struct gear_flanks {
-    gm_flanks *prepared;     /* NULL = ideal */
-    gm_flanks_report report; /* what holds the designs */
+    gm_flanks *prepared;           /* NULL = ideal */
+    int face_nodes, profile_nodes; /* of the files' tables, 0 without */
+    gm_flanks_report report;       /* what holds the designs */
 } gear_flanks;
 
 /* Files and design of one gear (0 = pinion, 1 = wheel) become prepared flanks, if there are any; `flanks` is all zero

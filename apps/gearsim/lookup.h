@@ -11,16 +11,16 @@
 typedef struct lookup_choice {
     int is_used;
     gm_cache_params params; /* of the tables */
-    double evaluations;     /* of the mesh in the run, about and rather too few; without tables */
-    double filling;         /* what the run fills of them takes as long as so many evaluations */
+    double
+        pays_from; /* about how long a run of this kind saves more than it fills (s); infinite: none does */
 } lookup_choice;
 
-/* Not used where these gears cannot have tables, or `auto` gains nothing. */
+/* Not used where these gears cannot have tables, or `on` and `auto` gain nothing. */
 lookup_choice lookup_choose(const config *conf, const gear_mesh *gears);
 
 /*
  * Whether these gears can have what is asked for, once the tables over time are read; notes which tables a run uses, and
- * says so where they take longer than they save. Returns 0, EXIT_BAD_INPUT after a message, or EXIT_RUN_FAILED.
+ * says so where it was to use some and does not. Returns 0, EXIT_BAD_INPUT after a message, or EXIT_RUN_FAILED.
  */
 int lookup_note(const gear_mesh *gears, config *conf);
 
