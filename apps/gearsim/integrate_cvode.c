@@ -9,6 +9,7 @@
 #include "integrate_package.h"
 
 #include <cvode/cvode.h>
+#include <float.h>
 #include <math.h>
 #include <stdlib.h>
 
@@ -80,8 +81,8 @@ static int create(integrator *solver) {
         return -1;
     }
     memory->order = memory->known = -1;
-    memory->longest = 0.0; /* none, as CVODE begins */
-    memory->stop = HUGE_VAL;
+    memory->longest = 0.0;  /* none, as CVODE begins, */
+    memory->stop = DBL_MAX; /* and none either */
     memory->scratch = N_VClone(solver->state);
     memory->reader = N_VNewEmpty(solver->context);
     if (memory->scratch == NULL || memory->reader == NULL) {
@@ -115,7 +116,7 @@ static int step(integrator *solver, double longest, double stop) {
 
     memory->order = -1;
 
-    /* CVODE keeps both, but for a stop that it has reached. */
+    /* CVODE keeps both, but for a stop that it has reached. Of DBL_MAX, which is none, it is told where another was before. */
     if (longest != memory->longest) {
         CVodeSetMaxStep(memory->cvode, longest);
         memory->longest = longest;
@@ -127,7 +128,7 @@ static int step(integrator *solver, double longest, double stop) {
     const int flag = CVode(memory->cvode, integrator_first_target(solver), solver->state,
                            &solver->time, CV_ONE_STEP);
     if (flag == CV_TSTOP_RETURN) {
-        memory->stop = HUGE_VAL;
+        memory->stop = DBL_MAX;
     }
     return flag;
 }
@@ -135,7 +136,7 @@ static int step(integrator *solver, double longest, double stop) {
 static int restart(integrator *solver) {
     cvode_memory *memory = solver->memory;
 
-    memory->stop = HUGE_VAL;
+    memory->stop = HUGE_VAL; /* to be told again */
     return CVodeReInit(memory->cvode, solver->time, solver->state);
 }
 

@@ -94,8 +94,8 @@ static void set_recurrence(response *linear, double gain, double frequency, doub
     linear->terms = terms_for(x);
     for (int k = 0; k + 2 < TERMS; ++k) {
         const double both = (double)((k + 1) * (k + 2));
-        linear->by_offset[k] = x * x / both;
-        linear->by_rate[k] = 2.0 * damping_ratio * x / (double)(k + 2);
+        linear->by_offset[k] = -x * x / both;
+        linear->by_rate[k] = -2.0 * damping_ratio * x / (double)(k + 2);
         if (k < 4) {
             linear->by_noise[k] = gain * linear->length * linear->length / both;
             linear->to_given[k] = gain * linear->length / (double)(k + 1);
@@ -137,11 +137,11 @@ static void set_series(const response *linear, const double start[STARTS], segme
     p[0] = start[0];
     p[1] = start[1] * linear->length;
     for (int k = 0; k < 4; ++k) {
-        p[k + 2] = linear->by_noise[k] * noise[k] - linear->by_offset[k] * p[k] -
+        p[k + 2] = linear->by_noise[k] * noise[k] + linear->by_offset[k] * p[k] +
                    linear->by_rate[k] * p[k + 1];
     }
     for (int k = 4; k + 2 < terms; ++k) {
-        p[k + 2] = -linear->by_offset[k] * p[k] - linear->by_rate[k] * p[k + 1];
+        p[k + 2] = linear->by_offset[k] * p[k] + linear->by_rate[k] * p[k + 1];
     }
 
     for (int k = 1; k < terms; ++k) {
