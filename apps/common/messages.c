@@ -5,6 +5,7 @@
 #include "exit_code.h"
 #include "platform.h"
 
+#include <errno.h>
 #include <stdio.h>
 #include <string.h>
 
@@ -115,6 +116,14 @@ void message_show(message_sink *to, const char *line) {
 int message_no_memory(message_sink *to) {
     message_of_program(to, "out of memory");
     return EXIT_RUN_FAILED;
+}
+
+int message_of_stdout(message_sink *to, int status) {
+    if (fflush(stdout) == 0 && !ferror(stdout)) {
+        return status;
+    }
+    message_of_program(to, "standard output: cannot be written: %s", strerror(errno));
+    return status == EXIT_DONE ? EXIT_RUN_FAILED : status;
 }
 
 void message_begin(message_sink *to, int most) {

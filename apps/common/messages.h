@@ -55,6 +55,12 @@ void message_show(message_sink *to, const char *line);
 int message_no_memory(message_sink *to);
 
 /*
+ * Writes out what stands before standard output, as a full disk behind it shows only then; to be called at the end of a
+ * program. Returns its exit code, EXIT_RUN_FAILED in place of EXIT_DONE where that fails.
+ */
+int message_of_stdout(message_sink *to, int status);
+
+/*
  * Bounds what is told of one input: from here on the first `most` messages are put, and message_end() says how many
  * more there were, as "path: and N more". Not nested.
  */

@@ -11,9 +11,6 @@
 #include "platform.h"
 #include "report.h"
 
-#include <errno.h>
-#include <string.h>
-
 static int do_with_gears(const flanks_options *options, const gm_pair *pair, const config *conf) {
     switch (options->task) {
     case FLANKS_MAKE:
@@ -58,15 +55,6 @@ static int do_task(const flanks_options *options) {
     }
 }
 
-/* A full disk behind stdout shows only when the text is written out. */
-static int finish_stdout(int status, message_sink *messages) {
-    if (fflush(stdout) == 0 && !ferror(stdout)) {
-        return status;
-    }
-    message_of_program(messages, "standard output: cannot be written: %s", strerror(errno));
-    return status == EXIT_DONE ? EXIT_RUN_FAILED : status;
-}
-
 int main(int argc, char *argv[]) {
     if (process_prepare() != EXIT_DONE) {
         return EXIT_RUN_FAILED; /* there is nowhere to say it */
@@ -79,5 +67,5 @@ int main(int argc, char *argv[]) {
     if (status == 0) {
         status = do_task(&options);
     }
-    return finish_stdout(status, &messages);
+    return message_of_stdout(&messages, status);
 }

@@ -25,9 +25,6 @@
 #include "statics.h"
 #include "time_table.h"
 
-#include <errno.h>
-#include <string.h>
-
 static column_names names_of(const config *conf) {
     return conf->analysis == ANALYSIS_STATIC ? static_column_names(conf)
                                              : dynamic_column_names(conf);
@@ -105,15 +102,6 @@ static int do_task(const arguments *args) {
     }
 }
 
-/* A full disk behind stdout shows only when the text is written out. */
-static int finish_stdout(int status, message_sink *messages) {
-    if (fflush(stdout) == 0 && !ferror(stdout)) {
-        return status;
-    }
-    message_of_program(messages, "standard output: cannot be written: %s", strerror(errno));
-    return status == EXIT_DONE ? EXIT_RUN_FAILED : status;
-}
-
 int main(int argc, char *argv[]) {
     if (process_prepare() != EXIT_DONE) {
         return EXIT_RUN_FAILED; /* there is nowhere to say it */
@@ -127,5 +115,5 @@ int main(int argc, char *argv[]) {
         status = do_task(&args);
         arguments_free(&args);
     }
-    return finish_stdout(status, &messages);
+    return message_of_stdout(&messages, status);
 }

@@ -78,11 +78,14 @@ static void take_params(fuzz_bytes *bytes, int how, gm_pair_params *params) {
     const double outwards = params->wheel_teeth < 0 ? -1.0 : 1.0;
     const double rw = 0.5 * m * fabs((double)params->wheel_teeth) / cos(helix);
     const uint8_t given = fuzz_byte(bytes);
+
     params->normal_module = m;
     params->normal_pressure_angle = fuzz_between(bytes, 0.01, 0.78);
     params->helix_angle = helix;
     params->center_distance = fabs(rp + outwards * rw) * fuzz_between(bytes, 0.9, 1.1);
     params->face_width = m * fuzz_between(bytes, 0.01, 40.0);
+
+    /* Shifts, backlash, radii and thickness, ... */
     if (given & 1) {
         params->pinion_profile_shift = fuzz_between(bytes, -1.0, 1.5);
     }
@@ -108,6 +111,7 @@ static void take_params(fuzz_bytes *bytes, int how, gm_pair_params *params) {
         params->pinion_normal_thickness = m * fuzz_between(bytes, 0.5, 2.5);
     }
 
+    /* ... racks, alterations and faces. */
     const uint8_t drawn = fuzz_byte(bytes);
     if (drawn & 1) {
         params->pinion_rack_addendum = fuzz_between(bytes, 0.0, 2.0);
@@ -358,10 +362,122 @@ static void claim_corners(fuzz_bytes *bytes, int how, const gm_pair *pair, const
     free(memory);
 }
 
+/* Any numbers, or speeds at a place within 0.6 base pitches of the middle of the backlash. */
+static gm_state take_state(fuzz_bytes *bytes, int how, const gm_pair *pair) {
+    gm_state state;
+    if (how & RAW_STATE) {
+        state.pinion_angle = fuzz_any(bytes);
+        state.wheel_angle = fuzz_any(bytes);
+        state.pinion_speed = fuzz_any(bytes);
+        state.wheel_speed = fuzz_any(bytes);
+    } else {
+        const double x = pair->transverse_base_pitch * fuzz_between(bytes, -0.6, 0.6);
+        state.pinion_angle = fuzz_between(bytes, -100.0, 100.0);
+        state.wheel_angle =
+            (pair->pinion.base_radius * state.pinion_angle - x) / pair->wheel.base_radius;
+        state.pinion_speed = fuzz_between(bytes, -1000.0, 1000.0);
+        state.wheel_speed = fuzz_between(bytes, -1000.0, 1000.0);
+    }
+    return state;
+}
+
+/* Constant stiffness or the simple model, the wheel where it has moved to. */
+static gm_mesh_params take_law(fuzz_bytes *bytes, int how, double m) {
+    gm_mesh_params law;
+    gm_mesh_params_default(&law);
+    law.model = fuzz_byte(bytes) % 8 == 0 ? GM_MODEL_SIMPLE : GM_MODEL_3D;
+    law.stiffness = how & RAW_STATE ? fuzz_any(bytes) : 1e8;
+    law.damping = how & RAW_STATE ? fuzz_any(bytes) : 1e3;
+
+    if (how & POSED) {
+        double *const parts[] = {&law.pose.center_distance_change, &law.pose.offset,
+                                 &law.pose.axial_shift};
+        for (int k = 0; k < 3; ++k) {
+            *parts[k] = how & RAW_STATE ? fuzz_any(bytes) : m * fuzz_between(bytes, -2.0, 2.0);
+        }
+    }
+    return law;
+}
+
+/* Whatever is wanted, the force is the same. */
+static void claim_evaluations(const gm_mesh *mesh, const gm_state *state) {
+    const int all = GM_WANT_DERIVATIVES | GM_WANT_WRENCH | GM_WANT_PAIRS;
+    gm_mesh_result whole, alone;
+    const int evaluated = gm_mesh_evaluate(mesh, state, all, NULL, &whole);
+    claim_result(evaluated, &whole);
+    FUZZ_CLAIM(evaluated == gm_mesh_evaluate(mesh, state, GM_WANT_FORCE, NULL, &alone));
+    FUZZ_CLAIM(evaluated != GM_OK || alone.force == whole.force);
+}
+
+static void claim_equilibria(fuzz_bytes *bytes, int how, const gm_mesh *mesh, const gm_pair *pair,
+                             double pinion_angle, double stiffness) {
+    gm_mesh_result result;
+    double offset;
+    const double torque = how & RAW_STATE ? fuzz_any(bytes) : fuzz_between(bytes, -1e3, 1e3);
+    const int found =
+        gm_static_equilibrium(mesh, pinion_angle, torque, (double)NAN, NULL, &offset, &result);
+    claim_numbers(found, &offset, 1);
+    claim_penetration(found, &result.contact);
+    const int again =
+        gm_static_equilibrium(mesh, pinion_angle, torque, fuzz_any(bytes), NULL, &offset, &result);
+    claim_numbers(again, &offset, 1);
+    claim_penetration(again, &result.contact);
+
+    /* Several at once: a number where there is one. */
+    const double torques[] = {torque, 0.5 * torque, -torque, fuzz_any(bytes), 0.999 * torque};
+    enum { TORQUES = sizeof torques / sizeof torques[0] };
+    double offsets[TORQUES];
+    const int several = gm_rolling_equilibria(mesh, pinion_angle, 0.0, torques, TORQUES,
+                                              GM_WANT_DERIVATIVES | GM_WANT_WRENCH | GM_WANT_PAIRS,
+                                              NULL, offsets, NULL);
+    int carried = 0;
+    for (int k = 0; k < TORQUES; ++k) {
+        carried += !isnan(offsets[k]);
+        FUZZ_CLAIM(!isinf(offsets[k]));
+    }
+    FUZZ_CLAIM((several == GM_OK) == (carried == TORQUES));
+
+    /* There is one for any guess or for none, unless it hangs on the rounding of the lengths, or teeth are pressed together
+     * or deviate by so much that the sum may fall again. */
+    const double length = fabs(torque) / (stiffness * pair->wheel.base_radius);
+    const double little = 0.02 * pair->transverse_base_pitch;
+    if (!(how & (RAW_DEVIATIONS | POSED)) && pair->transverse_contact_ratio > 0.5 &&
+        pair->backlash > -little && length < little && length > 1e-15 * pair->center_distance) {
+        FUZZ_CLAIM(again == found);
+    }
+}
+
+/* All that a pair that can be made is asked. */
+static void claim_pair(fuzz_bytes *bytes, int how, const gm_pair *pair, const gm_flanks *pinion,
+                       const gm_flanks *wheel, const gm_state *state) {
+    gm_penetration result;
+    claim_penetration(gm_penetration_simple(pair, state, &result), &result);
+    claim_penetration(gm_penetration_3d(pair, pinion, wheel, state, &result), &result);
+
+    /* Far off a posed pair may be refused. */
+    const gm_mesh_params law = take_law(bytes, how, pair->normal_module);
+    const size_t size = gm_mesh_size(&law, pair);
+    void *memory = malloc(size + 1);
+    gm_mesh *mesh = NULL;
+    const int made = gm_mesh_init(&mesh, &law, pair, pinion, wheel, memory, size);
+    FUZZ_CLAIM((made == GM_OK) == (mesh != NULL));
+    FUZZ_CLAIM((made == GM_OK) == (size > 0) || ((how & POSED) && size > 0));
+
+    claim_evaluations(mesh, state);
+    claim_equilibria(bytes, how, mesh, pair, state->pinion_angle, law.stiffness);
+    free(memory);
+
+    if (how & ELASTIC) {
+        claim_elastic(bytes, how, pair, pinion, wheel, state);
+    }
+    claim_corners(bytes, how, pair, pinion, wheel, state, &law.pose);
+}
+
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size) {
     fuzz_bytes bytes = {data, size};
     const int how = fuzz_byte(&bytes);
 
+    /* A pair, or the reason why not. */
     gm_pair_params params;
     take_params(&bytes, how, &params);
     const char *field = "", *requirement = "";
@@ -374,100 +490,13 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size) {
     (void)gm_pair_warnings(&pair, &params);
 
     gm_flanks *pinion = NULL, *wheel = NULL;
-    const double m = params.normal_module;
     if (status == GM_OK && fuzz_byte(&bytes) & 1) {
-        pinion = take_flanks(&bytes, how, params.pinion_teeth, m);
-        wheel = take_flanks(&bytes, how, pair.wheel.teeth, m);
-    }
-
-    gm_state state;
-    gm_penetration result;
-    if (how & RAW_STATE) {
-        state.pinion_angle = fuzz_any(&bytes);
-        state.wheel_angle = fuzz_any(&bytes);
-        state.pinion_speed = fuzz_any(&bytes);
-        state.wheel_speed = fuzz_any(&bytes);
-    } else {
-        const double x = pair.transverse_base_pitch * fuzz_between(&bytes, -0.6, 0.6);
-        state.pinion_angle = fuzz_between(&bytes, -100.0, 100.0);
-        state.wheel_angle =
-            (pair.pinion.base_radius * state.pinion_angle - x) / pair.wheel.base_radius;
-        state.pinion_speed = fuzz_between(&bytes, -1000.0, 1000.0);
-        state.wheel_speed = fuzz_between(&bytes, -1000.0, 1000.0);
+        pinion = take_flanks(&bytes, how, params.pinion_teeth, params.normal_module);
+        wheel = take_flanks(&bytes, how, pair.wheel.teeth, params.normal_module);
     }
     if (status == GM_OK) {
-        claim_penetration(gm_penetration_simple(&pair, &state, &result), &result);
-        claim_penetration(gm_penetration_3d(&pair, pinion, wheel, &state, &result), &result);
-
-        gm_mesh_params law;
-        gm_mesh *mesh = NULL;
-        gm_mesh_result whole;
-        gm_mesh_params_default(&law);
-        law.model = fuzz_byte(&bytes) % 8 == 0 ? GM_MODEL_SIMPLE : GM_MODEL_3D;
-        law.stiffness = how & RAW_STATE ? fuzz_any(&bytes) : 1e8;
-        law.damping = how & RAW_STATE ? fuzz_any(&bytes) : 1e3;
-
-        /* The wheel where it has moved to; far off the pair may be refused. */
-        const int is_posed = (how & POSED) != 0;
-        if (is_posed) {
-            double *const parts[] = {&law.pose.center_distance_change, &law.pose.offset,
-                                     &law.pose.axial_shift};
-            for (int k = 0; k < 3; ++k) {
-                *parts[k] =
-                    how & RAW_STATE ? fuzz_any(&bytes) : m * fuzz_between(&bytes, -2.0, 2.0);
-            }
-        }
-        const size_t mesh_size = gm_mesh_size(&law, &pair);
-        void *mesh_memory = malloc(mesh_size + 1);
-        const int made = gm_mesh_init(&mesh, &law, &pair, pinion, wheel, mesh_memory, mesh_size);
-        FUZZ_CLAIM((made == GM_OK) == (mesh != NULL));
-        FUZZ_CLAIM((made == GM_OK) == (mesh_size > 0) || (is_posed && mesh_size > 0));
-
-        /* Whatever is wanted, the force is the same. */
-        const int all = GM_WANT_DERIVATIVES | GM_WANT_WRENCH | GM_WANT_PAIRS;
-        const int evaluated = gm_mesh_evaluate(mesh, &state, all, NULL, &whole);
-        claim_result(evaluated, &whole);
-        gm_mesh_result alone;
-        FUZZ_CLAIM(evaluated == gm_mesh_evaluate(mesh, &state, GM_WANT_FORCE, NULL, &alone));
-        FUZZ_CLAIM(evaluated != GM_OK || alone.force == whole.force);
-
-        double offset;
-        const double torque = how & RAW_STATE ? fuzz_any(&bytes) : fuzz_between(&bytes, -1e3, 1e3);
-        const int found = gm_static_equilibrium(mesh, state.pinion_angle, torque, (double)NAN, NULL,
-                                                &offset, &whole);
-        claim_numbers(found, &offset, 1);
-        claim_penetration(found, &whole.contact);
-        const int again = gm_static_equilibrium(mesh, state.pinion_angle, torque, fuzz_any(&bytes),
-                                                NULL, &offset, &whole);
-        claim_numbers(again, &offset, 1);
-        claim_penetration(again, &whole.contact);
-
-        /* Several at once: a number where there is one. */
-        const double torques[] = {torque, 0.5 * torque, -torque, fuzz_any(&bytes), 0.999 * torque};
-        enum { TORQUES = sizeof torques / sizeof torques[0] };
-        double offsets[TORQUES];
-        const int several = gm_rolling_equilibria(mesh, state.pinion_angle, 0.0, torques, TORQUES,
-                                                  all, NULL, offsets, NULL);
-        int carried = 0;
-        for (int k = 0; k < TORQUES; ++k) {
-            carried += !isnan(offsets[k]);
-            FUZZ_CLAIM(!isinf(offsets[k]));
-        }
-        FUZZ_CLAIM((several == GM_OK) == (carried == TORQUES));
-
-        /* There is one for any guess or for none, unless it hangs on the rounding of the lengths, or teeth are
-         * pressed together or deviate by so much that the sum may fall again. */
-        const double length = fabs(torque) / (law.stiffness * pair.wheel.base_radius);
-        const double little = 0.02 * pair.transverse_base_pitch;
-        if (!(how & (RAW_DEVIATIONS | POSED)) && pair.transverse_contact_ratio > 0.5 &&
-            pair.backlash > -little && length < little && length > 1e-15 * pair.center_distance) {
-            FUZZ_CLAIM(again == found);
-        }
-        free(mesh_memory);
-        if (how & ELASTIC) {
-            claim_elastic(&bytes, how, &pair, pinion, wheel, &state);
-        }
-        claim_corners(&bytes, how, &pair, pinion, wheel, &state, &law.pose);
+        const gm_state state = take_state(&bytes, how, &pair);
+        claim_pair(&bytes, how, &pair, pinion, wheel, &state);
     }
     free(pinion); /* they begin at their memory */
     free(wheel);
