@@ -1082,6 +1082,56 @@ static gm_pair_params helical(double helix_deg, double modules) {
     return p;
 }
 
+/* None given: as many as gm_elastic_stations() says, to the bit; what they leave is in test_elastic.c. */
+static void stations_follow_from_the_pair(void) {
+    const gm_pair_params pairs[] = {nrel3(), spur62(), ring(), helical(20.0, 10.0),
+                                    helical(30.0, 30.0)};
+    for (size_t k = 0; k < sizeof pairs / sizeof pairs[0]; ++k) {
+        gm_test_context("pair %d", (int)k);
+        gm_mesh_params law = elastic_law();
+        elastic_mesh free, given;
+        law.stations = 0;
+        GM_ASSERT_INT(make(&free, &pairs[k], &law, NULL, NULL), GM_OK);
+        law.stations = gm_elastic_stations(&free.pair);
+        GM_ASSERT_INT(make(&given, &pairs[k], &law, NULL, NULL), GM_OK);
+        GM_ASSERT(gm_workspace_size(free.mesh) == gm_workspace_size(given.mesh));
+        const double x = 1e-3 * pairs[k].normal_module;
+        const gm_state state = pressed_state(&free, 0.3, x);
+        GM_ASSERT(evaluate(&free, &state, GM_WANT_FORCE).force ==
+                  evaluate(&given, &state, GM_WANT_FORCE).force);
+        release(&free);
+        release(&given);
+    }
+
+    /* Spur gears need no more than the usual ones, wide helical ones do; one number less leaves more than wanted. */
+    gm_pair pair;
+    const gm_pair_params spur = spur62(), wide = helical(30.0, 30.0), widest = helical(45.0, 200.0);
+    GM_ASSERT_INT(gm_pair_init(&pair, &spur), GM_OK);
+    GM_ASSERT_INT(gm_elastic_stations(&pair), 17);
+    GM_ASSERT_ABS(gm_elastic_stations_error(&pair, 17), 0.0, 0.0);
+    GM_ASSERT_INT(gm_pair_init(&pair, &wide), GM_OK);
+    const int stations = gm_elastic_stations(&pair);
+    GM_ASSERT(stations > 17 && stations < 97);
+    GM_ASSERT(gm_elastic_stations_error(&pair, stations) <= 0.0018);
+    GM_ASSERT(gm_elastic_stations_error(&pair, stations - 1) > 0.0018);
+    GM_ASSERT_INT(gm_pair_init(&pair, &widest), GM_OK);
+    GM_ASSERT_INT(gm_elastic_stations(&pair), 97);
+
+    /* The estimate by hand: 0.04 h^2 tan(beta_b) / (l g_alpha). */
+    GM_ASSERT_INT(gm_pair_init(&pair, &wide), GM_OK);
+    const double h = wide.face_width / 8.0, l = 1.45 * wide.normal_module * cos(30.0 * DEGREE);
+    GM_ASSERT_REL(
+        gm_elastic_stations_error(&pair, 9),
+        0.04 * h * h * tan(pair.base_helix_angle) / (l * (pair.path_end - pair.path_start)), 1e-14);
+
+    /* What is no question. */
+    GM_ASSERT_INT(gm_elastic_stations(NULL), 0);
+    GM_ASSERT(isnan(gm_elastic_stations_error(NULL, 17)));
+    GM_ASSERT(isnan(gm_elastic_stations_error(&pair, 1)));
+    memset(&pair, 0, sizeof pair);
+    GM_ASSERT_INT(gm_elastic_stations(&pair), 17);
+}
+
 /* Largest error of the force with so many stations against 97, at what carries the load there, over a mesh cycle. */
 static double error_of_stations(const gm_pair_params *gears, double line_load, double reference,
                                 int stations) {
@@ -1586,10 +1636,14 @@ static void parameters_out_of_range_are_named(void) {
         GM_ASSERT_STRING(field, wrong[k].field);
     }
 
-    law = elastic_law();
-    law.stations = 98;
-    GM_ASSERT_INT(gm_mesh_params_check(&law, &field, NULL), GM_ERR_PARAMETER);
-    GM_ASSERT_STRING(field, "stations");
+    /* Fewer than two have no element; 0 is the default. */
+    const int wrong_stations[] = {-1, 1, 98};
+    for (size_t k = 0; k < sizeof wrong_stations / sizeof wrong_stations[0]; ++k) {
+        law = elastic_law();
+        law.stations = wrong_stations[k];
+        GM_ASSERT_INT(gm_mesh_params_check(&law, &field, NULL), GM_ERR_PARAMETER);
+        GM_ASSERT_STRING(field, "stations");
+    }
 }
 
 static void teeth_need_their_memory(void) {
@@ -1759,6 +1813,7 @@ int main(int argc, char **argv) {
         GM_TEST(stiffness_is_that_at_the_reference_torque),
         GM_TEST(force_of_spur_gears_is_smooth),
         GM_TEST(tilted_edges_carry_light_loads),
+        GM_TEST(stations_follow_from_the_pair),
         GM_TEST(few_stations_are_enough_for_edges),
         GM_TEST(few_stations_find_the_pressure_of_edges),
         GM_TEST(edges_keep_the_energy),

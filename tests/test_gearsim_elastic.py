@@ -230,7 +230,8 @@ class Elastic(unittest.TestCase):
 
     def test_teeth_that_have_no_elastic_law_are_refused_with_the_reason(self):
         deep = SPUR62 | {"gears": SPUR62["gears"] | {"pinion_rack_dedendum": 1.75}}
-        self.refused(deep, "gears.pinion_rack_fillet_radius: must be", "here 0.", "mesh.stiffness_N_per_m")
+        self.refused(deep, "gears.pinion_rack_fillet_radius: must be", "here 0.", "(got none, so it is 0.38)",
+                     "mesh.stiffness_N_per_m")
         self.refused(SPUR62 | {"gears": SPUR62["gears"] | {"wheel_bore_diameter_mm": 119.5}},
                      "gears.wheel_bore_diameter_mm: must be a bore below the root circle")
         few = {"gears": SPUR62["gears"] | {"pinion_teeth": 12, "center_distance_mm": 74, "pinion_tip_alteration": 0}}
@@ -340,20 +341,35 @@ class Elastic(unittest.TestCase):
             self.refused(NREL | {"output": relief}, "modifications.pinion_tip_relief_um: must have a range", arguments=arguments)
 
     def test_stations_of_its_own_choice_leave_0_4_percent(self):
-        """On a face as wide as two lines of contact are long, where the estimate of what is left is low."""
-        gears = SPUR["gears"] | {"pinion_teeth": 25, "wheel_teeth": 80, "helix_angle_deg": 30, "face_width_mm": 72,
-                                 "center_distance_mm": 210 / math.cos(math.radians(30))}
-        error = {}
-        for stations in ({}, {"stations": 49}, {"stations": 97}):
-            self.write({"gears": gears, "mesh": OFF | stations, "load": {"mean_Nm": 240 * 72 * 0.17},
-                        "analysis": {"type": "static", "positions": 20}})
-            subprocess.run([GEARSIM, "run.ini", "--quiet"], cwd=self.folder, check=True)
-            error[stations.get("stations")] = [float(row["te_um"]) for row in self.table("run.csv")]
+        """A face as wide as two lines are long, where the estimate is low; end reliefs, between stations of 17."""
+        reliefs = {f"pinion_end_relief_{end}_{key}": value for end in ("I", "II")
+                   for key, value in (("um", 25), ("length_mm", 4), ("shape", "linear"))}
+        left, taken = {}, []
+        for face_mm, flanks in ((72, {}), (20, {"modifications": reliefs})):
+            gears = SPUR["gears"] | {"pinion_teeth": 25, "wheel_teeth": 80, "helix_angle_deg": 30,
+                                     "face_width_mm": face_mm, "center_distance_mm": 210 / math.cos(math.radians(30))}
+            error = {}
+            for stations in ({}, {"stations": 17}, {"stations": 49}, {"stations": 97}):
+                self.write({"gears": gears, "mesh": OFF | stations, "load": {"mean_Nm": 240 * face_mm * 0.17},
+                            "analysis": {"type": "static", "positions": 20}} | flanks)
+                subprocess.run([GEARSIM, "run.ini", "--quiet"], cwd=self.folder, check=True)
+                error[stations.get("stations")] = [float(row["te_um"]) for row in self.table("run.csv")]
+                with open(os.path.join(self.folder, "run.csv"), encoding="utf-8") as file:
+                    head = re.search(r"(?m)^# stations = (\d+)$", file.read())
+                listed = re.search(r"(?m)^stations = (\d+)$", self.gearsim("--geometry").stdout)
+                self.assertEqual(head[1], listed[1])
+                taken.append(int(head[1]))
 
-        # The error falls with the square of the elements' length: the limit, from 48 and 96 elements.
-        limit = [(4 * fine - coarse) / 3 for coarse, fine in zip(error[49], error[97])]
-        left = max(abs(value / whole - 1) for value, whole in zip(error[None], limit))
-        self.assertLess(left, 0.004)
+            # The error falls with the square of the elements' length: the limit, from 48 and 96 elements.
+            limit = [(4 * fine - coarse) / 3 for coarse, fine in zip(error[49], error[97])]
+            for stations in (None, 17):
+                left[face_mm, stations] = max(abs(value / whole - 1) for value, whole in zip(error[stations], limit))
+            self.assertLess(left[face_mm, None], 0.004)
+            self.assertGreater(left[face_mm, 17], 0.004)
+
+        # What is listed and written is what was taken: those given, else more.
+        self.assertEqual(taken[1:4] + taken[5:], 2 * [17, 49, 97])
+        self.assertTrue(17 < taken[0] < 49 and taken[4] == 41, taken)
 
     def test_corner_contact_is_of_elastic_teeth(self):
         self.rows(SPUR62 | {"mesh": {"corner_contact": "on"}})

@@ -4,6 +4,7 @@
 #include "gear_mesh.h"
 #include "drawing.h"
 #include "memory.h"
+#include "modification_keys.h"
 #include "tooth_stiffness.h"
 
 #include <math.h>
@@ -120,31 +121,29 @@ static int refuse_pose(const config *conf, const gear_mesh *mesh) {
     return EXIT_BAD_INPUT;
 }
 
-/*
- * Teeth bend along the face over the length l of their layer, from where a line of contact ends in the path: elements that
- * are long against it, on lines that are short, leave an error of the transmission error. On random pairs it was some
- * 0.04 h^2 / (l s), h the length of an element, s that of a line across the path, along the face; elastic.md. This times the
- * square of the number of elements.
- */
-static double error_of_one_element(const gm_pair *pair) {
-    const double decay = 1.45 * pair->normal_module * cos(pair->helix_angle);
-    const double path = pair->path_end - pair->path_start;
-    return 0.04 * pair->face_width * fabs(pair->face_advance) / (decay * path);
+/* Whether the file has a relief of this kind, be it of 0: a search over amounts keeps its stations. */
+static int has_modification(const config *conf, int kind) {
+    for (enum gm_role role = GM_PINION; role <= GM_WHEEL; ++role) {
+        for (int place = 0; place < MODIFICATION_PLACES; ++place) {
+            if (!isnan(conf->modifications[role][place][kind].value[MODIFICATION_AMOUNT])) {
+                return 1;
+            }
+        }
+    }
+    return 0;
 }
 
-/* As many as leave 0.4 %: up to 1.8 times the estimate is left on faces hardly wider than lines are long. */
-static double stations_wanted(const gm_pair *pair) {
-    return ceil(sqrt(error_of_one_element(pair) / 0.0022)) + 1;
-}
-
-/* Those given, or as many as the pair wants: usual gears 17, wide ones of large helix angle up to 65. */
-static int stations_of(const config *conf, const gm_pair *pair) {
-    enum { USUAL = 17, MOST = 65 };
+int gear_mesh_stations(const gear_mesh *mesh, const config *conf) {
+    enum { RELIEVED = 41 };
     if (conf->stations > 0) {
         return conf->stations;
     }
-    const double wanted = conf->law == LAW_ELASTIC ? stations_wanted(pair) : USUAL;
-    return wanted > USUAL ? (int)fmin(wanted, MOST) : USUAL; /* NaN: usual */
+
+    /* The pair says it, and end reliefs, which may take off the load between stations. */
+    const int stations = gm_elastic_stations(&mesh->pair);
+    const int is_relieved =
+        has_modification(conf, GM_MOD_END_RELIEF_I) || has_modification(conf, GM_MOD_END_RELIEF_II);
+    return is_relieved && stations < RELIEVED ? RELIEVED : stations;
 }
 
 static gm_mesh_params params_of(const config *conf, const gear_mesh *mesh) {
@@ -172,7 +171,7 @@ static gm_mesh_params params_of(const config *conf, const gear_mesh *mesh) {
     params.wheel_bore_radius = conf->wheel_bore_radius;
     params.pinion_tooth_stiffness = mesh->tooth_stiffness[GM_PINION];
     params.wheel_tooth_stiffness = mesh->tooth_stiffness[GM_WHEEL];
-    params.stations = stations_of(conf, &mesh->pair);
+    params.stations = gear_mesh_stations(mesh, conf);
     params.corner_contact = conf->model == MODEL_3D && conf->corner_contact == CORNER_CONTACT_ON
                                 ? GM_CORNER_ON
                                 : GM_CORNER_OFF;
@@ -277,12 +276,17 @@ static int refuse_elastic(const config *conf, const gm_pair *pair, const gm_mesh
                                                                 : config_key_of_field(field);
     const char *text = config_text(conf, key);
     char most[48] = "";
-    if (strstr(field, "fillet_radius") != NULL && strstr(requirement, "rack's flanks") != NULL) {
-        snprintf(most, sizeof most, ", here %.6g", largest_fillet_radius(pair, field));
+    char derived[48] = "none, so it is derived";
+    if (strstr(field, "fillet_radius") != NULL) {
+        const gm_gear *gear = *field == 'p' ? &pair->pinion : &pair->wheel;
+        snprintf(derived, sizeof derived, "none, so it is %.6g", gear->rack_fillet_radius);
+        if (strstr(requirement, "rack's flanks") != NULL) {
+            snprintf(most, sizeof most, ", here %.6g", largest_fillet_radius(pair, field));
+        }
     }
     const int is_asked_for = config_text(conf, "mesh.law") != NULL;
     config_complain(conf, key, "must be %s%s (got %s), for elastic teeth: mesh.law = elastic%s",
-                    requirement, most, text != NULL ? text : "none, so it is derived",
+                    requirement, most, text != NULL ? text : derived,
                     is_asked_for ? "" : " is taken without mesh.stiffness_N_per_m");
     return EXIT_BAD_INPUT;
 }
@@ -392,17 +396,15 @@ static int join_halves(gear_mesh *mesh, const config *conf) {
 }
 
 static void remark_few_stations(const config *conf, const gear_mesh *mesh) {
-    const gm_pair *pair = &mesh->pair;
-    const int stations = stations_of(conf, pair);
-    const double elements = stations - 1;
-    const double error = error_of_one_element(pair) / (elements * elements);
+    const int stations = gear_mesh_stations(mesh, conf);
+    const double error = gm_elastic_stations_error(&mesh->pair, stations);
 
     if (error > 0.006) { /* not where NaN */
         config_remark(
             conf, "mesh.stations",
             "%d stations leave some %.1f %% in the transmission error, as they are far apart "
-            "on short lines of contact; %.0f leave 0.4",
-            stations, 100 * error, fmin(97, stations_wanted(pair)));
+            "on short lines of contact; %d leave 0.4",
+            stations, 100 * error, gm_elastic_stations(&mesh->pair));
     }
 }
 
@@ -501,6 +503,9 @@ int gear_mesh_note(const gear_mesh *mesh, config *conf) {
     }
     if (status == 0 && isfinite(frequency)) {
         status = config_note(conf, "eigenfrequency_Hz", frequency);
+    }
+    if (status == 0 && conf->law == LAW_ELASTIC) {
+        status = config_note(conf, "stations", gear_mesh_stations(mesh, conf));
     }
     return status == 0 ? 0 : message_no_memory(conf->messages);
 }

@@ -123,6 +123,7 @@ static void print_law(const gear_mesh *mesh, const config *conf, const listing *
                               per_um * elastic.mesh_largest};
         print_spread(to, "single_stiffness_N_per_um", single);
         print_spread(to, "mesh_stiffness_N_per_um", all);
+        print_value(to, "stations", gear_mesh_stations(mesh, conf));
     }
 }
 

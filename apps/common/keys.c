@@ -163,7 +163,7 @@ static const key_spec keys[] = {
      .standard = "0.3", .help = "nu of the pinion's material"},
     {NAME("mesh", "wheel_poisson_ratio"), NUMBER(UNIT_SI, BETWEEN(0, 0.499)), INTO(wheel_poisson_ratio),
      .standard = "0.3", .help = "nu of the wheel's material"},
-    {NAME("mesh", "stations"), COUNT(2, 97), INTO(stations), .derived = "17, or up to 65 for wide faces",
+    {NAME("mesh", "stations"), COUNT(2, 97), INTO(stations), .derived = "17 to 97, as the gears need",
      .used = FOR_ELASTIC, .help = "along the face, at which the teeth deflect; 0.4 % in the transmission error"},
     {NAME("mesh", "corner_contact"), CHOICE("off on"), INTO(corner_contact), .derived = "on for elastic teeth, else off",
      .used = FOR_3D, .help = "on: tip edges touch before and after the path of contact, so that the force does not jump"},

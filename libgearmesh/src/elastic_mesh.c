@@ -70,8 +70,10 @@ const char *gmi_elastic_field_at_fault(const gm_mesh_params *params, const char 
          "a torque above 0 N m"},
         {"tip_rounding", params->tip_rounding >= 0.001 && params->tip_rounding <= 1.0,
          "a radius from 0.001 to 1 modules"},
-        {"stations", params->stations >= 2 && params->stations <= GMI_ELASTIC_STATIONS_MAX,
-         "a whole number from 2 to 97"},
+        {"stations",
+         params->stations == 0 ||
+             (params->stations >= 2 && params->stations <= GMI_ELASTIC_STATIONS_MAX),
+         "a whole number from 2 to 97, or 0: as gm_elastic_stations() says"},
     };
 
     /* The first that is wrong. */
@@ -106,8 +108,12 @@ static int lines_of(const gm_mesh_params *params, const gm_pair *pair) {
     return gmi_elastic_lines(pair->total_contact_ratio) + is_with_corners(params);
 }
 
+static int stations_of(const gm_mesh_params *params, const gm_pair *pair) {
+    return params->stations != 0 ? params->stations : gm_elastic_stations(pair);
+}
+
 size_t gmi_elastic_mesh_size(const gm_mesh_params *params, const gm_pair *pair) {
-    const size_t work = gmi_elastic_work_size(params->stations, lines_of(params, pair));
+    const size_t work = gmi_elastic_work_size(stations_of(params, pair), lines_of(params, pair));
     return work == 0 ? 0 : sizeof(gmi_elastic_mesh) + sizeof(gmi_elastic_work) + work;
 }
 
@@ -244,7 +250,7 @@ int gmi_elastic_mesh_init(gmi_elastic_mesh *made, const gm_mesh_params *params, 
         .base_helix_angle = pair->base_helix_angle,
         .face_width = face,
         .line_of_action = at->line_of_action,
-        .stations = params->stations,
+        .stations = stations_of(params, pair),
         .lines = lines_of(params, pair),
         .gear = {gear_params(&pair->pinion, at, GM_PINION, params->pinion_youngs_modulus,
                              params->pinion_poisson_ratio),
@@ -284,7 +290,7 @@ int gmi_elastic_mesh_init(gmi_elastic_mesh *made, const gm_mesh_params *params, 
                              : params->reference_torque / pair->wheel.base_radius;
     made->usual_approach = usual_approach(params, force / face);
     gmi_elastic_work *work = (gmi_elastic_work *)(made + 1);
-    gmi_elastic_work_init(work, params->stations, law.lines, work + 1);
+    gmi_elastic_work_init(work, law.stations, law.lines, work + 1);
     find_stiffness(made, pair, at, force, work);
 
     /* Which is that of the teeth; bodies come on top. */

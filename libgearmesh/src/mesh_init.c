@@ -47,7 +47,7 @@ void gm_mesh_params_default(gm_mesh_params *params) {
         .pinion_tooth_stiffness = NULL,
         .wheel_tooth_stiffness = NULL,
         .reference_torque = gmi_nan(),
-        .stations = 17,
+        .stations = 0,
 
         /* Edges. */
         .corner_contact = GM_CORNER_BY_LAW,

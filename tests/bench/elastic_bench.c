@@ -124,6 +124,7 @@ static gm_mesh *make_mesh(const bench_pair *b, int has_tables, int has_corners, 
     gm_mesh_params params;
     gm_mesh_params_default(&params);
     params.law = GM_LAW_ELASTIC;
+    params.stations = 17; /* whatever the pair wants */
     params.corner_contact = has_corners ? GM_CORNER_ON : GM_CORNER_OFF;
     const size_t size = gm_mesh_size(&params, pair);
     gm_mesh *mesh;
