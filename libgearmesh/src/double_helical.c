@@ -7,6 +7,7 @@
  * where the pinion floats along its axis, by s, their lines of contact move as if they turned against each other: the
  * first meshes at x - s tan(beta_b), the second at x + s tan(beta_b). The pinion floats to where both carry the same force.
  */
+#include "double_helical.h"
 #include "internal.h"
 #include "mesh.h"
 
@@ -51,26 +52,12 @@ int gm_double_helical_half(const gm_pair_params *whole, double gap, gm_pair_para
     return GM_OK;
 }
 
-/*
- * The middle of the wheel's half lies at -h on the axis of the whole wheel. Turned by the rotation vector theta about the
- * middle of the whole, it moves by theta x (0, 0, -h) sin(theta)/theta and comes nearer by h (1 - cos(theta)).
- */
 int gm_double_helical_pose(const gm_pair *half, double gap, const gm_pose *whole, gm_pose pose[2]) {
     if (half == NULL || whole == NULL || pose == NULL) {
         return GM_ERR_NULL;
     }
-    const double h = 0.5 * (half->wheel.face_width + gap);
-    const double turn = hypot(whole->skew, whole->inclination);
-    const double arm = turn > 0.0 ? h * sin(turn) / turn : h;
-    const double nearer = 2.0 * h * sin(0.5 * turn) * sin(0.5 * turn);
-
     for (int k = 0; k < 2; ++k) {
-        const double sign = k == 0 ? 1.0 : -1.0;
-        pose[k].skew = sign * whole->skew;
-        pose[k].inclination = sign * whole->inclination;
-        pose[k].center_distance_change = whole->center_distance_change - arm * pose[k].inclination;
-        pose[k].offset = whole->offset + arm * pose[k].skew;
-        pose[k].axial_shift = nearer; /* the pinion floats to where the wheel is */
+        pose[k] = gmi_pose_of_half(half, gap, whole, k);
     }
     return GM_OK;
 }
@@ -79,11 +66,11 @@ int gm_double_helical_pose(const gm_pair *half, double gap, const gm_pose *whole
  * A wheel that moves
  * ------------------------------------------------------------------------------------------- */
 
-/* Both halves at one position: the angles of the whole gears, and what each half does beside its pose. */
+/* Both halves of gears that stand, or move, somewhere. */
 typedef struct halves {
-    gm_position position;
-    gm_motion motion[2]; /* position: with the shift */
-    gm_pose place[2];    /* the pose that each half is in by then */
+    const gm_position *position;
+    const gm_motion *motion; /* of the wheel; NULL: it stands in the pose as prepared */
+    gm_pose whole;           /* the pose that the wheel is in by then */
 } halves;
 
 /* The pose in which the whole was prepared, from those of its halves; without the axial shift, which the pinion follows. */
@@ -110,53 +97,32 @@ static gm_pose sum_of_poses(const gm_pose *a, double factor, const gm_pose *b) {
 }
 
 /*
- * The rate of gm_double_helical_pose() in first order, as damping feels a changing tilt: that the arm changes, and comes nearer,
- * are products of tilt and rate.
+ * The rate of gm_double_helical_pose() for half k, in first order as damping feels a changing tilt: that the arm changes, and
+ * comes nearer, are products of tilt and rate.
  */
-static void rate_of_halves(const gm_pair *half, double gap, const gm_pose *whole,
-                           const gm_pose *rate, gm_pose by_half[2]) {
-    const double h = 0.5 * (half->wheel.face_width + gap);
-    const double turn = hypot(whole->skew, whole->inclination);
-    const double arm = turn > 0.0 ? h * sin(turn) / turn : h;
-
-    for (int k = 0; k < 2; ++k) {
-        const double sign = k == 0 ? 1.0 : -1.0;
-        gm_pose *to = &by_half[k];
-        to->skew = sign * rate->skew;
-        to->inclination = sign * rate->inclination;
-        to->center_distance_change = rate->center_distance_change - arm * to->inclination;
-        to->offset = rate->offset + arm * to->skew;
-        to->axial_shift = 0.0;
-    }
+static gm_pose rate_of_half(const gm_double_helical *gears, int k, const gm_pose *rate) {
+    const double arm = 0.5 * (gears->half[k]->pair->wheel.face_width + gears->gap);
+    const double sign = k == 0 ? 1.0 : -1.0;
+    const gm_pose by_half = {
+        .center_distance_change = rate->center_distance_change - arm * sign * rate->inclination,
+        .offset = rate->offset + arm * sign * rate->skew,
+        .skew = sign * rate->skew,
+        .inclination = sign * rate->inclination,
+    };
+    return by_half;
 }
 
-/* What the halves do where the wheel moves by this; nothing beside their poses where it stands, to the bit. */
-static int place_halves(const gm_double_helical *gears, const gm_motion *motion, halves *both) {
-    const gm_pair *pair = gears->half[0]->pair;
-    const gm_pose *first = &gears->half[0]->pose, *second = &gears->half[1]->pose;
-    const gm_pose none = {0.0, 0.0, 0.0, 0.0, 0.0};
-    both->position = motion->position;
-    both->place[0] = *first;
-    both->place[1] = *second;
-    for (int k = 0; k < 2; ++k) {
-        both->motion[k].position = motion->position;
-        both->motion[k].pose = both->motion[k].pose_rate = none;
+/* Where the gears are. A wheel without motion stands, to the bit. */
+static void place(const gm_double_helical *gears, const gm_position *position,
+                  const gm_motion *motion, halves *both) {
+    const int stands =
+        motion == NULL || (gmi_is_at_rest(&motion->pose) && gmi_is_at_rest(&motion->pose_rate));
+    both->position = position;
+    both->motion = stands ? NULL : motion;
+    both->whole = pose_of_whole(&gears->half[0]->pose, &gears->half[1]->pose);
+    if (!stands) {
+        both->whole = sum_of_poses(&both->whole, 1.0, &motion->pose);
     }
-    if (gmi_is_at_rest(&motion->pose) && gmi_is_at_rest(&motion->pose_rate)) {
-        return GM_OK;
-    }
-
-    /* Where the whole is by then, and each half with it; beside where it was prepared. */
-    const gm_pose prepared = pose_of_whole(first, second);
-    const gm_pose whole = sum_of_poses(&prepared, 1.0, &motion->pose);
-    const int status = gm_double_helical_pose(pair, gears->gap, &whole, both->place);
-    gm_pose rates[2];
-    rate_of_halves(pair, gears->gap, &whole, &motion->pose_rate, rates);
-    for (int k = 0; k < 2; ++k) {
-        both->motion[k].pose = sum_of_poses(&both->place[k], -1.0, &gears->half[k]->pose);
-        both->motion[k].pose_rate = rates[k];
-    }
-    return status;
 }
 
 /* ---------------------------------------------------------------------------------------------
@@ -182,32 +148,37 @@ static double tan_base_helix(const gm_pair *pair) {
     return pair->face_advance / pair->face_width;
 }
 
-static int evaluate_half(const gm_double_helical *gears, int k, halves *both, double shift,
+static int evaluate_standing(const gm_double_helical *gears, int k, const gm_position *position,
+                             double shift, int wanted, gm_mesh_result *result) {
+    gm_position at = *position;
+    at.offset += k == 0 ? shift : -shift;
+    return gm_mesh_evaluate_at(gears->half[k], &at, wanted, gears->workspace[k], result);
+}
+
+/* The motion of a half is the difference of its poses. */
+static int evaluate_half(const gm_double_helical *gears, int k, const halves *both, double shift,
                          int wanted, gm_mesh_result *result) {
-    gm_motion *motion = &both->motion[k];
-    motion->position.offset = both->position.offset + (k == 0 ? shift : -shift);
-    return gm_mesh_evaluate_posed(gears->half[k], motion, wanted, gears->workspace[k], result);
-}
-
-/* At fixed phi_p a change of x is one of -phi_w. */
-static double by_offset(const gm_pair *pair, const gm_gradient *by) {
-    return -by->wheel_angle / pair->wheel.base_radius;
-}
-
-/* How the force of the first half less that of the second changes with the shift (N/m). */
-static double slope_of(const gm_pair *pair, const gm_mesh_result each[2]) {
-    return by_offset(pair, &each[0].force_by) + by_offset(pair, &each[1].force_by);
+    const gm_mesh *half = gears->half[k];
+    if (both->motion == NULL) {
+        return evaluate_standing(gears, k, both->position, shift, wanted, result);
+    }
+    gm_motion motion = {.position = *both->position};
+    motion.position.offset += k == 0 ? shift : -shift;
+    motion.pose = gmi_pose_of_half(half->pair, gears->gap, &both->whole, k);
+    motion.pose = sum_of_poses(&motion.pose, -1.0, &half->pose);
+    motion.pose_rate = rate_of_half(gears, k, &both->motion->pose_rate);
+    return gm_mesh_evaluate_posed(half, &motion, wanted, gears->workspace[k], result);
 }
 
 /*
  * The shift at which both halves carry the same force: their difference grows with it. Newton's method, within what is
  * known to enclose it. Where neither touches, any shift will do.
  */
-static int balance(const gm_double_helical *gears, halves *both, int wanted, double *shift,
+static int balance(const gm_double_helical *gears, const halves *both, int wanted, double *shift,
                    gm_mesh_result each[2]) {
     const gm_pair *pair = gears->half[0]->pair;
     const double pitch = pair->transverse_base_pitch;
-    const double limit = 0.5 * pitch * (1.0 - 1e-9) - fabs(both->position.offset);
+    const double limit = 0.5 * pitch * (1.0 - 1e-9) - fabs(both->position->offset);
     double lower = -limit, upper = limit, reach = FIRST_STEP * pitch, step = pitch;
     if (!(fabs(*shift) < limit)) {
         *shift = 0.0;
@@ -230,7 +201,7 @@ static int balance(const gm_double_helical *gears, halves *both, int wanted, dou
         *(difference > 0.0 ? &upper : &lower) = *shift;
 
         /* Damping that would pull leaves no slope. */
-        const double slope = slope_of(pair, each);
+        const double slope = gmi_slope_of_halves(pair, each);
         if (slope > 0.0) {
             step = -difference / slope;
         } else {
@@ -245,144 +216,22 @@ static int balance(const gm_double_helical *gears, halves *both, int wanted, dou
     return GM_NO_EQUILIBRIUM;
 }
 
-/* ---------------------------------------------------------------------------------------------
- * What both halves come to
- * ------------------------------------------------------------------------------------------- */
-
-static double of_gradient(const gm_gradient *gradient, int k) {
-    const double parts[4] = {gradient->pinion_angle, gradient->wheel_angle, gradient->pinion_speed,
-                             gradient->wheel_speed};
-    return parts[k];
-}
-
-/*
- * A quantity that is the sum of both halves, by angles and speeds: the shift follows, so that the forces stay equal,
- * F1_v dv + F1_x ds = F2_v dv - F2_x ds.
- */
-static gm_gradient sum_of_gradients(const gm_pair *pair, const gm_mesh_result each[2],
-                                    const gm_gradient *first, const gm_gradient *second) {
-    const double slope = slope_of(pair, each);
-    const double by_shift = by_offset(pair, first) - by_offset(pair, second);
-    double by[4];
-    for (int k = 0; k < 4; ++k) {
-        const double difference =
-            of_gradient(&each[1].force_by, k) - of_gradient(&each[0].force_by, k);
-        const double follows = slope > 0.0 ? by_shift * difference / slope : 0.0;
-        by[k] = of_gradient(first, k) + of_gradient(second, k) + follows;
-    }
-
-    const gm_gradient sum = {by[0], by[1], by[2], by[3]};
-    return sum;
-}
-
-/* Overlap and touching part as those of one mesh with the stiffness of both halves: their means. */
-static gm_penetration mean_of_contacts(const gm_pair *pair, const gm_mesh_result each[2]) {
-    const gm_penetration *a = &each[0].contact, *b = &each[1].contact;
-    const gm_gradient first = {a->d_pinion_angle, a->d_wheel_angle, 0.0, 0.0};
-    const gm_gradient second = {b->d_pinion_angle, b->d_wheel_angle, 0.0, 0.0};
-    const gm_gradient by = sum_of_gradients(pair, each, &first, &second);
-
-    /* Pairs are counted in both. */
-    const gm_penetration mean = {
-        .penetration = 0.5 * (a->penetration + b->penetration),
-        .rate = 0.5 * (a->rate + b->rate),
-        .drive = 0.5 * (a->drive + b->drive),
-        .coast = 0.5 * (a->coast + b->coast),
-        .drive_rate = 0.5 * (a->drive_rate + b->drive_rate),
-        .coast_rate = 0.5 * (a->coast_rate + b->coast_rate),
-        .drive_contact = 0.5 * (a->drive_contact + b->drive_contact),
-        .coast_contact = 0.5 * (a->coast_contact + b->coast_contact),
-        .d_pinion_angle = 0.5 * by.pinion_angle,
-        .d_wheel_angle = 0.5 * by.wheel_angle,
-        .drive_pairs = a->drive_pairs + b->drive_pairs,
-        .coast_pairs = a->coast_pairs + b->coast_pairs,
-    };
-    return mean;
-}
-
-/* Adds force and moment of a half about its axis at z = 0 there, which is at `place` in the frame of the whole; in a
- * mirror across z a force changes its z, a moment its x and y. */
-static void add_load(const double force[3], const double moment[3], const double place[3],
-                     double mirror, double to_force[3], double to_moment[3]) {
-    const double f[3] = {force[0], force[1], mirror * force[2]};
-    const double m[3] = {mirror * moment[0], mirror * moment[1], moment[2]};
-
-    to_moment[0] += m[0] + place[1] * f[2] - place[2] * f[1];
-    to_moment[1] += m[1] + place[2] * f[0] - place[0] * f[2];
-    to_moment[2] += m[2] + place[0] * f[1] - place[1] * f[0];
-    for (int k = 0; k < 3; ++k) {
-        to_force[k] += f[k];
-    }
-}
-
-static void add_wrenches(const gm_double_helical *gears, const gm_pose place[2],
-                         const gm_mesh_result each[2], gm_wrench *sum) {
-    const gm_pose *first = &place[0], *second = &place[1];
-    const double width = 2.0 * gears->half[0]->pair->pinion.face_width + gears->gap;
-    const gm_wrench none = {{0.0}, {0.0}, {0.0}, {0.0}};
-    *sum = none;
-    for (int k = 0; k < 2; ++k) {
-        const double sign = k == 0 ? 1.0 : -1.0;
-        const double z = k == 0 ? 0.0 : width;
-
-        /* The axes of tilted halves stand apart, the whole's is in the middle. */
-        const double at_pinion[3] = {0.0, 0.0, z};
-        const double at_wheel[3] = {
-            0.5 * sign * (first->center_distance_change - second->center_distance_change),
-            0.5 * sign * (first->offset - second->offset), z};
-        const gm_wrench *half = &each[k].wrench;
-        add_load(half->pinion_force, half->pinion_moment, at_pinion, sign, sum->pinion_force,
-                 sum->pinion_moment);
-        add_load(half->wheel_force, half->wheel_moment, at_wheel, sign, sum->wheel_force,
-                 sum->wheel_moment);
-    }
-}
-
-static void add_halves(const gm_double_helical *gears, const gm_pose place[2],
-                       const gm_mesh_result each[2], int wanted, gm_mesh_result *sum) {
-    const gm_pair *pair = gears->half[0]->pair;
-    gmi_mesh_result_set_nan(sum);
-    sum->force = each[0].force + each[1].force;
-    sum->drive_force = each[0].drive_force + each[1].drive_force;
-    sum->coast_force = each[0].coast_force + each[1].coast_force;
-    sum->pinion_torque = each[0].pinion_torque + each[1].pinion_torque;
-    sum->wheel_torque = each[0].wheel_torque + each[1].wheel_torque;
-    sum->loss = each[0].loss + each[1].loss;
-    sum->energy = each[0].energy + each[1].energy;
-    sum->contact = mean_of_contacts(pair, each);
-
-    if (wanted & GM_WANT_DERIVATIVES) {
-        sum->force_by = sum_of_gradients(pair, each, &each[0].force_by, &each[1].force_by);
-        sum->pinion_torque_by =
-            sum_of_gradients(pair, each, &each[0].pinion_torque_by, &each[1].pinion_torque_by);
-        sum->wheel_torque_by =
-            sum_of_gradients(pair, each, &each[0].wheel_torque_by, &each[1].wheel_torque_by);
-    } else {
-        sum->contact.d_pinion_angle = sum->contact.d_wheel_angle = gmi_nan();
-    }
-    if (wanted & GM_WANT_WRENCH) {
-        add_wrenches(gears, place, each, &sum->wrench);
-    }
-}
-
 static void set_nan(gm_mesh_result each[2], gm_mesh_result *result) {
     gmi_mesh_result_set_nan(&each[0]);
     gmi_mesh_result_set_nan(&each[1]);
     gmi_mesh_result_set_nan(result);
 }
 
-int gm_double_helical_evaluate_posed(const gm_double_helical *gears, const gm_motion *motion,
-                                     int wanted, double *apex, gm_mesh_result each[2],
-                                     gm_mesh_result *result) {
+static int evaluate(const gm_double_helical *gears, const gm_position *position,
+                    const gm_motion *motion, int wanted, double *apex, gm_mesh_result each[2],
+                    gm_mesh_result *result) {
     if (each == NULL || result == NULL) {
         return GM_ERR_NULL;
     }
     halves both;
-    int status = apex == NULL || motion == NULL ? GM_ERR_NULL : check(gears);
+    int status = apex == NULL || position == NULL ? GM_ERR_NULL : check(gears);
     if (status == GM_OK) {
-        status = place_halves(gears, motion, &both);
-    }
-    if (status == GM_OK) {
+        place(gears, position, motion, &both);
         const double helix = tan_base_helix(gears->half[0]->pair);
         double shift = -*apex * helix;
         status = balance(gears, &both, wanted, &shift, each);
@@ -392,7 +241,7 @@ int gm_double_helical_evaluate_posed(const gm_double_helical *gears, const gm_mo
     if (status != GM_OK) {
         set_nan(each, result);
     } else {
-        add_halves(gears, both.place, each, wanted, result);
+        gmi_double_helical_add(gears, &both.whole, each, wanted, result);
     }
     return status;
 }
@@ -400,13 +249,14 @@ int gm_double_helical_evaluate_posed(const gm_double_helical *gears, const gm_mo
 int gm_double_helical_evaluate_at(const gm_double_helical *gears, const gm_position *position,
                                   int wanted, double *apex, gm_mesh_result each[2],
                                   gm_mesh_result *result) {
-    const gm_pose none = {0.0, 0.0, 0.0, 0.0, 0.0};
-    gm_motion motion = {.pose = none, .pose_rate = none};
-    if (position != NULL) {
-        motion.position = *position;
-    }
-    return gm_double_helical_evaluate_posed(gears, position != NULL ? &motion : NULL, wanted, apex,
-                                            each, result);
+    return evaluate(gears, position, NULL, wanted, apex, each, result);
+}
+
+int gm_double_helical_evaluate_posed(const gm_double_helical *gears, const gm_motion *motion,
+                                     int wanted, double *apex, gm_mesh_result each[2],
+                                     gm_mesh_result *result) {
+    return evaluate(gears, motion != NULL ? &motion->position : NULL, motion, wanted, apex, each,
+                    result);
 }
 
 /* ---------------------------------------------------------------------------------------------
@@ -430,8 +280,7 @@ static int find(const gm_double_helical *gears, double pinion_angle, double pini
                 gm_mesh_result *result) {
     double half_torque = 0.5 * wheel_torque;
     for (int k = 0; k < CORRECTIONS; ++k) {
-        gm_motion motion = {.pose = {0.0}};
-        halves both;
+        gm_position position;
         int status = find_halves(gears, pinion_angle, half_torque, offset);
         if (status != GM_OK) {
             return status;
@@ -439,20 +288,18 @@ static int find(const gm_double_helical *gears, double pinion_angle, double pini
 
         /* What both come to there, while they roll. */
         const double shift = 0.5 * (offset[0] - offset[1]);
-        status =
-            gm_position_from_pinion_angle(gears->half[0]->pair, pinion_angle,
-                                          0.5 * (offset[0] + offset[1]), 0.0, &motion.position);
-        motion.position.pinion_speed = pinion_speed;
-        if (status == GM_OK) {
-            status = place_halves(gears, &motion, &both);
-        }
+        status = gm_position_from_pinion_angle(gears->half[0]->pair, pinion_angle,
+                                               0.5 * (offset[0] + offset[1]), 0.0, &position);
+        position.pinion_speed = pinion_speed;
         for (int half = 0; half < 2 && status == GM_OK; ++half) {
-            status = evaluate_half(gears, half, &both, shift, GM_WANT_DERIVATIVES, &each[half]);
+            status =
+                evaluate_standing(gears, half, &position, shift, GM_WANT_DERIVATIVES, &each[half]);
         }
         if (status != GM_OK) {
             return status;
         }
-        add_halves(gears, both.place, each, GM_WANT_DERIVATIVES, result);
+        gmi_double_helical_add(gears, NULL, each, GM_WANT_DERIVATIVES,
+                               result); /* without the wrench */
         const double missing = wheel_torque / result->wheel_torque;
         if (!gears->half[0]->friction.is_on || !(fabs(missing - 1.0) > 1e-13) || !(missing > 0.0)) {
             return GM_OK;
