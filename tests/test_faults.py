@@ -205,7 +205,7 @@ class SystemCalls(Case):
                             self.assertIn(said, run.errors, what)
                         if call in ("write", "pwrite", "rename", "fallocate"):
                             # The report of gearflanks comes when the files are there.
-                            self.assertTrue(not is_new or "stdout" in run.errors, what)
+                            self.assertTrue(not is_new or "standard output" in run.errors, what)
 
     def test_the_last_close_tells_of_a_write_that_failed(self):
         for name in ("csv", "hdf5", "flanks"):

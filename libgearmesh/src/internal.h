@@ -4,8 +4,8 @@
 /*
  * What all sources of the core share and users never see: limits, what compilers need to be told, small arithmetic. Each
  * other header declares what the source of its name gives to others, and includes those that it builds upon, one way:
- * gear, meshing, position -> contact, flank -> line -> ramp, tilt -> penetration, side_tangent -> law, friction, wrench,
- * corner -> mesh -> equilibrium, cache, elastic_mesh.
+ * gear, meshing, position -> contact, flank -> grid -> line -> ramp, tilt -> penetration, side_tangent -> law, friction,
+ * wrench, corner -> mesh -> equilibrium, cache, elastic_mesh.
  */
 #ifndef GEARMESH_INTERNAL_H
 #define GEARMESH_INTERNAL_H

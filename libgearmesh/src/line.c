@@ -28,11 +28,15 @@
 #include <math.h>
 #include <string.h>
 
-#define NO_CROSSING 1e300 /* farther ahead than any place on a line */
-
-/* Spur gears: the line climbs by nothing that could be seen, and yet u follows from the crossing ahead. */
-#define LEAST_RATE     1e-30
+#define NO_CROSSING    1e300 /* farther ahead than any place on a line */
 #define LEAST_DISTANCE 1e-20 /* to the profile line ahead (cells) */
+
+/* On processors with vectors of four (wide.h) code may be large: the walk has copies of itself for cells of each kind. */
+#ifdef GMI_IN_WIDE
+#define HAS_COPIES 1
+#else
+#define HAS_COPIES 0
+#endif
 
 /* In place of a table that is not there: zeros wherever one looks. */
 static const double ideal_nodes[GMI_NODE_DOUBLES] = {0.0};
@@ -52,59 +56,6 @@ typedef struct trace {
 typedef struct quadratic {
     double value, half_slope, curvature;
 } quadratic;
-
-/* face_ratio: d v1 / d s. */
-static void set_rates(gmi_grid *grid, double face_ratio) {
-    grid->face_ratio = face_ratio;
-    grid->rate = gmi_larger(grid->climb * face_ratio / grid->face_rate, LEAST_RATE);
-    grid->profile_spacing = 1.0 / grid->rate;
-    grid->face_kick = 0.5 * face_ratio;
-    grid->profile_kick = 0.5 * grid->rate;
-    grid->bend = grid->rate * face_ratio;
-}
-
-void gmi_grid_init(gmi_grid *grid, const gmi_tables *tables, double climb, double length,
-                   double face_origin, double face_scale) {
-    if (tables == NULL || tables->profile_nodes == 0) {
-        *grid = ideal_grid;
-        return;
-    }
-
-    /* Cells and strides, counted the way the line climbs. */
-    const int upwards = climb > 0.0;
-    const double profile_cells = (double)(tables->profile_nodes - 1);
-    grid->last_face = tables->face_nodes - 2;
-    grid->last_profile = tables->profile_nodes - 2;
-    grid->row = (ptrdiff_t)tables->profile_nodes * GMI_NODE_DOUBLES;
-    grid->step = upwards ? GMI_NODE_DOUBLES : -GMI_NODE_DOUBLES;
-    grid->corner = upwards ? 0 : grid->row - GMI_NODE_DOUBLES;
-    grid->direction = upwards ? 1.0 : -1.0;
-    grid->base = upwards ? 0.0 : profile_cells;
-    grid->profile_cells = profile_cells;
-    grid->face_origin = face_origin;
-    grid->face_scale = face_scale;
-
-    /* Grid lines per t1, and per length along the line of action. */
-    grid->face_rate = (double)(tables->face_nodes - 1) * face_scale;
-    grid->face_base = (double)(tables->face_nodes - 1) * face_origin;
-    grid->per_rho = profile_cells / length;
-    grid->climb = fabs(climb) * grid->per_rho;
-    set_rates(grid, 1.0);
-}
-
-void gmi_grid_move(gmi_grid *grid, double face_origin) {
-    if (grid->face_rate > 0.0) {
-        grid->face_base = (double)(grid->last_face + 1) * face_origin;
-        grid->face_origin = face_origin;
-    }
-}
-
-void gmi_grid_hold(gmi_grid *grid) {
-    if (grid->face_rate > 0.0) {
-        grid->climb = 0.0;
-        set_rates(grid, grid->face_ratio);
-    }
-}
 
 static void begin_ideal(trace *path) {
     const trace ideal = {ideal_nodes, NO_CROSSING, NO_CROSSING, 0, 0.0, 0.0};
@@ -571,54 +522,71 @@ SPECIALIZED void advance(walk_state *at, double end, int wanted, gmi_stretches *
     }
 }
 
+/* Across the profile lines of both tables in their order, and on to a face line. */
+SPECIALIZED void walk_to(walk_state *at, const gmi_grid *first, const gmi_grid *second,
+                         double face_line, int wanted, int same_faces, gmi_stretches *found,
+                         gmi_line_sum *split) {
+    for (;;) {
+        if (at->first.next_profile < at->second.next_profile) {
+            if (!(at->first.next_profile < face_line)) {
+                break;
+            }
+            advance(at, at->first.next_profile, wanted, found, split);
+            const trace before = at->first;
+            cross_profile(&at->first, first, at->s, wanted, &at->f);
+            if (wanted & GMI_DEPTHS) {
+                add_kink(at, &at->first, &before, split->depths->shift_first, first->rate,
+                         split->depths);
+            }
+        } else {
+            if (!(at->second.next_profile < face_line)) {
+                break;
+            }
+            advance(at, at->second.next_profile, wanted, found, split);
+            const double p =
+                same_faces ? at->s : 1.0 - (at->second.next_face - at->s) * second->face_ratio;
+            const trace before = at->second;
+            cross_profile(&at->second, second, p, wanted, &at->f);
+            if (wanted & GMI_DEPTHS) {
+                add_kink(at, &at->second, &before, split->depths->shift_second, second->rate,
+                         split->depths);
+            }
+        }
+    }
+    advance(at, face_line, wanted, found, split);
+}
+
+/* Whether a face line of the table that does not lead comes before s = end. */
+SPECIALIZED int crosses_second_face(const walk_state *at, double end, int same_faces) {
+    return !same_faces && at->second.faces > 0 && at->second.next_face < end;
+}
+
+SPECIALIZED void cross_second_face(walk_state *at, const gmi_grid *second, int wanted) {
+    cross_face(&at->second, second, at->s, wanted, &at->f);
+    at->second.faces -= 1;
+    at->second.next_face += 1.0 / second->face_ratio;
+}
+
 /*
- * Walks on through the tables of two flanks until s = end, behind any face line. same_faces: the first table's
- * face lines serve both. `wanted` and `same_faces` are constants at each call.
+ * Walks on through the tables of two flanks until s = end, behind any face line of the one that leads. same_faces: its face
+ * lines serve both. `wanted` and `same_faces` are constants at each call.
  */
 SPECIALIZED void walk_cell(walk_state *at, const gmi_grid *first, const gmi_grid *second,
                            double end, int wanted, int same_faces, gmi_stretches *found,
                            gmi_line_sum *split) {
+    /* A copy for the way to the other table's face lines. */
+    while (HAS_COPIES && crosses_second_face(at, end, same_faces)) {
+        walk_to(at, first, second, at->second.next_face, wanted, same_faces, found, split);
+        cross_second_face(at, second, wanted);
+    }
     for (;;) {
-        const double face_line =
-            same_faces || at->second.faces <= 0 ? end : gmi_smaller(end, at->second.next_face);
-
-        /* Profile lines of both tables in their order, up to the face line. */
-        for (;;) {
-            if (at->first.next_profile < at->second.next_profile) {
-                if (!(at->first.next_profile < face_line)) {
-                    break;
-                }
-                advance(at, at->first.next_profile, wanted, found, split);
-                const trace before = at->first;
-                cross_profile(&at->first, first, at->s, wanted, &at->f);
-                if (wanted & GMI_DEPTHS) {
-                    add_kink(at, &at->first, &before, split->depths->shift_first, first->rate,
-                             split->depths);
-                }
-            } else {
-                if (!(at->second.next_profile < face_line)) {
-                    break;
-                }
-                advance(at, at->second.next_profile, wanted, found, split);
-                const double p =
-                    same_faces ? at->s : 1.0 - (at->second.next_face - at->s) * second->face_ratio;
-                const trace before = at->second;
-                cross_profile(&at->second, second, p, wanted, &at->f);
-                if (wanted & GMI_DEPTHS) {
-                    add_kink(at, &at->second, &before, split->depths->shift_second, second->rate,
-                             split->depths);
-                }
-            }
-        }
-
-        /* On to the face line of the second table, or to the end. */
-        advance(at, face_line, wanted, found, split);
-        if (same_faces || !(face_line < end)) {
+        const int crosses = !HAS_COPIES && crosses_second_face(at, end, same_faces);
+        walk_to(at, first, second, crosses ? at->second.next_face : end, wanted, same_faces, found,
+                split);
+        if (!crosses) {
             return;
         }
-        cross_face(&at->second, second, face_line, wanted, &at->f);
-        at->second.faces -= 1;
-        at->second.next_face += 1.0 / second->face_ratio;
+        cross_second_face(at, second, wanted);
     }
 }
 
@@ -651,8 +619,14 @@ SPECIALIZED void enter_next_cell(walk_state *at, const gmi_grid *first, const gm
 SPECIALIZED void walk(walk_state at, const gmi_grid *first, const gmi_grid *second, double end,
                       int wanted, int same_faces, gmi_line_sum *result) {
     const double end_in_last = end - (double)at.first.faces;
+
+    /* A copy for all cells but the last one. */
+    while (HAS_COPIES && at.first.faces > 0) {
+        walk_cell(&at, first, second, 1.0, wanted, same_faces, NULL, result);
+        enter_next_cell(&at, first, second, wanted, same_faces);
+    }
     for (;;) {
-        const int is_last = at.first.faces <= 0;
+        const int is_last = HAS_COPIES || at.first.faces <= 0;
         walk_cell(&at, first, second, is_last ? end_in_last : 1.0, wanted, same_faces, NULL,
                   result);
         if (is_last) {
@@ -962,7 +936,7 @@ SPECIALIZED void walk_tables(const gmi_line *line, const gmi_grid *first, const 
         same_faces = 0;
         if (second->face_rate != first->face_rate) {
             scaled = *second;
-            set_rates(&scaled, second->face_rate / first->face_rate);
+            gmi_grid_set_rates(&scaled, second->face_rate / first->face_rate);
             second = &scaled;
         }
         const double second_v1 = line->from * second->face_rate + second->face_base;
@@ -1046,6 +1020,8 @@ static OWN_STACK void integrate_wheel(const gmi_line *line, const gmi_grid *whee
  * Where the flanks touch
  * ------------------------------------------------------------------------------------------- */
 
+#ifndef GMI_IN_WIDE /* there these would take more stack */
+
 /* No table on either flank: one piece at most. */
 static void find_ideal_stretches(const gmi_line *line, gmi_stretches *found, gmi_line_sum *result) {
     const double length = line->to - line->from;
@@ -1093,21 +1069,6 @@ void gmi_line_integrate_tangent(const gmi_line *line, const gmi_grid *pinion, co
     gmi_stretches_finish(&found);
 }
 
-void gmi_line_integrate_squares(const gmi_line *line, const gmi_grid *pinion, const gmi_grid *wheel,
-                                gmi_line_sum *result) {
-    const int wheel_leads = line->pinion == NULL && line->wheel != NULL;
-    result->sum = result->contact = 0.0;
-    if (line->pinion == NULL && line->wheel == NULL) {
-        const quadratic f = {line->overlap, line->half_slope, line->curvature};
-        const piece whole = {line->from, line->to - line->from, f, 0.0, 0.0, 0.0, 0.0};
-        add_split_squares(&whole, result);
-    } else {
-        const gmi_line led = wheel_leads ? led_by_wheel(line) : *line;
-        walk_tables(&led, wheel_leads ? wheel : pinion, wheel_leads ? &ideal_grid : wheel,
-                    GMI_SQUARES, WALK_SQUARES, NULL, result);
-    }
-}
-
 void gmi_line_integrate_depths(const gmi_line *line, const gmi_grid *pinion, const gmi_grid *wheel,
                                gmi_depths *depths, gmi_line_sum *result) {
     const double by_pinion = pinion->direction * pinion->per_rho;
@@ -1140,8 +1101,27 @@ void gmi_line_integrate_depths(const gmi_line *line, const gmi_grid *pinion, con
     }
 }
 
+#endif
+
+void gmi_line_integrate_squares(const gmi_line *line, const gmi_grid *pinion, const gmi_grid *wheel,
+                                gmi_line_sum *result) {
+    GMI_CALL_WIDE(pinion, gmi_wide_line_integrate_squares(line, pinion, wheel, result))
+    const int wheel_leads = line->pinion == NULL && line->wheel != NULL;
+    result->sum = result->contact = 0.0;
+    if (line->pinion == NULL && line->wheel == NULL) {
+        const quadratic f = {line->overlap, line->half_slope, line->curvature};
+        const piece whole = {line->from, line->to - line->from, f, 0.0, 0.0, 0.0, 0.0};
+        add_split_squares(&whole, result);
+    } else {
+        const gmi_line led = wheel_leads ? led_by_wheel(line) : *line;
+        walk_tables(&led, wheel_leads ? wheel : pinion, wheel_leads ? &ideal_grid : wheel,
+                    GMI_SQUARES, WALK_SQUARES, NULL, result);
+    }
+}
+
 void gmi_line_integrate(const gmi_line *line, const gmi_grid *pinion, const gmi_grid *wheel,
                         int wanted, gmi_line_sum *result) {
+    GMI_CALL_WIDE(pinion, gmi_wide_line_integrate(line, pinion, wheel, wanted, result))
     result->sum = result->contact = result->pinion = result->wheel = 0.0;
     result->sum_t1 = result->contact_t1 = 0.0;
     if (wanted & GMI_CONTACT_DERIVATIVES) {

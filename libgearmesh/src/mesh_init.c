@@ -252,10 +252,13 @@ static double compliance_of(const gm_mesh_params *params) {
            (1.0 - nu_w * nu_w) / params->wheel_youngs_modulus;
 }
 
-/* Which flanks each side has. */
+/* Which flanks each side has, and how lines are followed along them. */
 static void take_flanks(gm_mesh *made, const gm_flanks *pinion, const gm_flanks *wheel) {
+    const int is_wide = gmi_processor_is_wide();
     for (int side = GM_DRIVE; side <= GM_COAST; ++side) {
-        gmi_side_init(&made->side[side], made->pair, &made->engagement, pinion, wheel, side);
+        gmi_side *prepared = &made->side[side];
+        gmi_side_init(prepared, made->pair, &made->engagement, pinion, wheel, side);
+        prepared->pinion_grid.is_wide = prepared->wheel_grid.is_wide = is_wide;
     }
 }
 

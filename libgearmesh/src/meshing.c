@@ -20,19 +20,28 @@
  */
 void gmi_meshing_find_angles(const gm_pair *pair, double center_distance, gmi_meshing *meshing) {
     const double base_sum = fabs(gmi_base_sum(pair));
-    const double alpha_t = pair->transverse_pressure_angle;
 
     /* The right triangle of centre distance, base radii and line of action [Paper, Eq. 23]. */
     meshing->center_distance = center_distance;
     meshing->line_of_action = sqrt((center_distance - base_sum) * (center_distance + base_sum));
-    const double alpha_w = atan2(meshing->line_of_action, base_sum);
-    meshing->working_pressure_angle = alpha_w;
 
-    /* cos(alpha_t) - cos(alpha_wt) = 2 sin((alpha_wt + alpha_t) / 2) sin((alpha_wt - alpha_t) / 2) */
-    const double cos_difference =
-        cos(alpha_t) * ((center_distance - pair->reference_center_distance) / center_distance);
-    const double difference = 2.0 * asin(cos_difference / (2.0 * sin(0.5 * (alpha_w + alpha_t))));
-    meshing->involute_difference = sin(difference) / (cos(alpha_w) * cos(alpha_t)) - difference;
+    /* Sine and cosine of the pressure angle on the reference circles, and on the working ones. */
+    const double reference = pair->reference_center_distance;
+    const double sin_t = sqrt((reference - base_sum) * (reference + base_sum)) / reference;
+    const double cos_t = base_sum / reference;
+    const double sin_w = meshing->line_of_action / center_distance;
+    const double cos_w = base_sum / center_distance;
+
+    /*
+     * Their difference, without one of numbers that are nearly the same:
+     *     sin(alpha_wt - alpha_t) = (cos^2(alpha_t) - cos^2(alpha_wt)) / sin(alpha_wt + alpha_t).
+     */
+    const double cos_difference = cos_t * ((center_distance - reference) / center_distance);
+    const double sin_difference =
+        cos_difference * (cos_t + cos_w) / (sin_w * cos_t + cos_w * sin_t);
+    const double difference = asin(sin_difference);
+    meshing->working_pressure_angle = pair->transverse_pressure_angle + difference;
+    meshing->involute_difference = sin_difference / (cos_w * cos_t) - difference;
 }
 
 double gmi_start_roll_length(const gm_gear *gear, const gm_gear *mate, double line_of_action) {
@@ -251,11 +260,14 @@ static int move_axes(const gm_pair *pair, double along_x, double along_y, gmi_en
         at->start_follows[k] = !gears[k]->start_is_given && moved.start_roll_length[k] > 0.0;
     }
 
-    /* Both gears have turned back by the direction of the axes: phi_p - psi, and phi_w + psi, or - psi with a ring. */
-    const double psi = atan2(sign * along_y, apart);
-    at->axis_direction = psi;
+    /*
+     * Both gears have turned back by the direction of the axes: phi_p - psi, and phi_w + psi, or - psi with a ring. It is
+     * small, and then half the work.
+     */
     at->axis[0] = apart / distance;
     at->axis[1] = sign * along_y / distance;
+    const double psi = at->axis[0] > 0.5 ? asin(at->axis[1]) : atan2(at->axis[1], at->axis[0]);
+    at->axis_direction = psi;
     at->phase_shift = -pair->pinion.base_radius * psi;
     at->offset_shift = -gmi_base_sum(pair) * psi;
     return GM_OK;

@@ -140,9 +140,10 @@ typedef struct stretch_ends {
  * end is what w gains up to there, times half its square what the integral of that gains. at_from, at_to: slopes by v2 and
  * by v1 there.
  */
-SPECIALIZED void add_table(const gmi_grid *grid, const double *table, double profile,
-                           const stretch_ends *ends, double by_profile[2], double by_face[2],
-                           double at_from[2], double at_to[2], gmi_stretches *found) {
+SPECIALIZED void add_table_between(const gmi_grid *grid, const double *table, double profile,
+                                   const stretch_ends *ends, double by_profile[2],
+                                   double by_face[2], double at_from[2], double at_to[2],
+                                   gmi_stretches *found) {
     const table_point at = point_at(grid, table, profile, ends->from);
     const double length = ends->length * grid->face_rate, per_rate = 1.0 / grid->face_rate;
     straight_sums along, across;
@@ -179,8 +180,8 @@ static inline void sum_powers(const gmi_line_tangent *tangent, const double powe
 }
 
 /* Where f passes zero the touching part moves by d f / |d f / d t1|; moves: d t1 / d f, 0 where there is no root. */
-static void add_root(double t1, double moves, double by_pinion, const double by_wheel[2],
-                     gmi_line_tangent *tangent) {
+static void add_moving_root(double t1, double moves, double by_pinion, const double by_wheel[2],
+                            gmi_line_tangent *tangent) {
     if (!(moves > 0.0)) {
         return;
     }
@@ -201,16 +202,16 @@ SPECIALIZED void add_tables(const stretch_ends *ends, double to_moves, gmi_stret
     const gmi_line *line = found->line;
     double at_from[2][2] = {{0.0, 0.0}, {0.0, 0.0}}, at_to[2][2] = {{0.0, 0.0}, {0.0, 0.0}};
     if (line->pinion != NULL) {
-        add_table(found->pinion, line->pinion, line->pinion_profile, ends, found->slopes[0], NULL,
-                  at_from[0], at_to[0], found);
+        add_table_between(found->pinion, line->pinion, line->pinion_profile, ends, found->slopes[0],
+                          NULL, at_from[0], at_to[0], found);
     }
     if (line->wheel != NULL) {
-        add_table(found->wheel, line->wheel, line->wheel_profile, ends, found->slopes[1],
-                  found->slopes[2], at_from[1], at_to[1], found);
+        add_table_between(found->wheel, line->wheel, line->wheel_profile, ends, found->slopes[1],
+                          found->slopes[2], at_from[1], at_to[1], found);
     }
-    add_root(ends->from, found->per_place * found->since_moves, at_from[0][0], at_from[1],
-             found->tangent);
-    add_root(ends->to, found->per_place * to_moves, at_to[0][0], at_to[1], found->tangent);
+    add_moving_root(ends->from, found->per_place * found->since_moves, at_from[0][0], at_from[1],
+                    found->tangent);
+    add_moving_root(ends->to, found->per_place * to_moves, at_to[0][0], at_to[1], found->tangent);
 }
 
 /* ---------------------------------------------------------------------------------------------

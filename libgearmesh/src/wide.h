@@ -3,10 +3,11 @@
 
 /*
  * Vectors of four doubles where the processor has them. A library for any x86-64 processor has vectors of two (SSE2), and
- * most processors today have those of four (AVX2). So elastic_wide.c compiles the sources of one evaluation of elastic
- * teeth once more, for AVX2 and under other names. gmi_elastic_init() asks the processor once and keeps the answer in the
- * law, and each of the few functions by which an evaluation is entered begins with a line that hands over to the wide copy.
- * Both copies do the same operations in the same order, and none fuses a product with a sum: the bits are the same.
+ * most processors today have those of four and instructions of three operands (AVX2). So elastic_wide.c compiles the sources
+ * of one evaluation of elastic teeth once more, and line_wide.c the walks along lines of contact, for AVX2 and under other
+ * names. gmi_elastic_init() and gm_mesh_init() ask the processor once and keep the answer, and each of the few functions by
+ * which such an evaluation is entered begins with a line that hands over to the wide copy. Both copies do the same
+ * operations in the same order, and none fuses a product with a sum: the bits are the same.
  *
  * Nothing of this is there for other compilers and processors, on Windows (where gcc does not align the stack for it),
  * where all is compiled for AVX2 anyway or for size, and with GEARMESH_WITHOUT_AVX2 (CMake: -DGEARMESH_AVX2=OFF).
@@ -23,18 +24,18 @@
 
 /* What an evaluation is entered by begins with one of these: for a function with a result, and for one without. */
 #if GMI_HAS_WIDE && !defined(GMI_IN_WIDE)
-#define GMI_RETURN_WIDE(law, call)                                                                 \
-    if ((law)->is_wide) {                                                                          \
+#define GMI_RETURN_WIDE(known_by, call)                                                            \
+    if ((known_by)->is_wide) {                                                                     \
         return call;                                                                               \
     }
-#define GMI_CALL_WIDE(law, call)                                                                   \
-    if ((law)->is_wide) {                                                                          \
+#define GMI_CALL_WIDE(known_by, call)                                                              \
+    if ((known_by)->is_wide) {                                                                     \
         call;                                                                                      \
         return;                                                                                    \
     }
 #else
-#define GMI_RETURN_WIDE(law, call)
-#define GMI_CALL_WIDE(law, call)
+#define GMI_RETURN_WIDE(known_by, call)
+#define GMI_CALL_WIDE(known_by, call)
 #endif
 
 #if GMI_HAS_WIDE && defined(GMI_IN_WIDE)

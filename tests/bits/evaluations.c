@@ -129,6 +129,9 @@ static gm_mesh *make_mesh(const gm_pair *pair, const gm_flanks *pinion, const gm
     params.law = isnan(stiffness) ? GM_LAW_ELASTIC : params.law;
     const size_t size = gm_mesh_size(&params, pair);
     check(gm_mesh_init(&mesh, &params, pair, pinion, wheel, block(size), size));
+    for (int side = GM_DRIVE; is_plain && side <= GM_COAST; ++side) {
+        mesh->side[side].pinion_grid.is_wide = mesh->side[side].wheel_grid.is_wide = 0;
+    }
     return mesh;
 }
 
