@@ -32,6 +32,9 @@ void gmi_meshing_find_angles(const gm_pair *pair, double center_distance, gmi_me
     const double sin_w = meshing->line_of_action / center_distance;
     const double cos_w = base_sum / center_distance;
 
+    /* From lengths, which are the same with every C library, where alpha_t may differ in the last bit. */
+    meshing->working_pressure_angle = asin(sin_w);
+
     /*
      * Their difference, without one of numbers that are nearly the same:
      *     sin(alpha_wt - alpha_t) = (cos^2(alpha_t) - cos^2(alpha_wt)) / sin(alpha_wt + alpha_t).
@@ -40,7 +43,6 @@ void gmi_meshing_find_angles(const gm_pair *pair, double center_distance, gmi_me
     const double sin_difference =
         cos_difference * (cos_t + cos_w) / (sin_w * cos_t + cos_w * sin_t);
     const double difference = asin(sin_difference);
-    meshing->working_pressure_angle = pair->transverse_pressure_angle + difference;
     meshing->involute_difference = sin_difference / (cos_w * cos_t) - difference;
 }
 
