@@ -49,10 +49,14 @@ static int is_in_mesh(const gear_mesh *mesh, const gm_pose *pose) {
     gm_mesh_params params;
     gm_mesh_params_default(&params);
     params.stiffness = 1.0;
+
+    /* Each half has a pose of its own. */
     gm_pose poses[2] = {*pose, *pose};
     if (mesh->halves == 2) {
         gm_double_helical_pose(&mesh->pair, mesh->gap, pose, poses);
     }
+
+    /* Where one cannot be prepared it is out of mesh. */
     for (int half = 0; half < mesh->halves; ++half) {
         params.pose = poses[half];
         if (gm_mesh_init(&prepared, &params, &mesh->pair, NULL, NULL, memory.bytes,

@@ -532,6 +532,8 @@ SPECIALIZED void walk_to(walk_state *at, const gmi_grid *first, const gmi_grid *
                 break;
             }
             advance(at, at->first.next_profile, wanted, found, split);
+
+            /* Of the table that leads: s is the place between its face lines. */
             const trace before = at->first;
             cross_profile(&at->first, first, at->s, wanted, &at->f);
             if (wanted & GMI_DEPTHS) {
@@ -543,6 +545,8 @@ SPECIALIZED void walk_to(walk_state *at, const gmi_grid *first, const gmi_grid *
                 break;
             }
             advance(at, at->second.next_profile, wanted, found, split);
+
+            /* Of the other one, whose face lines may be elsewhere. */
             const double p =
                 same_faces ? at->s : 1.0 - (at->second.next_face - at->s) * second->face_ratio;
             const trace before = at->second;
