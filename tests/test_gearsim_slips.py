@@ -303,7 +303,17 @@ class Slips(unittest.TestCase):
 
     def test_quiet_leaves_them_out_and_defaults_are_not_told(self):
         self.assertEqual(self.check("gears.backlash_um=0.1", "--quiet").stderr, "")
-        self.assertNotIn("damping", self.check("mesh.damping_Ns_per_m=").stderr)
+        self.assertNotIn("warning", self.check("mesh.damping_Ns_per_m=").stderr)
+
+    def test_a_run_without_any_damping_is_noted(self):
+        note = "mesh.damping_ratio: note: is not given, nor is mesh.damping_Ns_per_m"
+        self.assertIn(note, self.check("mesh.damping_Ns_per_m=").stderr)
+
+        # Whoever writes a 0 means it, static curves have no vibrations, and --quiet is quiet.
+        self.assertNotIn(note, self.check("mesh.damping_Ns_per_m=0").stderr)
+        self.assertNotIn(note, self.check("mesh.damping_Ns_per_m= mesh.damping_ratio=0.05").stderr)
+        self.assertNotIn(note, self.check("mesh.damping_Ns_per_m= analysis.type=static").stderr)
+        self.assertEqual(self.check("mesh.damping_Ns_per_m=", "--quiet").stderr, "")
 
     def test_gearflanks_tells_them_of_its_gears(self):
         path = os.path.join(self.folder.name, "metres.ini")

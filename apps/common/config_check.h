@@ -13,6 +13,9 @@ int config_check_missing(const config *conf);
 /* Values that are right each by itself; only when nothing is missing. */
 int config_check_together(const config *conf);
 
+/* Notes of keys that are not given and whose default is seldom what is wanted. */
+void config_remark_on_defaults(const config *conf);
+
 /* Warns of keys that change nothing. */
 void config_warn_of_unused(const config *conf);
 

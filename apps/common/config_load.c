@@ -245,6 +245,9 @@ int config_load(config *conf, const config_request *request) {
     if (status == 0) {
         message_begin(request->messages, MOST_MESSAGES);
         slips_warn(conf);
+        if (conf->purpose == CONFIG_FOR_RUN) {
+            config_remark_on_defaults(conf);
+        }
         if (conf->purpose != CONFIG_FOR_FLANKS) {
             config_warn_of_unused(conf);
         }

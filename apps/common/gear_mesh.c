@@ -184,6 +184,7 @@ static gm_mesh_params params_of(const config *conf, const gear_mesh *mesh) {
         params.reference_torque = share * fabs(conf->mean_load);
     }
 
+    /* Friction of the flanks, off with a coefficient of 0. */
     const int friction_laws[] = {GM_FRICTION_CONSTANT, GM_FRICTION_ISO14179,
                                  GM_FRICTION_BENEDICT_KELLEY};
     params.friction_law = friction_laws[conf->friction_law];

@@ -92,10 +92,12 @@ int main(void) {
 
     gm_pair pair;
     int status = gm_pair_init(&pair, &params);
+
     gm_mesh_params law;
     gm_mesh_params_default(&law);
     law.stiffness = 1.05e8;
     law.damping = 844;
+
     static double memory[256];
     gm_mesh *mesh;
     if (status == GM_OK) {
@@ -112,6 +114,8 @@ int main(void) {
 #else
     SUNContext_Create(SUN_COMM_NULL, &context);
 #endif
+
+    /* An implicit solver with the exact tangent. */
     N_Vector state = N_VNew_Serial(STATES, context);
     SUNMatrix matrix = SUNDenseMatrix(STATES, STATES, context);
     SUNLinearSolver solver = SUNLinSol_Dense(state, matrix, context);

@@ -101,6 +101,7 @@ static int derivatives(sunrealtype t, N_Vector state, N_Vector rates, void *data
         if (status != GM_OK) {
             return status; /* > 0: a smaller step may help */
         }
+
         moment[k] += on[0].moment[2];
         moment[k + 1] += on[1].moment[2];
         bearing[0] += on[1 - k].force[0];

@@ -304,6 +304,8 @@ static int is_possible(const gearbox *box) {
         fprintf(stderr, "planetary: 1 to %d planets, and teeth from 10 on\n", PLANETS_MAX);
         return 0;
     }
+
+    /* The same phase at every planet, or none. */
     if ((box->sun + box->ring) % box->planets != 0) {
         fprintf(stderr, "planetary: %d planets do not fit: (%d + %d) / %d is no whole number\n",
                 box->planets, box->sun, box->ring, box->planets);
@@ -313,6 +315,8 @@ static int is_possible(const gearbox *box) {
         fprintf(stderr, "planetary: no gears with these teeth\n");
         return 0;
     }
+
+    /* Neighbours on the carrier. */
     const double apart = 2.0 * box->arm * sin(pi / box->planets);
     if (box->planets > 1 && apart < 2.0 * gm_mesh_pair(box->at_sun)->wheel.tip_radius) {
         fprintf(stderr, "planetary: %d planets do not fit: their tips meet\n", box->planets);

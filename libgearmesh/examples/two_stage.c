@@ -118,6 +118,7 @@ static int derivatives(sunrealtype t, N_Vector state, N_Vector rates, void *data
         if (status != GM_OK) {
             return status; /* > 0: a smaller step may help */
         }
+
         moment[driver] += on[0].moment[2];
         moment[driven] += on[1].moment[2];
         axial += on[1 - stage].force[2];

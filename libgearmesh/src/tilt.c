@@ -263,11 +263,14 @@ int gmi_tilt_cut_line(const gmi_tilt_cuts *cuts, double rho_origin, gmi_line_par
     part->from = cuts->face.from;
     part->to = cuts->face.to;
     part->from_place = part->to_place = FACE_PINION;
+
+    /* The last to begin and the first to end cut the line. */
     for (int k = 0; k < cuts->count; ++k) {
         const gmi_tilt_cut *cut = &cuts->cut[k];
         const double moved = cut->by_origin * rho_origin;
         const double enter = cut->enter - moved;
         const double leave = cut->leave - moved;
+
         if (enter > part->from) {
             part->from = enter;
             part->from_place = cuts->place[k];
@@ -367,6 +370,8 @@ void gmi_tilt_motion_find(const gm_pair *pair, const gmi_engagement *at, int sid
     const tilted line = tilted_of(pair, at, side, 0.0);
     const double a = line.a, g = line.g, tau = line.tau, r_bw = line.r_bw;
     const straight second = combined(line.rho_w, tau, line.zeta, 0.0);
+
+    /* The place u at the origin of a line, and the polynomial of the overlap in it. */
     motion->tau = tau;
     motion->u = line.u.at_zero;
     motion->u_per_t1 = line.u.per_t1;
@@ -374,11 +379,15 @@ void gmi_tilt_motion_find(const gm_pair *pair, const gmi_engagement *at, int sid
     motion->gain = 1.0 + tau * g;
     motion->linear = -motion->gain * g - 0.5 * a * a * tau;
     motion->square = -0.5 * a * a * motion->per_length;
+
+    /* The tilts, and what the overlap changes by with each at the origin of a line. */
     motion->along = a;
     motion->across = g;
     motion->by_along = -motion->gain * tau * r_bw - 0.5 * g * r_bw;
     motion->by_across = tau * delta - tau * tau * a * r_bw + g * second.at_zero - 0.5 * a * r_bw;
     motion->by_across_per_t1 = g * second.per_t1;
+
+    /* How fast the flanks approach each other, and what a wheel that tips adds with the arm u. */
     motion->speed = rates->delta - tau * r_bw * rates->along;
     motion->speed_by_arm = -rates->across;
 }
@@ -410,11 +419,13 @@ void gmi_tilt_tangent(const gmi_tilt_motion *motion, double rho_origin, gmi_line
     by[GMI_BY_ALONG][0] = motion->by_along - a * tau * u - turned * squares[0];
     by[GMI_BY_ALONG][1] = -a * tau * u1 - turned * squares[1];
     by[GMI_BY_ALONG][2] = -turned * squares[2];
+
     const double by_arm = -tau * g - motion->gain;
     by[GMI_BY_ACROSS][0] = motion->by_across + by_arm * u - g * rho_origin;
     by[GMI_BY_ACROSS][1] = motion->by_across_per_t1 + by_arm * u1;
     by[GMI_BY_ACROSS][2] = 0.0;
 
+    /* The arm of the second tilt is u. */
     tangent->arm[0] = u;
     tangent->arm[1] = u1;
     tangent->speed[0] = motion->speed + motion->speed_by_arm * u;
@@ -435,6 +446,8 @@ double gmi_tilt_bound(const gm_pair *pair, const gmi_engagement *at, int side, d
     const double zeta =
         gmi_larger(fabs(line.zeta.at_zero), fabs(line.zeta.at_zero + line.zeta.per_t1));
     const double u = zeta + tau * rho_w;
+
+    /* The terms of both orders in the tilts. */
     const double first_order = fabs(gain) * g * u - gain * line.tau * line.a * line.r_bw;
     const double second_order =
         0.5 * (g * g * (rho_w + tau * zeta) + a * g * r_bw + a * a * u * (tau + u / length));

@@ -355,6 +355,8 @@ static int differences(const fmu_instance *instance, int column, unsigned refere
                        fmu_jacobian *jacobian) {
     fmu_values aside[2] = {instance->values, instance->values};
     const double step = step_of(&model.variables[reference]);
+
+    /* The outputs a step below and a step above. */
     for (int side = 0; side < 2; ++side) {
         double *place = column < model.states ? &aside[side].state[column]
                                               : &aside[side].input[column - model.states];
@@ -364,6 +366,8 @@ static int differences(const fmu_instance *instance, int column, unsigned refere
             return status;
         }
     }
+
+    /* Only where the model has left a gap. */
     for (int output = 0; output < model.outputs; ++output) {
         double *by = &jacobian->by[model.states + output][column];
         if (isnan(*by)) {

@@ -44,18 +44,23 @@ int main(int argc, char **argv) {
     }
     PetscCall(PetscInitialize(&argc, &argv, NULL, NULL));
 
+    /* The state in memory of our own, and room for the tangent. */
     double values[2] = {start[0], start[1]};
     Vec state;
     Mat matrix;
-    TS ts;
     PetscCall(VecCreateSeqWithArray(PETSC_COMM_SELF, 1, 2, values, &state));
     PetscCall(MatCreateSeqDense(PETSC_COMM_SELF, 2, 2, NULL, &matrix));
+
+    /* Runge-Kutta of order 8 with step control; the tangent serves whoever chooses an implicit method by -ts_type. */
+    TS ts;
     PetscCall(TSCreate(PETSC_COMM_SELF, &ts));
     PetscCall(TSSetRHSFunction(ts, NULL, motion, (void *)mesh));
     PetscCall(TSSetRHSJacobian(ts, matrix, matrix, jacobian, (void *)mesh));
     PetscCall(TSSetType(ts, TSRK));
     PetscCall(TSRKSetType(ts, TSRK8VR));
     PetscCall(TSSetTolerances(ts, 1e-16, NULL, 1e-11, NULL));
+
+    /* From a small first step to the end time exactly. */
     PetscCall(TSSetTimeStep(ts, 1e-7));
     PetscCall(TSSetMaxSteps(ts, 1000000));
     PetscCall(TSSetMaxTime(ts, end_time));

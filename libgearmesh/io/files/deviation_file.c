@@ -193,11 +193,14 @@ static int read_row(const gmi_table *table, int teeth, gmi_row *row) {
 static int read_rows(loader *load, gmi_table *table) {
     row_beginning begins = {.length = 0};
     int more = 0;
+
     while ((more = gmi_table_line(table)) > 0) {
         gmi_row *row = gmi_rows_room(&load->rows);
         if (row == NULL) {
             return gmi_error_memory(load->error);
         }
+
+        /* A plain row is read in one pass; any other one, and what is wrong with it, cell by cell. */
         if (!read_plain_row(table, load->teeth, &begins, row)) {
             more = gmi_table_split(table);
             const int status = more > 0 ? read_row(table, load->teeth, row) : more;
@@ -205,6 +208,7 @@ static int read_rows(loader *load, gmi_table *table) {
                 return status;
             }
         }
+
         gmi_rows_take(&load->rows);
         ++load->row_count[row->slot];
     }
