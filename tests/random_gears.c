@@ -77,6 +77,8 @@ static void any_radii(uint64_t *seed, gm_pair_params *params) {
             const double outwards = g == 1 && model.is_ring ? -1.0 : 1.0;
             *tip[g] = (double)model.reference_radius[g] + outwards * params->normal_module * height;
         }
+
+        /* Where the active flank starts; a ring starts outside of its tip. */
         const double r_b = (double)model.base_radius[g];
         const double rho = (double)model.rho_end[g];
         if (g == 1 && model.is_ring) {
@@ -85,6 +87,7 @@ static void any_radii(uint64_t *seed, gm_pair_params *params) {
             }
             continue;
         }
+
         switch (gm_test_integer(seed, 0, 9)) {
         case 0:
             /* On the base circle. Not to the last bit: whether the radius is above or below the
@@ -116,6 +119,8 @@ void random_params(uint64_t *seed, gm_pair_params *params, model_pair *model) {
         if (chance(seed, 3)) {
             params->normal_module = any_size(seed, -6.0, 1.0);
         }
+
+        /* The drawing, mostly of usual proportions. */
         const double m_n = params->normal_module;
         params->normal_pressure_angle = gm_test_uniform(seed, 12.0, 28.0) * degree;
         params->helix_angle = any_helix(seed);
@@ -126,6 +131,8 @@ void random_params(uint64_t *seed, gm_pair_params *params, model_pair *model) {
         if (chance(seed, 90)) {
             params->center_distance += m_n * gm_test_uniform(seed, -0.4, 1.2);
         }
+
+        /* What follows from it, and what may be given beside it. */
         any_thickness(seed, params);
         any_radii(seed, params);
         model_pair_init(model, params);

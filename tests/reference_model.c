@@ -45,6 +45,8 @@ static void set_thickness(model_pair *pair, const gm_pair_params *params) {
     const long double m_n = params->normal_module;
     const long double alpha_n = params->normal_pressure_angle;
     const long double cos_beta = cosl(params->helix_angle);
+
+    /* The thickness given or that of the rack, then once more with what the wanted backlash takes off. */
     const double given[2] = {params->pinion_normal_thickness, params->wheel_normal_thickness};
     long double change = 0.0L;
     for (int pass = 0; pass < 2; ++pass) {
@@ -58,6 +60,8 @@ static void set_thickness(model_pair *pair, const gm_pair_params *params) {
                 transverse / (2 * pair->reference_radius[g]) + (is_ring(pair, g) ? -turn : turn);
             thick += 2 * pair->base_radius[g] * pair->psi[g];
         }
+
+        /* Backlash: what the thicknesses leave of the base pitch, with what the working angle adds. */
         const long double apart = pair->is_ring ? pair->base_radius[0] - pair->base_radius[1]
                                                 : pair->base_radius[0] + pair->base_radius[1];
         pair->backlash = pair->base_pitch - thick + 2 * apart * involute(pair->alpha_wt);
@@ -124,15 +128,20 @@ void model_pair_init(model_pair *pair, const gm_pair_params *params) {
     pair->beta_b = params->base_helix == GM_BASE_HELIX_PAPER
                        ? atanl(tanl(beta) / cosl(pair->alpha_t))
                        : asinl(sinl(beta) * cosl(alpha_n));
+
+    /* Circles of both gears. */
     for (int g = 0; g < 2; ++g) {
         pair->reference_radius[g] = pair->transverse_module * pair->teeth[g] / 2;
         pair->base_radius[g] = pair->reference_radius[g] * cosl(pair->alpha_t);
     }
+
+    /* Working angle and line of action. */
     const long double base_sum = pair->is_ring ? pair->base_radius[1] - pair->base_radius[0]
                                                : pair->base_radius[0] + pair->base_radius[1];
     pair->center_distance = d;
     pair->alpha_wt = acosl(base_sum / d);
     pair->line_of_action = sqrtl((d - base_sum) * (d + base_sum));
+
     pair->base_pitch = pi * pair->transverse_module * cosl(pair->alpha_t);
     pair->face_width = params->face_width;
     pair->face_advance = pair->face_width * tanl(pair->beta_b);
@@ -348,6 +357,8 @@ static void add_line(const line *l, long double border, int side, model_result *
     const model_pair *pair = l->pair;
     long double low = 0.0L;
     long double high = 1.0L;
+
+    /* The part of the line on which both flanks are there. */
     for (int g = 0; g < 2; ++g) {
         const long double first = minimum(pair->rho_start[g], pair->rho_end[g]) - border;
         const long double last = maximum(pair->rho_start[g], pair->rho_end[g]) + border;
@@ -362,6 +373,7 @@ static void add_line(const line *l, long double border, int side, model_result *
         low = maximum(low, minimum(a, b));
         high = minimum(high, maximum(a, b));
     }
+
     if (high <= low) {
         return;
     }

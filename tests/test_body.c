@@ -294,11 +294,14 @@ static void loads_are_in_balance_and_turn_with_the_frame(void) {
         gm_body bodies[2];
         gm_load loads[2], others[2];
         gm_mesh_result result;
+
         gm_test_context("case %d", i);
         GM_ASSERT_INT(random_mixed_case_make(&c, &seed, i), GM_OK);
         motion_plan plan = random_plan(&c.pair, &seed, 0.02);
         const gm_mesh *mesh = mesh_of(&room, &c, 1e3);
         moving_bodies(&c.pair, &plan, bodies);
+
+        /* What acts on both bodies cancels, forces and moments about any point. */
         const int status = gm_mesh_evaluate_bodies(mesh, &bodies[0], &bodies[1], GM_WANT_FORCE,
                                                    NULL, &result, &loads[0], &loads[1]);
         if (status == GM_OK && (result.drive_force > 0.0 || result.coast_force > 0.0)) {
@@ -330,6 +333,8 @@ static void loads_are_in_balance_and_turn_with_the_frame(void) {
             GM_ASSERT_INT(gm_mesh_evaluate_bodies(mesh, &elsewhere[0], &elsewhere[1], GM_WANT_FORCE,
                                                   NULL, &result, &others[0], &others[1]),
                           GM_OK);
+
+            /* Turned back from the other frame, the loads are those of the first one. */
             double from[9], into[9], back[9];
             rotation_by(plan.attitude, into);
             rotation_by(other.attitude, from);
@@ -376,13 +381,17 @@ static void power_is_force_times_speed_of_approach(void) {
         gm_body bodies[2];
         gm_load loads[2];
         gm_mesh_result r;
+
         gm_test_context("case %d", i);
         GM_ASSERT_INT(random_mixed_case_make(&c, &seed, i), GM_OK);
+
+        /* Bodies that move, but do not tip, with damping every other time. */
         motion_plan plan = random_plan(&c.pair, &seed, 0.0);
         plan.rate.skew = plan.rate.inclination = 0.0;
         const double damping = i % 2 == 0 ? 0.0 : 1e3;
         const gm_mesh *mesh = mesh_of(&room, &c, damping);
         moving_bodies(&c.pair, &plan, bodies);
+
         const int status = gm_mesh_evaluate_bodies(mesh, &bodies[0], &bodies[1], GM_WANT_FORCE,
                                                    NULL, &r, &loads[0], &loads[1]);
 
@@ -454,11 +463,15 @@ static void what_bodies_lose_is_stored_or_lost(void) {
         gm_mesh_result r;
         gm_mesh *mesh;
         gm_mesh_params law;
+
+        /* External pairs and rings; a wider wheel, so that a shift moves no end of lines. */
         gm_test_context("case %d", i);
         GM_ASSERT_INT((i % 5 == 0 ? random_ring_case_make : random_case_make)(&c, &seed, 0), GM_OK);
         c.params.pinion_face_width = c.params.face_width;
         c.params.wheel_face_width = 1.4 * c.params.face_width; /* a shift moves no end of lines */
         GM_ASSERT_INT(gm_pair_init(&c.pair, &c.params), GM_OK);
+
+        /* Corners, damping and friction in all combinations. */
         motion_plan plan = random_plan(&c.pair, &seed, 0.0);
         plan.rate.skew = plan.rate.inclination = 0.0;
         plan.rate.axial_shift *= i % 2 == 0 ? 0.0 : 1.0;
@@ -467,6 +480,7 @@ static void what_bodies_lose_is_stored_or_lost(void) {
         law.corner_contact = i % 2 == 0 ? GM_CORNER_ON : GM_CORNER_OFF;
         law.damping = i % 4 == 1 ? 1e3 : 0.0;
         law.friction_coefficient = i % 3 == 0 ? 0.1 : 0.0;
+
         int status = gm_mesh_init(&mesh, &law, &c.pair, NULL, NULL, room, sizeof room);
         if (status == GM_OK) {
             moving_bodies(&c.pair, &plan, bodies);
@@ -670,16 +684,21 @@ static void elastic_teeth_follow_a_pose_too(void) {
         gm_workspace *workspace;
         gm_mesh_result r;
         gm_motion motion;
+
+        /* The pose stands in the mesh, or comes with the call. */
         gm_mesh_params_default(&law);
         law.law = GM_LAW_ELASTIC;
         memset(&motion, 0, sizeof motion);
         *(of_mesh ? &law.pose : &motion.pose) = pose;
+
         const size_t size = gm_mesh_size(&law, &pair);
         void *memory = malloc(size);
         GM_ASSERT_INT(gm_mesh_init(&mesh, &law, &pair, NULL, NULL, memory, size), GM_OK);
         const size_t room = gm_workspace_size(mesh);
         void *work = malloc(room);
         GM_ASSERT_INT(gm_workspace_init(&workspace, mesh, work, room), GM_OK);
+
+        /* The same force, and none without a workspace. */
         GM_ASSERT_INT(gm_position_from_pinion_angle(&pair, 0.02, 0.5 * pair.backlash + 12e-6, 0.0,
                                                     &motion.position),
                       GM_OK);

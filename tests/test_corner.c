@@ -102,15 +102,19 @@ static void published_gaps_come_out(void) {
                                       {2.064687, 13.091796, 53.608797, 224.210644},
                                       {0.371858, 2.347518, 9.548079, 39.485678}};
     static const double errors[2][4] = {{-0.54, -1.3, -2.6, -5.1}, {-0.97, -2.4, -4.7, -8.8}};
+
+    /* The printed gaps, and how far the parabola with the curvature at the tip is off. */
     for (int set = 0; set < 3; ++set) {
         const gm_pair pair = make_pair(&sets[set]);
         gmi_engagement at;
         gmi_corner corner;
         GM_ASSERT_INT(gmi_engagement_find(&pair, NULL, &at), GM_OK);
         GM_ASSERT(gmi_corner_init(&pair, &at, GM_WHEEL, &corner));
+
         const double tip = at.tip_roll_length[GM_WHEEL], length = at.line_of_action;
         const double kappa =
             tip * length / (at.wheel_base_radius * at.wheel_base_radius * (length - tip));
+
         for (int k = 0; k < 4; ++k) {
             gm_test_context("set %d, %g base pitches", set, rolls[k]);
             const double u = rolls[k] * pair.transverse_base_pitch;
@@ -161,6 +165,7 @@ static void gaps_are_those_of_turned_corners(void) {
         if (!random_corner(&seed, i, &pair, &at)) {
             continue;
         }
+
         for (int role = GM_PINION; role <= GM_WHEEL; ++role) {
             gm_test_context("case %d, role %d", i, role);
             gmi_corner corner;
@@ -168,6 +173,8 @@ static void gaps_are_those_of_turned_corners(void) {
                 ++refused;
                 continue;
             }
+
+            /* A place near the tip, or up to two base pitches away. */
             const double p = pair.transverse_base_pitch;
             const long double u =
                 gm_test_uniform(&seed, 0.0, 1.0) * fmin(corner.reach, (i % 2 == 0 ? 0.1 : 2.0) * p);

@@ -725,11 +725,14 @@ static void torques_follow_the_roll_of_tips(void) {
         plain_mesh where;
         gm_mesh *mesh;
         GM_ASSERT_INT(make_rough(&where, &c, damping, GM_FRICTION_CONSTANT, 0.1, &mesh), GM_OK);
+
+        /* Over a base pitch, at places a little before and behind. */
         for (int i = 0; i < 200; ++i) {
             const double h = 1e-5 * pitch;
             gm_position place = {.offset = 0.5 * pair->backlash + 4e-3 * pair->normal_module,
                                  .offset_rate = pair->normal_module, /* a second */
                                  .pinion_speed = 50.0};
+
             gm_mesh_result at, far[2], near[2];
             place.phase = (0.0025 + 0.005 * i) * pitch;
             int status = gm_mesh_evaluate_at(mesh, &place, GM_WANT_DERIVATIVES, NULL, &at);

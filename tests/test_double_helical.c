@@ -586,6 +586,8 @@ static void a_wheel_that_moves_is_two_meshes_between_two_bodies(void) {
         GM_ASSERT_INT(gm_double_helical_evaluate_posed(&made.gears, &motion, wanted, &moved_apex,
                                                        each, &result),
                       GM_OK);
+
+        /* The same motion of two bodies. */
         const double r_bp = made.pair.pinion.base_radius, r_bw = made.pair.wheel.base_radius;
         made.bodies.pose = whole;
         made.bodies.pose_rate = motion.pose_rate;
@@ -596,6 +598,8 @@ static void a_wheel_that_moves_is_two_meshes_between_two_bodies(void) {
         made.bodies.apex = moved_apex;
         made.bodies.along_wheel = 1;
         const whole_load load = load_of(&made.bodies);
+
+        /* What a float between tilted axes leaves out, and damping by one speed on each side. */
         const double tilt = fabs(whole.skew) + fabs(whole.inclination);
         const double stiffness = gm_mesh_touching_stiffness(made.gears.half[0], &result);
         const double damped = fabs(result.force - without);
@@ -706,6 +710,8 @@ static void friction_is_in_the_equilibrium(void) {
         GM_ASSERT_INT(gm_rolling_equilibrium(gears.half[0], angle, 60.0, 0.5 * torque, (double)NAN,
                                              NULL, &alone, &half),
                       GM_OK);
+
+        /* Half the torque on a half alone is the same state, and nothing moves along the axis. */
         GM_ASSERT_REL(offset, alone, 1e-10);
         GM_ASSERT_REL(result.wheel_torque, torque, 1e-12);
         GM_ASSERT_REL(result.force, 2.0 * half.force, 1e-10);
@@ -778,9 +784,13 @@ static void both_halves_carry_the_same_past_a_tooth_with_an_error(void) {
     for (int elastic = 0; elastic < 2; ++elastic) {
         gm_mesh_params law = half_law();
         law.law = elastic ? GM_LAW_ELASTIC : GM_LAW_CONSTANT;
+
+        /* One thick tooth on the first half of the pinion. */
         gm_flanks *thick = shifted_flanks(PINION_TEETH, 10e-6, 0);
         gm_flanks *const pinion[2] = {thick, NULL};
         const gm_double_helical gears = gears_of(&law, &pair, pinion, NULL);
+
+        /* It passes through the mesh, and the pinion gives way along its axis. */
         double lowest = HUGE_VAL, highest = -HUGE_VAL, apex = 0.0;
         for (int i = -8; i < 8; ++i) {
             const double angle = 0.25 * i * pair.pinion.pitch_angle;
@@ -989,6 +999,8 @@ static void line_loads_lie_on_both_halves(void) {
     gm_line_loads loads;
     GM_ASSERT_INT(gm_double_helical_line_loads(&gears, &position, apex, points, CAPACITY, &loads),
                   GM_OK);
+
+    /* Each half alone, where the float has moved it to. */
     double force[2] = {0.0, 0.0}, largest = 0.0, pressure = 0.0, width = 0.0;
     gm_line_loads alone[2];
     for (int k = 0; k < 2; ++k) {
@@ -998,9 +1010,13 @@ static void line_loads_lie_on_both_halves(void) {
         pressure = fmax(pressure, alone[k].largest_pressure);
         width += alone[k].touching_width;
     }
+
+    /* Together they have all points, and the largest of both. */
     GM_ASSERT_INT(loads.points, alone[0].points + alone[1].points);
     GM_ASSERT_REL(loads.touching_width, width, 1e-14);
     GM_ASSERT_REL(loads.largest_pressure, pressure, 1e-14);
+
+    /* The points of each half lie on its own face, and their loads add up to its force. */
     for (int i = 0; i < loads.points; ++i) {
         const gm_line_load_point *a = &points[i], *b = &points[i + 1];
         const int half = a->z > 0.5 * whole.pinion_face_width;

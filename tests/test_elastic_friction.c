@@ -121,6 +121,8 @@ static void variant_make(variant *v, int k, int n) {
     memset(v, 0, sizeof *v);
     params.backlash = 20e-6;
     GM_ASSERT_INT(gm_pair_init(&pair, &params), GM_OK);
+
+    /* The more the later it comes: flanks of its own, laws of friction and damping, shifted axes, tilted ones. */
     v->has_flanks = k >= 4;
     for (int gear = 0; v->has_flanks && gear < 2; ++gear) {
         random_flanks_make(&v->flanks[gear], &seed, &pair, gear, 1e-3 * params.normal_module);
@@ -138,6 +140,8 @@ static void variant_make(variant *v, int k, int n) {
         law.pose.inclination = -7e-5;
         law.pinion_bore_radius = 0.1 * pair.pinion.root_radius;
     }
+
+    /* The same mesh with friction and without. */
     const gm_flanks *pinion = v->has_flanks ? v->flanks[0].flanks : NULL;
     const gm_flanks *wheel = v->has_flanks ? v->flanks[1].flanks : NULL;
     make(&v->rubbing, &params, &law, pinion, wheel);
@@ -362,6 +366,8 @@ static void gradients_are_those_of_differences(void) {
             const gm_mesh_result r = evaluate(&v.rubbing, &v.state, GM_WANT_DERIVATIVES);
             const gm_mesh_result s = evaluate(&v.smooth, &v.state, GM_WANT_DERIVATIVES);
             const double stiffness = fabs(s.force_by.wheel_angle) / radii[1];
+
+            /* What friction adds to both torques, a step before and behind each coordinate. */
             for (int which = 0; which < 4; ++which) {
                 const double step = which < 2 ? 3e-7 * pair->normal_module / radii[which] : 1e-4;
                 double torque[3][2];
@@ -375,6 +381,8 @@ static void gradients_are_those_of_differences(void) {
                     torque[i][0] = there.pinion_torque - bare.pinion_torque;
                     torque[i][1] = there.wheel_torque - bare.wheel_torque;
                 }
+
+                /* Differences on both sides, as kinks may lie on one of them. */
                 for (int gear = 0; gear < 2; ++gear) {
                     const gm_gradient *by = gear ? &r.wheel_torque_by : &r.pinion_torque_by;
                     const gm_gradient *less = gear ? &s.wheel_torque_by : &s.pinion_torque_by;

@@ -57,15 +57,20 @@ static int roots_of(const way *w) {
     int roots = 0;
     double last[GM_EVENTS], now[GM_EVENTS];
     int last_pairs[2], pairs[2];
+
     look(w, 0.0, last, last_pairs);
     for (int k = 1; k <= STEPS; ++k) {
         const double from = (k - 1.0) / STEPS, to = (double)k / STEPS;
         look(w, to, now, pairs);
+
+        /* Each indicator that changes its sign in this step. */
         int changes[2] = {0, 0};
         for (int event = 0; event < GM_EVENTS; ++event) {
             if ((now[event] > 0.0) == (last[event] > 0.0)) {
                 continue;
             }
+
+            /* What it says just before and just behind. */
             const int side = event / 3;
             const double time = root_of(w, event, from, to);
             double before[GM_EVENTS], behind[GM_EVENTS];
@@ -170,6 +175,8 @@ static void corners_reach_as_far_as_the_highest_flanks(void) {
     for (int tooth = 0; tooth < pair.pinion.teeth; ++tooth) {
         GM_ASSERT_INT(gm_flanks_set_pitch(flanks, GM_DRIVE, tooth, pitch), GM_OK);
     }
+
+    /* The same gears with all teeth moved, and without. */
     gm_mesh_params params;
     gm_mesh_params_default(&params);
     params.stiffness = 1e8;
@@ -229,6 +236,8 @@ static void contact_is_told_by_the_clearance(void) {
     gm_flanks *flanks;
     GM_ASSERT_INT(gm_flanks_init(&flanks, &sizes, memory, sizeof memory), GM_OK);
     GM_ASSERT_INT(gm_flanks_set_pitch(flanks, GM_DRIVE, 3, 7e-6), GM_OK);
+
+    /* One tooth that stands out. */
     plain_mesh where;
     gm_mesh *mesh;
     gm_mesh_params params;

@@ -131,6 +131,8 @@ static void what_acts_on_one_gear_acts_on_the_other(void) {
             const double sign = c.gears.pair.wheel.sign;
             const double dx = sign * c.gears.pair.center_distance + pose->center_distance_change;
             const double dy = pose->offset;
+
+            /* The wrench on the wheel, about the axis of the pinion. */
             const gm_wrench *w = &r.wrench;
             const double size = r.drive_force + r.coast_force;
             const double arm = c.gears.pair.wheel.base_radius + fabs(dx);
@@ -138,6 +140,7 @@ static void what_acts_on_one_gear_acts_on_the_other(void) {
                                             w->wheel_moment[1] - dx * w->wheel_force[2],
                                             w->wheel_moment[2] + dx * w->wheel_force[1] -
                                                 dy * w->wheel_force[0]};
+
             for (int k = 0; k < 3; ++k) {
                 GM_ASSERT_ABS(w->pinion_force[k], -w->wheel_force[k], 1e-14 * size);
                 GM_ASSERT_ABS(w->pinion_moment[k], -about_pinion[k], 1e-12 * size * arm);
@@ -164,12 +167,16 @@ static void side_force_stands_across_the_normal_one(void) {
     params.friction_coefficient = 0.0;
     gm_mesh *without = mesh_with(&plain_room, &params, &pair, NULL, NULL);
     const double alpha = pair.working_pressure_angle;
+
+    /* On both sides of the teeth. */
     for (int sign = -1; sign <= 1; sign += 2) {
         gm_position position;
         gm_mesh_result r, plain;
         GM_ASSERT_INT(gm_position_from_pinion_angle(
                           &pair, 0.03, sign * (0.5 * pair.backlash + 5e-6), 0.0, &position),
                       GM_OK);
+
+        /* What friction adds, along the normal of the flanks and across it. */
         position.pinion_speed = 100.0;
         GM_ASSERT_INT(gm_mesh_evaluate_at(mesh, &position, GM_WANT_WRENCH, NULL, &r), GM_OK);
         GM_ASSERT_INT(gm_mesh_evaluate_at(without, &position, GM_WANT_WRENCH, NULL, &plain), GM_OK);
@@ -345,6 +352,8 @@ static void gears_may_exchange_their_roles(void) {
         gm_pair pair, turned;
         random_params(&seed, &params, &model);
         GM_ASSERT_INT(gm_pair_init(&pair, &params), GM_OK);
+
+        /* The drawing with the gears exchanged: the other hand, and each with the numbers of its mate. */
         gm_pair_params_default(&turned_params);
         turned_params.pinion_teeth = params.wheel_teeth;
         turned_params.wheel_teeth = params.pinion_teeth;
@@ -355,6 +364,7 @@ static void gears_may_exchange_their_roles(void) {
         turned_params.face_width = pair.face_width;
         turned_params.base_helix = params.base_helix;
         turned_params.backlash = pair.backlash;
+
         turned_params.pinion_profile_shift = pair.wheel.profile_shift;
         turned_params.wheel_profile_shift = pair.pinion.profile_shift;
         turned_params.pinion_normal_thickness = pair.wheel.normal_thickness;
@@ -363,6 +373,7 @@ static void gears_may_exchange_their_roles(void) {
         turned_params.wheel_tip_radius = pair.pinion.tip_radius;
         turned_params.pinion_start_radius = pair.wheel.start_radius;
         turned_params.wheel_start_radius = pair.pinion.start_radius;
+
         gm_test_context("case %d", i);
         if (pair.face_start != 0.0 || pair.wheel.face_start != 0.0 ||
             gm_pair_init(&turned, &turned_params) != GM_OK ||
@@ -748,15 +759,21 @@ static void there_is_no_friction_at_rest_and_in_the_simple_model(void) {
     gm_mesh *mesh = mesh_with(&room, &params, &pair, NULL, NULL);
     params.model = GM_MODEL_SIMPLE;
     gm_mesh *simple = mesh_with(&simple_room, &params, &pair, NULL, NULL);
+
+    /* At rest. */
     gm_position position = {0, 0, 1e-3, 0.5 * pair.backlash + 4e-6, 0.0, 0.0};
     gm_mesh_result r;
     GM_ASSERT_INT(gm_mesh_evaluate_at(mesh, &position, GM_WANT_FORCE, NULL, &r), GM_OK);
     GM_ASSERT_REL(r.pinion_torque, r.force * pair.pinion.base_radius, 1e-15);
     GM_ASSERT_ABS(r.loss, 0.0, 0.0);
+
+    /* The simple model, which has no sliding. */
     position.pinion_speed = 100.0;
     GM_ASSERT_INT(gm_mesh_evaluate_at(simple, &position, GM_WANT_FORCE, NULL, &r), GM_OK);
     GM_ASSERT_REL(r.wheel_torque, r.force * pair.wheel.base_radius, 1e-15);
     GM_ASSERT_ABS(r.loss, 0.0, 0.0);
+
+    /* Without a speed there is no answer. */
     position.pinion_speed = (double)NAN;
     GM_ASSERT_INT(gm_mesh_evaluate_at(mesh, &position, GM_WANT_FORCE, NULL, &r),
                   GM_STATE_NOT_FINITE);

@@ -610,11 +610,14 @@ static void simple_model_is_one_spring_and_damper(void) {
         params.simple_stiffness = springs[i % 2];
         plain_mesh room;
         const gm_mesh *mesh = make_mesh(&room, &params, &pair, NULL, NULL);
+
+        /* As stiff as the contact ratio makes it, or as given. */
         const double eps_alpha = pair.transverse_contact_ratio;
         const double k = i % 2 == 0 ? REFERENCE_STIFFNESS * eps_alpha : 3e8;
         const double d = REFERENCE_DAMPING * eps_alpha;
         GM_ASSERT_REL(gm_mesh_mean_stiffness(mesh), k, 1e-15);
         GM_ASSERT_REL(gm_mesh_mean_damping(mesh), d, 1e-15);
+
         for (int step = -12; step <= 12; ++step) {
             gm_test_context("case %d, step %d", i, step);
             gm_state state = {.pinion_angle = 0.1, .pinion_speed = 0.01 * (step % 5)};
@@ -677,17 +680,21 @@ static void simple_model_pushes_in_the_pitch_point(void) {
     const gm_mesh_params params = good_params(GM_MODEL_SIMPLE);
     plain_mesh room;
     const gm_mesh *mesh = make_mesh(&room, &params, &pair, NULL, NULL);
+
+    /* The pitch point at mid-face. */
     const double alpha = pair.working_pressure_angle;
     const double z = 13e-3;
     const double to_pinion = pair.pinion.base_radius / cos(alpha);
     const double to_wheel = pair.wheel.base_radius / cos(alpha);
     GM_ASSERT_REL(to_pinion + to_wheel, pair.center_distance, 1e-14);
+
     for (int side = GM_DRIVE; side <= GM_COAST; ++side) {
         gm_test_context("side %d", side);
         const double sign = side == GM_DRIVE ? 1.0 : -1.0;
         const gm_position position = {0, 0, 1e-3, sign * 60e-6, 0.0, 0.0};
         gm_mesh_result r;
         GM_ASSERT_INT(gm_mesh_evaluate_at(mesh, &position, GM_WANT_WRENCH, NULL, &r), GM_OK);
+
         const double f = fabs(r.force);
         const double on_wheel[3] = {f * sin(alpha), sign * f * cos(alpha),
                                     -sign * f * tan(pair.base_helix_angle)};
@@ -781,6 +788,8 @@ static void threads_share_one_mesh(void) {
     uint64_t seed = UINT64_C(94);
     random_case c;
     gm_position position;
+
+    /* A case with a helix, whose contact is worth a comparison. */
     for (;;) {
         case_in_contact(&c, &seed, &position);
         if (fabs(c.params.helix_angle) > 0.1 && c.params.normal_module > 1e-3) {
@@ -788,10 +797,12 @@ static void threads_share_one_mesh(void) {
         }
         random_case_free(&c);
     }
+
     const gm_mesh_params params = good_params(GM_MODEL_3D);
     plain_mesh room;
     const gm_mesh *mesh = make_mesh(&room, &params, &c.pair, c.use[0], c.use[1]);
     const plain_mesh before = room;
+
     memset(workers, 0, sizeof workers);
     pthread_t threads[THREADS];
     for (int t = 0; t < THREADS; ++t) {

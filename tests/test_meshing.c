@@ -93,11 +93,14 @@ static void at_another_distance_it_is_the_pair_drawn_there(void) {
         model_pair model;
         random_params(&seed, &params, &model);
         const gm_pair pair = make_pair(&params);
+
+        /* The pair at another distance, and a drawing of it there. */
         const double distance =
             params.center_distance + params.normal_module * gm_test_uniform(&seed, -0.3, 0.3);
         const gm_pair_params there = drawn_at(&pair, &params, distance);
         gm_pair expected;
         gmi_meshing meshing;
+
         const int status = gm_pair_init(&expected, &there);
         const int meshes = gmi_meshing_find(&pair, distance, &meshing);
         if (status != GM_OK || !meshes) {

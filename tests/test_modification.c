@@ -552,6 +552,8 @@ static void ramps_and_the_rest_are_the_design(void) {
     int linear = 0;
     for (int round = 0; round < 300; ++round) {
         begin();
+
+        /* Modifications of all kinds, of which linear reliefs become ramps. */
         const int count = gm_test_integer(&seed, 0, MOST);
         int expected = 0;
         for (int k = 0; k < count; ++k) {
@@ -562,6 +564,7 @@ static void ramps_and_the_rest_are_the_design(void) {
             m->profile_range = gm_test_uniform(&seed, 0.1, 1.0);
             expected += is_relief(kind) && shape == GM_SHAPE_LINEAR;
         }
+
         split();
         gm_test_context("round %d", round);
         GM_ASSERT_INT(ramp_count, expected);

@@ -528,6 +528,7 @@ static void unequal_faces_share_what_lies_in_both(void) {
         {20.0, 20.0, -3.0, 0.0, 17.0, -3.0}, /* beyond face I */
         {20.0, 10.0, 12.0, 17.0, 3.0, 17.0}, {20.0, 10.0, -12.0, 0.0, 3.0, -7.0},
     };
+
     for (size_t i = 0; i < sizeof cases / sizeof cases[0]; ++i) {
         gm_test_context("case %d", (int)i);
         gm_pair_params params = reference_params((double)NAN);
@@ -535,6 +536,7 @@ static void unequal_faces_share_what_lies_in_both(void) {
         params.wheel_face_width = cases[i].wheel * 1e-3;
         params.axial_offset = cases[i].offset * 1e-3;
         const gm_pair p = make_pair(&params);
+
         GM_ASSERT_REL(p.pinion.face_width, cases[i].pinion * 1e-3, 0.0);
         GM_ASSERT_REL(p.wheel.face_width, cases[i].wheel * 1e-3, 0.0);
         GM_ASSERT_REL(p.pinion.face_start, 0.0, 0.0);

@@ -73,6 +73,8 @@ static void transmission_error_is_that_of_displaced_helicoids(void) {
         if (!GM_ASSERT(read_gears(&params)) || !GM_ASSERT(read_key("pose"))) {
             break;
         }
+
+        /* The pose, the stiffness and the load of the case. */
         gm_mesh_params law;
         gm_mesh_params_default(&law);
         law.pose.center_distance_change = read_number();
@@ -114,6 +116,8 @@ static void changes_of_the_transmission_error_are_those_printed(void) {
     params.pinion_tip_radius = params.wheel_tip_radius = (double)NAN;
     params.pinion_rack_addendum = params.wheel_rack_addendum = (double)NAN;
     const gm_pair pair = make_pair(&params);
+
+    /* Each pose and the printed transmission error in um. */
     static const struct {
         gm_pose pose;
         double te;
@@ -123,6 +127,7 @@ static void changes_of_the_transmission_error_are_those_printed(void) {
                  {{0.0, 0.0, 100e-6, 0.0, 0.0}, -58.6090 + 61.416},
                  {{0.0, 0.0, 0.0, 1e-3, 0.0}, -58.6090 - 0.506},
                  {{0.0, 0.0, 0.0, 0.0, 1e-3}, -58.6090 + 25.088}};
+
     for (size_t k = 0; k < sizeof moves / sizeof moves[0]; ++k) {
         gm_test_context("move %d", (int)k);
         plain_mesh room;
@@ -132,6 +137,8 @@ static void changes_of_the_transmission_error_are_those_printed(void) {
         gm_mesh_params_default(&law);
         law.stiffness = 2e8;
         law.pose = moves[k].pose;
+
+        /* The equilibrium under the printed load. */
         GM_ASSERT_INT(gm_mesh_init(&mesh, &law, &pair, NULL, NULL, room.memory, sizeof room.memory),
                       GM_OK);
         GM_ASSERT_INT(gm_static_equilibrium(mesh, 0.0, 100.0, (double)NAN, NULL, &offset, NULL),
@@ -184,11 +191,14 @@ static void another_centre_distance_is_another_drawing(void) {
         moved.wheel_tip_radius = c.pair.wheel.tip_radius;
         moved.pinion_start_radius = c.pair.pinion.start_radius;
         moved.wheel_start_radius = c.pair.wheel.start_radius;
+
+        /* The drawing of both: the same gears at two centre distances. */
         gm_pair_params drawn = moved;
         drawn.center_distance = c.params.center_distance;
         gm_pair from, to;
         const gm_pose pose = {change, 0.0, 0.0, 0.0, 0.0};
         if (gm_pair_init(&from, &drawn) == GM_OK && gm_pair_init(&to, &moved) == GM_OK) {
+            /* Moved apart by the pose, or drawn so: the same state. */
             const double x =
                 0.5 * to.backlash + c.params.normal_module * gm_test_uniform(&seed, 0.0, 3e-3);
             gm_position position;
@@ -387,6 +397,8 @@ static void only_the_common_face_takes_part(void) {
         const int by_pose = i % 2;
         own.helix_angle = (i % 4 < 2 ? 1.0 : -1.0) * 33.0 * 0.017453292519943295;
         gm_test_context("case %d", i);
+
+        /* Tables of a wide gear, and of the third of it that the mate covers. */
         double whole[(CELLS + 1) * PROFILE_NODES], part[2 * PROFILE_NODES],
             of_pinion[2 * PROFILE_NODES];
         for (int k = 0; k < (CELLS + 1) * PROFILE_NODES; ++k) {
@@ -396,6 +408,8 @@ static void only_the_common_face_takes_part(void) {
         for (int k = 0; k < 2 * PROFILE_NODES; ++k) {
             of_pinion[k] = gm_test_uniform(&seed, -3e-6, 3e-6);
         }
+
+        /* The same with reliefs. */
         const gm_flank_ramp of_whole = {1e-6, -5e-6, 3e-6};
         const gm_flank_ramp of_part = {1e-6 - 5e-6 * third / 3.0, -5e-6 / 3.0, 3e-6};
         const gm_flank_ramp of_other = {-3e-6, 2e-6, 4e-6};
@@ -751,6 +765,8 @@ static void the_simple_model_knows_no_tilts(void) {
         gm_motion motion = {
             .pose = {.skew = i & 2 ? tilt : 0.0, .inclination = i & 2 ? 0.0 : tilt}};
         GM_ASSERT_INT(gm_position_from_pinion_angle(&pair, 0.3, x, 0.0, &motion.position), GM_OK);
+
+        /* One mesh drawn so, one tilted in its pose. */
         plain_mesh rooms[2];
         gm_mesh *mesh, *tilted;
         gm_mesh_params law;

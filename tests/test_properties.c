@@ -681,6 +681,7 @@ static void spur_is_the_limit_of_small_helix_angles(void) {
     params.pinion_tip_radius = 39.0e-3;
     params.wheel_tip_radius = 35.7e-3;
     const gm_pair spur = make_pair(&params);
+
     int compared = 0;
     for (int hand = -1; hand <= 1; hand += 2) {
         params.helix_angle = hand * 1e-6;
@@ -690,6 +691,7 @@ static void spur_is_the_limit_of_small_helix_angles(void) {
             const double angle = spur.pinion.pitch_angle * k / 100.0;
             for (int s = -1; s <= 1; s += 2) {
                 const double x = s * (spur.backlash / 2 + 7e-6);
+
                 const gm_penetration exact = at(&spur, NULL, NULL, angle, x);
                 const gm_penetration got = at(&almost, NULL, NULL, angle, x);
                 const double contact = got.drive_contact + got.coast_contact;
@@ -721,6 +723,7 @@ static void no_helix_angle_is_too_small(void) {
     const gm_pair spur = make_pair(&params);
     gm_flanks *flanks = make_flanks(45, 3, 1);
     static const double angles[] = {1e-13, 1e-16, 1e-20, 1e-100, 1e-300, 1e-308, 1e-312, 5e-324};
+
     for (size_t i = 0; i < sizeof angles / sizeof angles[0]; ++i) {
         for (int hand = -1; hand <= 1; hand += 2) {
             params.helix_angle = hand * angles[i];
@@ -775,11 +778,14 @@ static void spur_jumps_where_a_pair_enters_and_helical_does_not(void) {
     params.center_distance = 62.2e-3;
     params.face_width = 15e-3;
     params.backlash = 60e-6;
+
+    /* All but spur: the roll on which the last line leaves the face is short. */
     params.helix_angle = 1e-4;
     const gm_pair helical = make_pair(&params);
     const double last = helical.pinion.tip_roll_length - helical.phase_origin[GM_DRIVE];
     double previous = NAN;
     double first = 0.0;
+
     for (int k = -10; k <= 20; ++k) {
         gm_test_context("step %d", k);
         const double part = k / 10.0;

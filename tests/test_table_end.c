@@ -289,6 +289,7 @@ static void lines_go_deeper_without_a_jump(void) {
         two_drawings two;
         const gm_pair_params params = drawn_pair(i % 2 == 0 ? 0 : 2);
         draw(&two, &params, &seed, 1 + i % 3, 3, 0.0);
+
         gm_mesh_params law;
         gm_mesh_params_default(&law);
         law.stiffness = 1e8;
@@ -297,6 +298,7 @@ static void lines_go_deeper_without_a_jump(void) {
         GM_ASSERT_INT(gm_mesh_init(&mesh, &law, &two.pair[0], two.flanks[0][GM_PINION],
                                    two.flanks[0][GM_WHEEL], &memory, sizeof memory),
                       GM_OK);
+
         const double tilt = i & 4 ? 0.8e-3 : -0.8e-3;
         for (int k = 0; k < 30; ++k) {
             gm_test_context("case %d, place %d", i, k);
@@ -337,6 +339,8 @@ static void equilibria_and_caches_see_the_same_flanks(void) {
     two_drawings two;
     const gm_pair_params params = drawn_pair(0);
     draw(&two, &params, &seed, 3, 3, 0.0);
+
+    /* Both drawings of the same flanks, moved until lines end in the tables. */
     gm_mesh_params law;
     gm_mesh_params_default(&law);
     law.stiffness = 1e8;
@@ -348,6 +352,8 @@ static void equilibria_and_caches_see_the_same_flanks(void) {
                                    two.flanks[k][GM_WHEEL], &rooms[k], sizeof rooms[k]),
                       GM_OK);
     }
+
+    /* The same equilibria under three loads. */
     static const double torque[3] = {20.0, 60.0, 120.0};
     for (int i = 0; i < 40; ++i) {
         gm_test_context("angle %d", i);

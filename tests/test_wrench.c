@@ -66,6 +66,8 @@ static void each_line_of_contact_pushes_where_it_is(void) {
         state.pinion_speed = gm_test_uniform(&seed, -0.01, 0.01) * c.params.normal_module /
                              (double)c.model.base_radius[0];
         const double speed = (double)c.model.base_radius[0] * state.pinion_speed;
+
+        /* The library. */
         gm_position position;
         gm_penetration r;
         gm_wrench got;
@@ -73,6 +75,8 @@ static void each_line_of_contact_pushes_where_it_is(void) {
         GM_ASSERT_INT(penetration_3d_at(&c.pair, c.use[0], c.use[1], &position, &r), GM_OK);
         GM_ASSERT_INT(
             wrench_3d_at(&c.pair, c.use[0], c.use[1], &position, stiffness, damping, &got), GM_OK);
+
+        /* The sum over the lines of the reference model. */
         model_result m;
         model_evaluate(&c.model, c.model_use[0], c.model_use[1], c.pinion_angle, c.wheel_angle,
                        0.0L, 0.0L, &m);
@@ -80,6 +84,7 @@ static void each_line_of_contact_pushes_where_it_is(void) {
         memset(&expected, 0, sizeof expected);
         add_expected_side(&c, &m, 0, stiffness, damping, speed, &expected);
         add_expected_side(&c, &m, 1, stiffness, damping, speed, &expected);
+
         touching += r.drive_pairs + r.coast_pairs > 0;
         both += r.drive_pairs > 0 && r.coast_pairs > 0;
 
