@@ -1378,6 +1378,21 @@ class Corners(Case):
                  for s in (self.ON, self.SPUR)]
         self.assertLess(steps[0], 0.7 * steps[1])
 
+    def test_a_resonance_that_jumps_have_driven_too_far_is_told_of(self):
+        settings = [*self.SPUR, "gears.pinion_teeth=23", "gears.wheel_teeth=57", "gears.normal_module_mm=3",
+                    "gears.center_distance_mm=121.2", "gears.face_width_mm=35", "gears.backlash_um=30",
+                    "bodies.wheel_inertia_kg_m2=0.02", "mesh.stiffness_N_per_m=4e8", "mesh.damping_Ns_per_m=",
+                    "mesh.damping_ratio=0.02", "load.mean_Nm=600", "load.noise_amplitude_Nm=0", "drive.start_rpm=4300",
+                    "drive.end_rpm=5200", "analysis.duration_s=0.3"]
+        result = self.gearsim(settings)
+        self.assertEqual(result.returncode, 1, result.stderr)
+        self.assertIn("turned against each other by half a base pitch", result.stderr)
+        self.assertIn("mesh.corner_contact = on takes the jumps away", result.stderr)
+
+        # With corner contact the same run ends well.
+        result = self.gearsim([*settings, "mesh.corner_contact=on"])
+        self.assertEqual(result.returncode, 0, result.stderr)
+
     def test_momentum_does_not_tell_the_force(self):
         self.run_columns([*self.ON, "analysis.duration_s=0.01"])
         self.assertIn("# sampling = low-pass filtered, load_torque_Nm from means", self.text("run.csv"))

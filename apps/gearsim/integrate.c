@@ -174,12 +174,21 @@ void integrator_free(integrator *solver) {
  * Running
  * ------------------------------------------------------------------------------------------- */
 
+/* What to try where gears have been driven apart: jumps of the force put energy into a resonance without bound. */
+static const char *advice(const integrator *solver) {
+    static const char no_jumps[] =
+        "; the force of these spur gears jumps where pairs come and go, which can drive a "
+        "resonance that far: mesh.corner_contact = on takes the jumps away";
+
+    return solver->status == GM_STATE_OUT_OF_RANGE && solver->model->jumps ? no_jumps : "";
+}
+
 static int fail(integrator *solver, const char *what) {
     const int model_at_fault = solver->status != GM_OK;
 
-    snprintf(solver->failure, sizeof solver->failure, "%s at t = %.9g s%s%s", what, solver->time,
+    snprintf(solver->failure, sizeof solver->failure, "%s at t = %.9g s%s%s%s", what, solver->time,
              model_at_fault ? "; the gears: " : "",
-             model_at_fault ? gm_status_text(solver->status) : "");
+             model_at_fault ? gm_status_text(solver->status) : "", advice(solver));
     return EXIT_RUN_FAILED;
 }
 
