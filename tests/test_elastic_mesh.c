@@ -315,6 +315,7 @@ static void derivatives_are_those_of_differences(void) {
             /* By both angles: force and both torques. */
             const double radii[2] = {m->pair.pinion.base_radius, m->pair.wheel.base_radius};
             for (int gear = 0; gear < 2; ++gear) {
+                /* Force and torques a step before and behind each angle, from a cold start. */
                 const double step = 2e-9 / radii[gear];
                 gm_mesh_result beside[2];
                 for (int sign = 0; sign < 2; ++sign) {
@@ -327,6 +328,7 @@ static void derivatives_are_those_of_differences(void) {
                 forget(m);
                 const gm_mesh_result here = evaluate(m, &state, GM_WANT_FORCE);
                 const double scale = fabs(at.force_by.wheel_angle / radii[1]) * radii[gear];
+
                 const gm_gradient *const gradients[3] = {&at.force_by, &at.pinion_torque_by,
                                                          &at.wheel_torque_by};
                 const double values[3][3] = {
@@ -445,12 +447,15 @@ static void roll_at_held_approach_is_differentiated_exactly(void) {
         elastic_mesh *m = &v.mesh;
         const double r_bp = m->pair.pinion.base_radius;
         const double r_bw = m->pair.wheel.base_radius;
+
         for (int n = 0; n < 8; ++n) {
             gm_test_context("variant %d, state %d", k, n);
             const double angle = 0.013 + 0.37 * n / m->pair.pinion.teeth;
             const gm_state state = pressed_state(m, angle, pressed_offset(m, n % 2, angle));
             forget(m);
             const gm_mesh_result at = evaluate(m, &state, GM_WANT_DERIVATIVES);
+
+            /* Both gears roll, and x stays. */
             const double slope = at.force_by.pinion_angle / r_bp + at.force_by.wheel_angle / r_bw;
             const double step = 5e-5 * m->pair.normal_module;
             double force[3];
@@ -812,11 +817,14 @@ static void teeth_without_a_table_are_as_drawn(void) {
                                     .drive_profile_nodes = 4};
     const size_t size = gm_flanks_size(&sizes);
     void *const memory[2] = {malloc(size), malloc(size)};
+
+    /* Tables on every other tooth; the others have none, or tables of zeros. */
     elastic_mesh with[2];
     for (int k = 0; k < 2; ++k) {
         gm_flanks *flanks = every_other_tooth(gears.pinion_teeth, k, memory[k], size, &sizes);
         GM_ASSERT_INT(make(&with[k], &gears, &law, flanks, NULL), GM_OK);
     }
+
     double largest = 0.0, smallest = 1e30;
     for (int n = 0; n < 12; ++n) {
         gm_mesh_result r[2];
@@ -955,6 +963,8 @@ static void stiffness_is_that_at_the_reference_torque(void) {
         gm_mesh_params law = elastic_law();
         law.corner_contact = is_off ? GM_CORNER_OFF : GM_CORNER_ON;
         law.reference_torque = k % 2 == 0 ? 100.0 : 60.0;
+
+        /* What the mesh says, and the same over 200 equilibria. */
         elastic_mesh m;
         gm_mesh_stiffness s;
         GM_ASSERT_INT(make(&m, &kinds[k % 2], &law, NULL, NULL), GM_OK);
@@ -1254,11 +1264,15 @@ static void edges_keep_the_energy(void) {
         driven d = {.offset = (double)NAN};
         GM_ASSERT_INT(make(&d.mesh, &kinds[kind], &law, NULL, NULL), GM_OK);
         const gm_pair *pair = &d.mesh.pair;
+
+        /* A load per face width, and work to 3e-14 of what goes through. */
         d.load = 1e5 * pair->face_width * pair->wheel.base_radius;
         const double pitch = pair->pinion.pitch_angle;
         const double turned = pitch * pair->pinion.base_radius / pair->wheel.base_radius;
         const double most = 3e-14 * d.load * turned;
         const double longest = pitch / 256.0; /* a kink beside the last point goes unseen */
+
+        /* Steps are halved until two formulas agree. */
         double work = 0.0, from = 0.0, to = longest;
         for (int steps = 0; from < pitch && steps < 20000; ++steps) {
             double error;
@@ -1321,11 +1335,14 @@ static void cache_knows_the_softer_teeth(void) {
         for (int tooth = 0; tooth < teeth; ++tooth) {
             factors[tooth] = tooth == 2 ? 0.5 : 1.0;
         }
+
+        /* One soft tooth: a table for each tooth of its gear. */
         gm_mesh_params law = elastic_law();
         law.corner_contact = GM_CORNER_OFF;
         *(role == GM_PINION ? &law.pinion_tooth_stiffness : &law.wheel_tooth_stiffness) = factors;
         elastic_mesh m;
         GM_ASSERT_INT(make(&m, &gears, &law, NULL, NULL), GM_OK);
+
         gm_cache_params params;
         gm_cache *cache;
         gm_cache_params_default(&params);
@@ -1487,6 +1504,8 @@ static void doubtful_loads_are_told(void) {
         const gm_mesh_params law = elastic_law();
         elastic_mesh m;
         GM_ASSERT_INT(make(&m, &gears[k], &law, NULL, NULL), GM_OK);
+
+        /* A light load, and one beyond what any material bears. */
         const double press[2] = {1e-3, 0.3}; /* in modules */
         int told[2];
         for (int n = 0; n < 2; ++n) {

@@ -220,6 +220,8 @@ static void layers_are_those_of_the_reference(void) {
             load[VALUES];
         const double tolerance = next_number(&r);
         const int n = next_int(&r);
+
+        /* The matrices of the record, and a load at the end. */
         expect(&r, "tooth_diagonal");
         next_numbers(&r, diagonal, n);
         expect(&r, "tooth_beside");
@@ -230,6 +232,7 @@ static void layers_are_those_of_the_reference(void) {
         next_numbers(&r, rim_beside, n - 1);
         expect(&r, "end_load");
         next_numbers(&r, load, n);
+
         elastic_case c;
         make(&c, &r.gear);
         const double r2 = c.law.rim_compliance;
@@ -307,11 +310,14 @@ static void meshes_are_those_of_the_reference(void) {
         next_numbers(&r, v, 14);
         const int lines = next_int(&r), count = next_int(&r);
         const double tolerance = v[0], x = v[2];
+
+        /* Misalignment and relief of the record. */
         elastic_deviation d = ideal;
         d.misalignment = v[3];
         d.relief = v[4];
         d.from = v[5];
         d.to = v[6];
+
         elastic_case c;
         make(&c, &r.gear);
         const gmi_elastic_lines_at at = elastic_lines_at(&c.gear, v[1]);

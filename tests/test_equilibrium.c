@@ -168,10 +168,14 @@ static void the_first_place_that_carries_counts_next_to_spur(void) {
     int falling = 0;
     for (int i = 0; i < 300; ++i) {
         gm_test_context("case %d, seed %llx", i, (unsigned long long)seed);
+
+        /* Lines that climb by some micrometres over the face, or by nothing. */
         gm_pair_params params = spur_pair_params();
         const double advance = i % 3 == 0 ? 0.0 : gm_test_uniform(&seed, 0.5e-6, 12e-6);
         params.helix_angle = atan(advance / params.face_width) * (i % 2 ? 1.0 : -1.0);
         const gm_pair pair = make_pair(&params);
+
+        /* Pitch deviations on most of them. */
         gm_flanks *flanks;
         const int side = i / 2 % 2 ? GM_COAST : GM_DRIVE;
         const double sign = side == GM_DRIVE ? 1.0 : -1.0;
@@ -389,10 +393,14 @@ static void a_load_below_the_largest_sum_is_carried(void) {
         params.pinion_tip_alteration = params.wheel_tip_alteration =
             gm_test_uniform(&seed, -1.3, -1.0);
         const gm_pair pair = make_pair(&params);
+
+        /* One high tooth, every other time. */
         gm_flanks *flanks;
         GM_ASSERT_INT(gm_flanks_init(&flanks, &sizes, memory, sizeof memory), GM_OK);
         const double high_tooth = i % 2 * gm_test_uniform(&seed, 0.1e-3, 0.6e-3);
         GM_ASSERT_INT(gm_flanks_set_pitch(flanks, GM_DRIVE, 22, high_tooth), GM_OK);
+
+        /* The largest sum of all approaches, and a load a little below it. */
         const double angle = gm_test_uniform(&seed, 0.0, 0.2);
         const double limit = 0.49999 * pair.transverse_base_pitch;
         const double begin = 0.5 * pair.backlash, step = (limit - begin) / STEPS;
@@ -1041,6 +1049,7 @@ static void unequal_faces_carry_as_turned_helicoids_do(void) {
          {50.66419558518596, 51.39000857709873, 50.596845672908884, 51.326450640122864,
           51.10885554006444}},
     };
+
     const double degree = 0.017453292519943295;
     for (int i = 0; i < 2; ++i) {
         gm_pair_params params;

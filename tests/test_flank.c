@@ -494,8 +494,11 @@ static void deviations_that_are_no_numbers_change_nothing(void) {
     constant_table(values, 12, 1e-6);
     GM_ASSERT_INT(gm_flanks_set_table(flanks, GM_DRIVE, GM_ALL_TEETH, values, 1.0), GM_OK);
     GM_ASSERT_INT(gm_flanks_set_pitch(flanks, GM_DRIVE, GM_ALL_TEETH, 0.5e-6), GM_OK);
+
     const gm_flanks before = *flanks;
     const double drive = probe(flanks, GM_DRIVE, 0.1).drive;
+
+    /* In a node, as the scale of a table, as pitch. */
     static const double bad[] = {NAN, HUGE_VAL, -HUGE_VAL, 1.01, -1.01, 1e80, -1e300};
     for (size_t k = 0; k < sizeof bad / sizeof bad[0]; ++k) {
         for (int node = 0; node < 12; node += 11) {

@@ -162,6 +162,7 @@ static void touching_part_moves_as_in_the_second_model(void) {
         const int side = i % 3 == 0 ? GM_COAST : GM_DRIVE;
         const double approach = side == GM_DRIVE ? 1.0 : -1.0;
         const gm_state state = {c.pinion_angle, c.wheel_angle, approach / r_bp, 0.0};
+
         plain_mesh room;
         gm_mesh *mesh;
         gm_mesh_result r;
@@ -224,6 +225,8 @@ static void simple_model_is_a_spring_with_backlash(void) {
         gm_test_context("x = %g", x);
         gm_penetration r;
         GM_ASSERT_INT(penetration_simple_at(&pair, x, speed, &r), GM_OK);
+
+        /* Beyond half of the backlash to either side. */
         const int drive = x > half;
         const int coast = x < -half;
         GM_ASSERT_REL(r.drive, drive ? x - half : 0.0, 1e-15);
@@ -232,6 +235,8 @@ static void simple_model_is_a_spring_with_backlash(void) {
         GM_ASSERT_REL(r.drive_rate, drive ? speed : 0.0, 0.0);
         GM_ASSERT_REL(r.coast_rate, coast ? -speed : 0.0, 0.0);
         GM_ASSERT_REL(r.rate, drive || coast ? speed : 0.0, 0.0);
+
+        /* All of it touches there, or nothing. */
         GM_ASSERT_ABS(r.drive_contact, drive, 0.0);
         GM_ASSERT_ABS(r.coast_contact, coast, 0.0);
         GM_ASSERT_INT(r.drive_pairs, drive);

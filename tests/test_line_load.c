@@ -20,11 +20,13 @@ static void largest_line_load_is_that_of_the_second_model(void) {
         gm_mesh *mesh;
         gm_position position;
         gm_line_loads load;
+
         gm_test_context("case %d", i);
         GM_ASSERT_INT(random_mixed_case_make(&c, &seed, i), GM_OK);
         GM_ASSERT_INT(plain_mesh_of(&room, &c.pair, c.use, &law, &mesh), GM_OK);
         const gm_state state = {.pinion_angle = c.pinion_angle, .wheel_angle = c.wheel_angle};
         GM_ASSERT_INT(gm_position_from_state(&c.pair, &state, &position), GM_OK);
+
         const int points = gm_mesh_line_load_points(mesh);
         gm_line_load_point *list = malloc((size_t)points * sizeof *list);
         GM_ASSERT_INT(gm_mesh_line_loads(mesh, &position, NULL, list, points, &load), GM_OK);

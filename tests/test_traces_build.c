@@ -667,9 +667,13 @@ static void a_spike_is_refused_or_left_out(void) {
         for (int k = 0; k < 101; ++k) {
             trace->line[k] = 2 + k;
         }
+
+        /* A spike of some points. */
         for (int k = 0; k < width; ++k) {
             trace->deviation[70 + k] += 6e-6;
         }
+
+        /* Refused with its line, or left out on request. */
         GM_ASSERT_INT(build(), GM_IO_ERR_FORMAT);
         GM_ASSERT(error.line >= 72 && error.line < 72 + width);
         GM_ASSERT(strstr(error.text, "spike") != NULL);

@@ -109,6 +109,7 @@ static gm_mesh *make_mesh(const bench_pair *b, int has_tables, int has_corners, 
     drawing.center_distance = b->center_distance;
     drawing.face_width = b->face_width;
     drawing.backlash = 100e-6;
+
     drawing.pinion_profile_shift = b->shift[0];
     drawing.wheel_profile_shift = b->shift[1];
     drawing.pinion_tip_radius = b->tip_radius[0];
