@@ -23,6 +23,7 @@ ROOT = os.path.join(os.path.dirname(os.path.realpath(__file__)), os.pardir)
 GEARS = ("pinion", "wheel")
 UNITS = {"um": "µm", "mm": "mm", "deg": "°", "Nm": "N m"}  # by the end of a key
 MADE = ("gears", "flanks", "modifications", "mesh")  # sections that act on the error under a given load
+RANGES = ("length_mm", "diameter_mm", "share")  # the ways to give that of a relief, by the end of a key
 NO_LOAD = 1e-3  # of the mean load: gearsim needs a load, as without one the gears may stand anywhere in the backlash
 SHAPE_SHARE = 0.1  # of the scale: what is flatter shows no shape
 NO_SHAPE_UM = 1e-3  # what is flatter has none
@@ -257,6 +258,7 @@ class Gears:
         self.settings = dict(self._setting(text) for text in settings)
         self.positions = None  # as the file says
         self.warnings = set()  # that have been passed on
+        self.idle = {}  # warnings of keys that lack an amount, by the key
         self.folder = tempfile.TemporaryDirectory(prefix="gearmesh_")
         self.pool = concurrent.futures.ThreadPoolExecutor(os.cpu_count() or 1)
         self.own, self.all_runs = threading.local(), []
@@ -305,8 +307,20 @@ class Gears:
         """What gearsim warns of in a run of the file as it is; not that the static run leaves keys unused."""
         for message in Runs.messages_of(lines):
             words = re.sub(r"\d", "", message)  # once, whatever number a later run has
+            if idle := re.search(r"(modifications\.\w+): warning: not used without an amount", message):
+                self.idle.setdefault(idle[1], message)
+                continue
             if ": warning: " in message and ": warning: not used with " not in message and words not in self.warnings:
                 self.warnings.add(words)
+                print(program.shown(message.rstrip("\n")), file=sys.stderr)
+
+    def warn_of_idle(self, varied=()):
+        """Tells of ranges and shapes without an amount, but for those whose amount is among the varied keys."""
+        def of_any_flank(key):
+            return re.sub("_(drive|coast)_", "_", key)
+        stems = [of_any_flank(key).removesuffix("um") for key in varied if key.endswith("_um")]
+        for key, message in self.idle.items():
+            if not any(of_any_flank(key).startswith(stem) for stem in stems):
                 print(program.shown(message.rstrip("\n")), file=sys.stderr)
 
     # ------------------------------------------------------------------------------------------------
@@ -445,6 +459,10 @@ class Gears:
             return None if text is None else float(text)
         except ValueError:
             raise InputError(f"{key}: its value '{text}' is not a number, which could be varied") from None
+
+    def has_range(self, stem):
+        """Whether the file says the range of a relief, `modifications.pinion_tip_relief`."""
+        return any(f"{stem}_{ending}" in self.parameters for ending in RANGES)
 
     def differs_by_tooth(self):
         return any(self.parameters.get(f"flanks.{name}") for name in FLANK_FILES)

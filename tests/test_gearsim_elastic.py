@@ -312,10 +312,13 @@ class Elastic(unittest.TestCase):
         """Reliefs that are there and one that is not, slopes and twist, of both flanks and of the one that carries."""
         step_um = 1e-3
         amounts = {"pinion_tip_relief_um": 8.0, "wheel_drive_root_relief_um": 0.0, "pinion_drive_helix_slope_um": 3.0,
-                   "wheel_twist_um": 0.0, "pinion_profile_slope_um": -2.0}
+                   "wheel_twist_um": 1.0, "pinion_profile_slope_um": -2.0}
         ranges = {"pinion_tip_relief_length_mm": 30, "wheel_drive_root_relief_share": 0.3}
         columns = ", ".join(["te_um", *(f"te_um_by_{key}" for key in amounts)])
-        for sections, sign in ((NREL | {"mesh": {}}, 1), (NREL | {"load": {"mean_Nm": -100000}, "pose": {"skew_mrad": 0.1}}, -1)):
+        constant = {"law": "constant", "stiffness_N_per_m": 4e9}
+        for sections, sign in ((NREL | {"mesh": {}}, 1), (NREL | {"load": {"mean_Nm": -100000}, "pose": {"skew_mrad": 0.1}}, -1),
+                               (NREL | {"mesh": constant, "pose": {"skew_mrad": 0.1}}, 1),
+                               (NREL | {"mesh": {"law": "iso6336"}, "load": {"mean_Nm": -100000}}, -1)):
             def run(**other):
                 amount = {key: value for key, value in (amounts | other).items() if value}
                 return self.rows(sections | {"modifications": ranges | amount | {"tolerance_um": 1e-3},
@@ -336,7 +339,8 @@ class Elastic(unittest.TestCase):
         self.refused(NREL | {"output": {"columns": "te_um_by_pinion_tip_relief_mm"}}, told, "(got 'te_um_by_pinion_tip_relief_mm')")
         self.refused(NREL | {"output": {"columns": "te_um_by_"}}, told)
         self.refused(NREL | {"mesh": {"friction_coefficient": 0.05}, "output": relief}, told, "without friction")
-        self.refused(NREL | {"mesh": {"law": "constant", "stiffness_N_per_m": 1e9}, "output": relief}, told, "of elastic teeth")
+        edges = {"law": "constant", "stiffness_N_per_m": 1e9, "corner_contact": "on"}
+        self.refused(NREL | {"mesh": edges, "output": relief}, told, "tip corners of constant stiffness")
         for arguments in ((), ("--check",)):
             self.refused(NREL | {"output": relief}, "modifications.pinion_tip_relief_um: must have a range", arguments=arguments)
 

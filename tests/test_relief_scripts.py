@@ -419,6 +419,21 @@ class Relief(Case):
         for name in ("pinion_tip_relief_length_mm", "wheel_root_relief_length_mm"):
             self.assertRegex(result.stdout, rf"(?m)^  {name} ")
 
+    def test_a_range_is_idle_only_where_its_amount_is_not_varied(self):
+        with open(SPUR, encoding="utf-8") as source:
+            file = self.write("bare.ini", "".join(line for line in source if "tip_relief" not in line))
+        share = ["--set", "modifications.wheel_tip_relief_share=0.3", "--set", "analysis.positions=12", "--no-pictures"]
+        told = "modifications.wheel_tip_relief_share: warning: not used without an amount"
+        search = [*share, "--starts", "1", "--tolerance", "0", "--vary"]
+        for key, count in (("wheel_tip_relief_um=0:30", 0), ("wheel_drive_tip_relief_um=0:30", 0), ("pinion_crowning_um=0:9", 1)):
+            self.assertEqual(self.accepted("relief", file, *search, key).stderr.count(told), count, key)
+        self.assertEqual(self.accepted("harris", file, *share, "--vary", "pinion_crowning_um=0:9:2").stderr.count(told), 1)
+
+        # The family of harris itself takes the range that is there.
+        result = self.accepted("harris", file, *share, "--torques", "40:80:2")
+        self.assertEqual(result.stderr.count(told), 0)
+        self.assertIn(", or over the range that the file says", result.stdout)
+
     def test_mean_objective_is_lower_in_the_mean_and_higher_at_the_worst(self):
         numbers = {}
         for objective in ("worst", "mean"):
@@ -608,10 +623,13 @@ class Parts(unittest.TestCase):
                 self.assertAlmostEqual(hoped, merit_um + search.price_um * amounts, delta=1e-6)
 
     def test_slopes_that_gearsim_knows_are_those_of_differences(self):
-        """By the amounts, of the drawing and of what it is off by, through both ways; of other laws none are known."""
+        """By the amounts, of the drawing and of what it is off by, through both ways; with friction none are known."""
         relief = script_case.module_of("relief")
-        elastic = ["mesh.law=elastic", "analysis.positions=20", "modifications.tolerance_um=1e-4"]
-        for settings, known in ((elastic, [0, 2]), ([*elastic, "mesh.friction_coefficient=0.05"], []), ([], [])):
+        constant = ["analysis.positions=20", "modifications.tolerance_um=1e-4"]
+        elastic = [*constant, "mesh.law=elastic"]
+        for settings, known in ((elastic, [0, 2]), (constant, [0, 2]), ([*constant, "mesh.law=iso6336", "pose.skew_mrad=0.2"], [0, 2]),
+                                ([*elastic, "mesh.friction_coefficient=0.05"], []),
+                                ([*constant, "mesh.friction_coefficient=0.05"], []), ([*constant, "mesh.corner_contact=on"], [])):
             with loaded_te.Gears(SPUR, settings, GEARSIM) as gears:
                 variables = [relief.Variable(gears, f"modifications.{key}", low, high) for key, low, high in (
                     ("pinion_tip_relief_um", 0, 40), ("pinion_tip_relief_length_mm", 1, 3), ("wheel_helix_slope_um", -9, 9))]

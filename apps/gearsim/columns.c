@@ -71,8 +71,9 @@ static int add(column_list *columns, const config *conf, const char *text, size_
     if (name < 0 && strncmp(text, TE_SLOPE_PREFIX, strlen(TE_SLOPE_PREFIX)) == 0) {
         config_complain(conf, key,
                         "must name an amount of [modifications] behind " TE_SLOPE_PREFIX
-                        ", as in " TE_SLOPE_PREFIX "pinion_tip_relief_um, of elastic teeth without "
-                        "friction and gap in a static analysis, %d at most (got '%.*s')",
+                        ", as in " TE_SLOPE_PREFIX "pinion_tip_relief_um, of a static analysis "
+                        "without friction, gap and tip corners of constant stiffness, %d at most "
+                        "(got '%.*s')",
                         TE_SLOPES_MAX, (int)length, text);
         return EXIT_BAD_INPUT;
     }

@@ -47,12 +47,21 @@ static int is_listed(const config *conf, const char *name) {
     return 0;
 }
 
+/*
+ * Where the load is a force that gm_mesh_force_by_flanks() knows: friction takes part of a torque, a pinion between two
+ * halves floats, and under a tip corner of constant stiffness the library has no answer.
+ */
+static int has_slopes(const config *conf) {
+    return conf->model == MODEL_3D && !config_has_friction(conf) && !config_has_corners(conf) &&
+           isnan(conf->double_helical_gap);
+}
+
 /* The keys that are asked for; returns how many. */
 static int find_keys(const config *conf, amount_key keys[TE_SLOPES_MAX]) {
     int count = 0;
 
-    if (conf->columns == NULL || conf->law != LAW_ELASTIC || conf->model != MODEL_3D ||
-        config_has_friction(conf) || !isnan(conf->double_helical_gap)) {
+    if (conf->columns == NULL || strstr(conf->columns, TE_SLOPE_PREFIX) == NULL ||
+        !has_slopes(conf)) {
         return 0;
     }
     for (enum gm_role gear = GM_PINION; gear <= GM_WHEEL; ++gear) {
@@ -127,6 +136,23 @@ void te_slopes_close(te_slopes *slopes) {
     slopes->count = 0;
 }
 
+/*
+ * dF/dx at a held pinion angle (N/m): of elastic teeth the stiffness that touches; with constant stiffness x moves the
+ * places as well where the flanks meet.
+ */
+static int find_stiffness(const gear_mesh *gears, const gm_position *position,
+                          const gm_mesh_result *at_rest, double *stiffness) {
+    if (gears->workspace[0] != NULL) {
+        *stiffness = gear_contact_touching_stiffness(gears, at_rest);
+        return GM_OK;
+    }
+    gm_mesh_result result;
+    const int status = gear_contact_evaluate(gears, position, GM_WANT_DERIVATIVES, &result);
+
+    *stiffness = -result.force_by.wheel_angle / gears->pair.wheel.base_radius;
+    return status;
+}
+
 /* te = -x, and at a given load dx = -(dF/da) / (dF/dx) da. */
 int te_slopes_find(const te_slopes *slopes, const gear_mesh *gears, const gm_position *position,
                    const gm_mesh_result *at_rest, double *te_by) {
@@ -136,11 +162,14 @@ int te_slopes_find(const te_slopes *slopes, const gear_mesh *gears, const gm_pos
         change[GM_WHEEL][k] = slopes->change[GM_WHEEL][k].prepared;
     }
 
-    const int status =
-        gm_mesh_force_by_flanks(gears->prepared[0], position, change[GM_PINION], change[GM_WHEEL],
-                                slopes->count, gears->workspace[0], te_by);
-    const double stiffness = gear_contact_touching_stiffness(gears, at_rest);
-    for (int k = 0; k < slopes->count; ++k) {
+    double stiffness;
+    int status = find_stiffness(gears, position, at_rest, &stiffness);
+    if (status == GM_OK) {
+        status =
+            gm_mesh_force_by_flanks(gears->prepared[0], position, change[GM_PINION],
+                                    change[GM_WHEEL], slopes->count, gears->workspace[0], te_by);
+    }
+    for (int k = 0; k < slopes->count && status == GM_OK; ++k) {
         te_by[k] /= stiffness * change_amount;
     }
     return status;

@@ -2,7 +2,7 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 
 /*
- * The columns `te_um_by_KEY` of a static analysis of elastic teeth: how the transmission error under the given load moves
+ * The columns `te_um_by_KEY` of a static analysis without friction: how the transmission error under the given load moves
  * with the amount of a modification, KEY being one of [modifications]. Exact derivatives, for the search of modifications.
  */
 #ifndef GEARSIM_TE_SLOPES_H

@@ -6,6 +6,8 @@
  * line load is K f / b; elastic teeth have it from their deflections. The largest one of constant stiffness is looked for
  * where it can be: at the bends of the overlap and on top of its humps.
  */
+#include "line_load.h"
+
 #include "contact.h"
 #include "corner.h"
 #include "elastic.h"
@@ -62,21 +64,6 @@ typedef struct walk {
     double length; /* of those that touch, along z (m) */
 } walk;
 
-/* One side, whose lines have been found. */
-typedef struct side_lines {
-    int side;
-    gmi_lines lines;
-    gmi_teeth teeth;
-    double delta;           /* ideal penetration (m) */
-    double speeds[2];       /* [enum gm_role] of both gears, in the signs of ISO 21771 (rad/s) */
-    double reach;           /* rho_p + rho_w (m) */
-    gmi_elastic_work *work; /* solved; NULL with constant stiffness */
-    gmi_elastic_tips tips;  /* of lines that go on beyond the path, of elastic teeth */
-    int has_tips;
-    gmi_lines
-        path; /* the lines as far as the path goes, where corners of constant stiffness touch beyond it */
-} side_lines;
-
 /*
  * Line contact [Johnson]: half width a = sqrt(4 q rho_red / (pi E*)), p_0 = 2 q / (pi a), with the curvature of the normal
  * section, rho_red = rho_p rho_w / (T cos(beta_b)).
@@ -98,7 +85,7 @@ typedef struct place {
 } place;
 
 /* How fast flanks slide on each other whose tangent has these arms, as friction.c has it. */
-static double sliding_speed(const side_lines *found, double pinion_arm, double wheel_arm) {
+static double sliding_speed(const gmi_side_lines *found, double pinion_arm, double wheel_arm) {
     return found->speeds[GM_PINION] * pinion_arm - found->speeds[GM_WHEEL] * wheel_arm;
 }
 
@@ -107,8 +94,8 @@ static double held(double roll, double one_end, double other_end) {
 }
 
 /* With corners a tip edge touches the flank off the line of action, as in corner_line.c. */
-static void find_place(const gm_mesh *mesh, const side_lines *found, const gmi_line_flanks *flanks,
-                       double origin, double t1, place *where) {
+static void find_place(const gm_mesh *mesh, const gmi_side_lines *found,
+                       const gmi_line_flanks *flanks, double origin, double t1, place *where) {
     const gmi_engagement *at = &mesh->engagement;
     const double roll = origin + found->lines.advance * t1;
     double by_roll, pinion = roll, wheel = found->reach - roll;
@@ -149,7 +136,7 @@ static void find_place(const gm_mesh *mesh, const side_lines *found, const gmi_l
 }
 
 /* Of constant stiffness: from the overlap itself. The pressure under an edge is open, as nothing says how sharp it is. */
-static gm_line_load_point point_of_overlap(const gm_mesh *mesh, const side_lines *found,
+static gm_line_load_point point_of_overlap(const gm_mesh *mesh, const gmi_side_lines *found,
                                            const gmi_line_flanks *flanks, int index, double t1) {
     const gm_pair *pair = mesh->pair;
 
@@ -181,7 +168,7 @@ static gm_line_load_point point_of_overlap(const gm_mesh *mesh, const side_lines
 }
 
 /* row: of the elastic workspace. */
-static gm_line_load_point point_at(const gm_mesh *mesh, const side_lines *found,
+static gm_line_load_point point_at(const gm_mesh *mesh, const gmi_side_lines *found,
                                    const gmi_line_flanks *flanks, int index, int row, double t1) {
     const gm_pair *pair = mesh->pair;
     if (found->work == NULL) {
@@ -241,7 +228,7 @@ static double length_on_path(const gm_mesh *mesh, const gmi_lines *path, int ind
 }
 
 /* What of a line is to bear load: all of it within the path, and beyond it where it does. */
-static double bearing_length(const gm_mesh *mesh, const side_lines *found, int index, int row,
+static double bearing_length(const gm_mesh *mesh, const gmi_side_lines *found, int index, int row,
                              gmi_interval part) {
     const double width = mesh->pair->face_width;
     const double advance = found->lines.advance;
@@ -277,8 +264,8 @@ static double bearing_length(const gm_mesh *mesh, const side_lines *found, int i
  * An edge presses hardest where its rounding has just taken the place of the flank, mostly between stations. Whether it
  * bears load there.
  */
-static int count_edges(walk *w, const side_lines *found, const gmi_line_flanks *flanks, int index,
-                       int row, gmi_interval part) {
+static int count_edges(walk *w, const gmi_side_lines *found, const gmi_line_flanks *flanks,
+                       int index, int row, gmi_interval part) {
     const gmi_elastic_lines_at *lines = &found->work->at;
     const double origin =
         found->lines.origin + (double)index * w->mesh->pair->transverse_base_pitch;
@@ -309,8 +296,8 @@ static double next_zero(double at_zero, double per_t1, double t1, double next) {
 }
 
 /* Where the overlap bends next: at lines of the grids, edges of linear reliefs, and tips. */
-static double next_bend(const gm_mesh *mesh, const side_lines *found, double origin, double t1,
-                        double to) {
+double gmi_line_next_bend(const gm_mesh *mesh, const gmi_side_lines *found, double origin,
+                          double t1, double to) {
     double next = to;
     for (int role = GM_PINION; role <= GM_WHEEL; ++role) {
         const gmi_surface_gear gear = gmi_surface_gear_of(mesh, found->side, role, found->reach);
@@ -345,14 +332,14 @@ static double next_bend(const gm_mesh *mesh, const side_lines *found, double ori
  * With constant stiffness the overlap is a parabola between two bends (beyond a tip next to one): it is largest at a bend
  * or at the top of a hump. Whether the line touches there.
  */
-static int count_bends(walk *w, const side_lines *found, const gmi_line_flanks *flanks, int index,
-                       gmi_interval part) {
+static int count_bends(walk *w, const gmi_side_lines *found, const gmi_line_flanks *flanks,
+                       int index, gmi_interval part) {
     const gm_mesh *mesh = w->mesh;
     const double origin = found->lines.origin + (double)index * mesh->pair->transverse_base_pitch;
     gm_line_load_point before = point_of_overlap(mesh, found, flanks, index, part.from);
     int touches = 0;
     for (double from = part.from, to; from < part.to; from = to) {
-        to = next_bend(mesh, found, origin, from, part.to);
+        to = gmi_line_next_bend(mesh, found, origin, from, part.to);
         const double half = 0.5 * (to - from), middle = from + half;
         const gm_line_load_point at = point_of_overlap(mesh, found, flanks, index, middle);
         const gm_line_load_point behind = point_of_overlap(mesh, found, flanks, index, to);
@@ -374,7 +361,7 @@ static int count_bends(walk *w, const side_lines *found, const gmi_line_flanks *
 }
 
 /* Whether the overlap of constant stiffness changes along a line. */
-static int has_bends(const gm_mesh *mesh, const side_lines *found) {
+static int has_bends(const gm_mesh *mesh, const gmi_side_lines *found) {
     const gmi_side *prepared = &mesh->side[found->side];
     return found->work == NULL && (prepared->pinion != NULL || prepared->wheel != NULL ||
                                    mesh->engagement.is_tilted || mesh->has_corners);
@@ -384,7 +371,7 @@ static int has_bends(const gm_mesh *mesh, const side_lines *found) {
  * Stations of one line as parallel axes have it, and what its own part bears, ends included. Returns GM_OK or
  * GM_ERR_MEMORY.
  */
-static int walk_line(walk *w, const side_lines *found, int index, int row, gmi_interval listed,
+static int walk_line(walk *w, const gmi_side_lines *found, int index, int row, gmi_interval listed,
                      gmi_interval part) {
     const gm_mesh *mesh = w->mesh;
     const gmi_engagement *at = &mesh->engagement;
@@ -458,7 +445,7 @@ static double touching_width(const gmi_elastic_work *work) {
 }
 
 /* The lines of constant stiffness as far as corners touch; edges that may be there are looked at all along. */
-static void widen(const gm_mesh *mesh, side_lines *found) {
+static void widen(const gm_mesh *mesh, gmi_side_lines *found) {
     const gmi_engagement *at = &mesh->engagement;
     const gmi_side *prepared = &mesh->side[found->side];
     const double overlap = found->delta + prepared->peak, moved = prepared->tilt_reach;
@@ -485,18 +472,8 @@ static OWN_STACK int sum_side(const gm_mesh *mesh, int side, const gm_position *
     return GM_OK;
 }
 
-/*
- * Which part of the lines of a side is on both flanks: that of parallel axes; between tilted ones, with constant stiffness,
- * as penetration.c and corner_line.c have it.
- */
-typedef struct side_ends {
-    gmi_line_ends path;
-    int first, last; /* lines between parallel axes */
-    int is_tilted;
-    gmi_tilt_cuts cuts;
-} side_ends;
-
-static void find_ends(const gm_mesh *mesh, side_lines *found, side_ends *ends) {
+/* With constant stiffness as penetration.c and corner_line.c have it. */
+void gmi_side_ends_find(const gm_mesh *mesh, gmi_side_lines *found, gmi_side_ends *ends) {
     const gmi_engagement *at = &mesh->engagement;
     const gmi_side *prepared = &mesh->side[found->side];
     ends->path = gmi_line_ends_find(mesh->pair, at, &found->lines);
@@ -524,8 +501,8 @@ static void find_ends(const gm_mesh *mesh, side_lines *found, side_ends *ends) {
 }
 
 /* listed: of the line between parallel axes. */
-static gmi_interval part_of(const side_ends *ends, const gm_mesh *mesh, const side_lines *found,
-                            int index, gmi_interval listed) {
+gmi_interval gmi_side_line_part(const gmi_side_ends *ends, const gm_mesh *mesh,
+                                const gmi_side_lines *found, int index, gmi_interval listed) {
     if (!ends->is_tilted) {
         return listed;
     }
@@ -566,7 +543,8 @@ static int walk_side(walk *w, int side, const gm_position *position, gm_workspac
                                                      : sum.contact * pair->face_width;
 
     /* Elastic teeth do not move the path by what they give way. */
-    side_lines found = {.side = side, .delta = gmi_ideal_penetration(at, side, position->offset)};
+    gmi_side_lines found = {.side = side,
+                            .delta = gmi_ideal_penetration(at, side, position->offset)};
     found.speeds[GM_PINION] = position->pinion_speed;
     found.speeds[GM_WHEEL] =
         (pair->pinion.base_radius * position->pinion_speed - position->offset_rate) /
@@ -591,14 +569,14 @@ static int walk_side(walk *w, int side, const gm_position *position, gm_workspac
     }
 
     /* Line by line, within the face and the path. */
-    side_ends ends;
-    find_ends(mesh, &found, &ends);
+    gmi_side_ends ends;
+    gmi_side_ends_find(mesh, &found, &ends);
     found.teeth = gmi_lines_teeth(pair, side, &lines_at, &found.lines);
     for (int k = found.lines.first; k <= found.lines.last && status == GM_OK; ++k) {
         const gmi_interval none = {0.0, 0.0};
         const int is_listed = k >= ends.first && k <= ends.last;
         const gmi_interval listed = is_listed ? gmi_line_clip(&ends.path, k) : none;
-        const gmi_interval part = part_of(&ends, mesh, &found, k, listed);
+        const gmi_interval part = gmi_side_line_part(&ends, mesh, &found, k, listed);
         const int row = found.work != NULL ? row_of(found.work, k) : 0;
         if ((listed.from < listed.to || part.from < part.to) && row >= 0) {
             status = walk_line(w, &found, k, row, listed, part);

@@ -14,6 +14,7 @@
 #include "friction.h"
 #include "internal.h"
 #include "law.h"
+#include "line_load.h"
 #include "meshing.h"
 #include "penetration.h"
 #include "position.h"
@@ -807,7 +808,7 @@ int gm_mesh_pairs_at(const gm_mesh *mesh, const gm_position *position, gm_worksp
 /* Whether all changes are flanks of these gears. */
 static int check_changes(const gm_mesh *mesh, const gm_flanks **pinion_changes,
                          const gm_flanks **wheel_changes, int count) {
-    if (count < 0 || mesh->elastic == NULL || mesh->model == GM_MODEL_SIMPLE) {
+    if (count < 0 || mesh->model == GM_MODEL_SIMPLE || mesh->has_corners) {
         return GM_ERR_PARAMETER;
     }
     if (count > 0 && (pinion_changes == NULL || wheel_changes == NULL)) {
@@ -849,8 +850,13 @@ int gm_mesh_force_by_flanks(const gm_mesh *mesh, const gm_position *position,
         force_by[k] = 0.0;
     }
     for (int side = GM_DRIVE; side <= GM_COAST && status == GM_OK; ++side) {
-        status = gmi_elastic_side_by_flanks(mesh, side, position, pinion_changes, wheel_changes,
-                                            count, workspace, force_by);
+        if (mesh->elastic == NULL) {
+            gmi_side_by_flanks(mesh, side, position, pinion_changes, wheel_changes, count,
+                               force_by);
+        } else {
+            status = gmi_elastic_side_by_flanks(mesh, side, position, pinion_changes, wheel_changes,
+                                                count, workspace, force_by);
+        }
     }
     for (int k = 0; k < count && status != GM_OK; ++k) {
         force_by[k] = gmi_nan();

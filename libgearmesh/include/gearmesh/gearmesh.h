@@ -1103,25 +1103,27 @@ GM_API int gm_mesh_pairs_at(const gm_mesh *mesh, const gm_position *position,
                             gm_workspace *workspace, int pairs[2]);
 
 /**
- * How the force of elastic teeth grows with other flanks: dF/da, where `a` times a change is added to the flanks of the mesh
- * and both angles are held. Of any number of changes at once, by one adjoint solution. For the search of modifications: at
- * a given load the transmission error (the wheel's lead) changes by dF/da over dF/dx, see gm_mesh_touching_stiffness().
+ * How the force grows with other flanks: dF/da, where `a` times a change is added to the flanks of the mesh and both angles
+ * are held. Of any number of changes at once. For the search of modifications: at a given load without friction the
+ * transmission error (the wheel's lead) changes by dF/da over dF/dx, dF/dx = -force_by.wheel_angle / r_bw.
  *
- * @param[in]     mesh            of GM_LAW_ELASTIC
+ * @param[in]     mesh            3D, and with constant stiffness without corner contact
  * @param[in]     position        where the gears are; speeds do not matter
  * @param[in]     pinion_changes  [count] what each adds to the pinion's flanks for a = 1: any prepared flanks, as of one
  *                                modification by 1 um; NULL = nothing
  * @param[in]     wheel_changes   [count] likewise
  * @param[in]     count           of changes, 0 or more
- * @param[in,out] workspace       of this mesh, one for each thread
+ * @param[in,out] workspace       of this mesh, one for each thread; NULL: the constant law needs none
  * @param[out]    force_by        [count] dF/da, F the net force of gm_mesh_result.force without damping (N, a being a number);
  *                                NaN on an error
- * @return as gm_mesh_evaluate_at(); GM_ERR_PARAMETER for other laws and a count below 0, GM_ERR_TOOTH for flanks of other
- * gears
+ * @return as gm_mesh_evaluate_at(); GM_ERR_PARAMETER for other meshes and a count below 0, GM_ERR_TOOTH for flanks of
+ * other gears
  *
- * Accuracy: exact to what the balance of the teeth leaves (1e-8), one-sided where flanks begin to touch.
- * Source:   adjoint of the balance, docs/elastic.md.
- * Cost:     an evaluation, and for each change what it takes to read the flanks.
+ * Accuracy: exact to what the balance of elastic teeth leaves (1e-8), else to rounding (1e-12 m of each change); one-sided
+ *           where flanks begin to touch.
+ * Source:   elastic teeth: adjoint of the balance, docs/elastic.md; constant stiffness: integral of the change over what
+ *           touches, docs/equations.md.
+ * Cost:     an evaluation or two, and for each change what it takes to read the flanks.
  */
 GM_API int gm_mesh_force_by_flanks(const gm_mesh *mesh, const gm_position *position,
                                    const gm_flanks **pinion_changes,
