@@ -308,6 +308,19 @@ class Elastic(unittest.TestCase):
             result = subprocess.run([GEARSIM, "run.ini"], cwd=self.folder, capture_output=True, text=True, check=False)
             self.assertNotIn("stations", result.stderr)
 
+    def test_a_sweep_of_loads_ends_as_a_run_of_its_own(self):
+        """Lines are cut for the largest load, whichever comes first: a first one near 0 would cut them elsewhere."""
+        columns = {"columns": "te_um, load_torque_Nm"}
+        alone = self.rows(NREL | {"mesh": {}, "output": {"columns": "te_um"}})
+        most_Nm = NREL["load"]["mean_Nm"]
+        for first_Nm, last_Nm in ((1e-3 * most_Nm, most_Nm), (most_Nm, 0.5 * most_Nm)):
+            sweep = self.rows(NREL | {"mesh": {}, "load": {"mean_Nm": first_Nm, "end_Nm": last_Nm}, "output": columns,
+                                      "analysis": NREL["analysis"] | {"loads": 2}})
+            under = [row for row in sweep if math.isclose(float(row["load_torque_Nm"]), most_Nm)]
+            self.assertEqual(len(under), len(alone))
+            for here, there in zip(under, alone):
+                self.assertAlmostEqual(float(here["te_um"]), float(there["te_um"]), delta=1e-5)
+
     def test_slopes_by_modifications_are_those_of_differences(self):
         """Reliefs that are there and one that is not, slopes and twist, of both flanks and of the one that carries."""
         step_um = 1e-3

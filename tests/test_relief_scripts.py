@@ -464,6 +464,18 @@ class Relief(Case):
         self.assertAlmostEqual(found["pinion_tip_relief_um"], DEFLECTION_UM, delta=0.11)
         self.assertAlmostEqual(self.worst_um(text)[2], (softest_um - DEFLECTION_UM) / 2, delta=delta)
 
+    def test_ranges_of_a_ring_lie_between_its_tip_and_its_start(self):
+        """Its tip is inside: a length is none below 0, and a diameter is larger than that of the tip."""
+        with open(SPUR, encoding="utf-8") as source:
+            text = loaded_te.with_values("".join(line for line in source if "tip_" not in line and "[mod" not in line), {
+                "gears.wheel_teeth": "-79", "gears.center_distance_mm": "54", "analysis.positions": "20"})
+        for key, given in (("length_mm", None), ("diameter_mm", 157)):
+            file = self.write("ring.ini", text + f"[modifications]\nwheel_tip_relief_{key} = {given}\n" if given else text)
+            told = self.accepted("relief", file, "--starts", "1", "--tolerance", "0", "--no-pictures").stdout
+            low, high = map(float, re.search(rf"wheel_tip_relief_{key} .* (\S+) to (\S+)", told).groups())
+            tip_mm = 2 * 79 - 2 * 2 * 1  # z m less two addenda, nearly
+            self.assertTrue(0 < low < high < 10 if given is None else tip_mm < low < high < 2 * 79 + 4, told)
+
     def test_variables_by_itself_and_pictures(self):
         result = self.accepted("relief", SPUR, "--output", "r", "--torques", "36:73:2", "--starts", "1", "--tolerance",
                                "0.5", "--set", "analysis.positions=40", run=self.run_program)

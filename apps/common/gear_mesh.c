@@ -150,6 +150,13 @@ int gear_mesh_stations(const gear_mesh *mesh, const config *conf) {
     return is_relieved && stations < RELIEVED ? RELIEVED : stations;
 }
 
+/* Of several static loads the largest, as the lines are cut for it where tip edges press: at one near 0 they are not yet. */
+static double reference_load(const config *conf) {
+    const int are_several = conf->analysis == ANALYSIS_STATIC && conf->loads > 1;
+
+    return fmax(fabs(conf->mean_load), are_several ? fabs(conf->end_load) : 0.0);
+}
+
 static gm_mesh_params params_of(const config *conf, const gear_mesh *mesh) {
     static const int laws[] = {[LAW_CONSTANT] = GM_LAW_CONSTANT,
                                [LAW_ISO6336] = GM_LAW_ISO6336,
@@ -180,8 +187,8 @@ static gm_mesh_params params_of(const config *conf, const gear_mesh *mesh) {
                                 ? GM_CORNER_ON
                                 : GM_CORNER_OFF;
     params.tip_rounding = conf->tip_rounding;
-    if (fabs(conf->mean_load) > 0) {
-        params.reference_torque = share * fabs(conf->mean_load);
+    if (reference_load(conf) > 0) {
+        params.reference_torque = share * reference_load(conf);
     }
 
     /* Friction of the flanks, off with a coefficient of 0. */
