@@ -335,6 +335,46 @@ static void longest_step_is_a_part_of_a_tooth(void) {
     model_free(&model);
 }
 
+/* A longest step that is kept is none that is too long for what begins until it is looked for again, and hardly shorter. */
+static void longest_step_holds_until_it_says(void) {
+    static const double ends[][2] = {{0.0, 1000.0}, {1000.0, 0.0}, {-500.0, -20.0}, {300.0, 300.0}};
+
+    for (int i = 0; i < (int)(sizeof ends / sizeof ends[0]); ++i) {
+        config conf = case_config(MODEL_3D, DRIVE_SPEED);
+        conf.start_speed = ends[i][0];
+        conf.end_speed = ends[i][1];
+        const gear_mesh gears = case_mesh(&conf);
+        gear_model model;
+        double state[STATES_MAX], until;
+        model_init(&model, &conf, &gears);
+        set_state(&model, 52e-6, 0.0, 0.0, 0.0, state);
+
+        for (double t = 0.05; t < 0.95; t += 0.05) {
+            const double held = model_held_step(&model, t, state, &until);
+            gm_test_context("%g to %g rad/s, t = %g", ends[i][0], ends[i][1], t);
+            GM_ASSERT(until > t);
+            for (int k = 0; k <= 8; ++k) {
+                const double within = t + k / 8.0 * (isfinite(until) ? until - t : 1.0);
+                const double allowed = model_max_step(&model, within, state);
+                GM_ASSERT(held <= (1.0 + 1e-12) * allowed && held > 0.995 * allowed);
+            }
+        }
+        model_free(&model);
+    }
+
+    /* Where the speed follows from torques, nobody knows. */
+    const config conf = case_config(MODEL_3D, DRIVE_TORQUE);
+    const gear_mesh gears = case_mesh(&conf);
+    gear_model model;
+    double state[STATES_MAX], until;
+    model_init(&model, &conf, &gears);
+    set_state(&model, 52e-6, 0.0, 0.0, 100.0, state);
+    GM_ASSERT_ABS(model_held_step(&model, 0.25, state, &until), model_max_step(&model, 0.25, state),
+                  0.0);
+    GM_ASSERT(until == 0.25);
+    model_free(&model);
+}
+
 /* Without contact x'' and the pinion's acceleration change by the bound of their rates at most, whatever ripples. */
 static void ripple_changes_a_flight_less_than_its_bound(void) {
     for (int d = 0; d < 2; ++d) {
@@ -426,6 +466,7 @@ int main(int argc, char **argv) {
         GM_TEST(library_status_is_handed_on),
         GM_TEST(tolerance_of_the_angle_never_loosens),
         GM_TEST(longest_step_is_a_part_of_a_tooth),
+        GM_TEST(longest_step_holds_until_it_says),
         GM_TEST(ripple_changes_a_flight_less_than_its_bound),
         GM_TEST(flight_ends_at_the_touch),
     };

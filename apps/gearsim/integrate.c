@@ -229,15 +229,21 @@ static double stop_time(integrator *solver, double longest) {
     return solver->time + allowed;
 }
 
-/* The smaller of what the user allows and what the model needs; 0 = none. */
-static double longest_step(const integrator *solver) {
+/* The smaller of what the user allows and what the model needs; 0 = none. It holds for a while. */
+static double longest_step(integrator *solver) {
+    if (solver->time < solver->longest_until) {
+        return solver->longest;
+    }
     const double asked = solver->options.max_step;
-    const double needed = model_max_step(solver->model, solver->time, NV_DATA_S(solver->state));
+    const double needed = model_held_step(solver->model, solver->time, NV_DATA_S(solver->state),
+                                          &solver->longest_until);
 
     if (asked > 0.0 && needed > 0.0) {
-        return fmin(asked, needed);
+        solver->longest = fmin(asked, needed);
+    } else {
+        solver->longest = asked > 0.0 ? asked : needed;
     }
-    return asked > 0.0 ? asked : needed;
+    return solver->longest;
 }
 
 /* Behind a row of a table; where it is a kink, what the solver knows of the steps before is worth nothing. */

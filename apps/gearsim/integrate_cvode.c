@@ -83,6 +83,8 @@ static int create(integrator *solver) {
     memory->order = memory->known = -1;
     memory->longest = 0.0;  /* none, as CVODE begins, */
     memory->stop = DBL_MAX; /* and none either */
+
+    /* A vector that only sees others go by, and the corrector with one to work in. */
     memory->scratch = N_VClone(solver->state);
     memory->reader = N_VNewEmpty(solver->context);
     if (memory->scratch == NULL || memory->reader == NULL) {

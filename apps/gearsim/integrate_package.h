@@ -51,6 +51,8 @@ struct integrator {
     double touching[2];        /* part of the flanks that touches, at both ends of the last step */
     double touched;            /* its integral up to the end of the last step (s) */
     double step_length;        /* of the last step (s) */
+    double longest;            /* step, 0 = any, (s) */
+    double longest_until;      /* and until when that holds (s) */
     double carried_since;      /* all that touched has carried, HUGE_VAL = it does not */
     double row_time;           /* next row of the tables, HUGE_VAL = there is none */
     double last_time;          /* before it; nothing is evaluated later until it is reached */

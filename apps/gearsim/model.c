@@ -39,6 +39,9 @@ static const double least_share = 1.0 / 512.0;
  */
 static const double steps_per_vibration = 10.0;
 
+/* Part of its speed that the pinion may gain or lose before its longest step is looked for again. */
+static const double held_share = 1.0 / 512.0;
+
 /* Bounds of the damping ratio that the response to the noise is computed with: it has to forget, and to
  * vibrate. */
 static const double smallest_ratio = 0.02, largest_ratio = 0.5;
@@ -229,6 +232,8 @@ static int equilibrium(const gear_model *model, double speed, double applied, do
         *offset = 0.0;
         return GM_OK;
     }
+
+    /* Without friction the first one is right, and the share 1. */
     for (int k = 0; k < CORRECTIONS && status == GM_OK; ++k) {
         gm_mesh_result mesh;
         status = gear_contact_equilibrium(gears, 0.0, speed, torque, guess, offset, &mesh);
@@ -744,6 +749,22 @@ double model_max_step(const gear_model *model, double time, const double state[]
     const int is_noisy_shorter = noisy > 0.0 && (turning == 0.0 || noisy < turning);
 
     return is_noisy_shorter ? noisy : turning;
+}
+
+double model_held_step(const gear_model *model, double time, const double state[], double *until) {
+    const double now = model_max_step(model, time, state);
+
+    /* A speed that follows the state, a table or a ripple may be another one after any step. */
+    *until = time;
+    if (model->states == STATES_MAX || !drive_is_linear(&model->drive)) {
+        return now;
+    }
+
+    /* The speed goes from one end to the other, and the longest step with it. */
+    const double speed = fabs(drive_at(&model->drive, time).speed);
+    const double acceleration = fabs(model->drive.acceleration);
+    *until = acceleration > 0.0 ? time + held_share * speed / acceleration : HUGE_VAL;
+    return acceleration > 0.0 ? fmin(now, model_max_step(model, *until, state)) : now;
 }
 
 static double jump_share(const gear_model *model) {

@@ -209,6 +209,9 @@ double model_before_row(const gear_model *model, double row);
 /* Longest step at a time that cannot miss a tooth or a loss of contact (s); 0 = any. */
 double model_max_step(const gear_model *model, double time, const double state[]);
 
+/* The same for all steps that begin before a time, which is the one given where the next step may be another one. */
+double model_held_step(const gear_model *model, double time, const double state[], double *until);
+
 /* Reciprocals of the errors that the solver may make in one step; absolute tolerance of x in m, the
  * relative one of its part beyond the backlash. */
 void model_error_weights(const gear_model *model, double relative_tolerance,

@@ -72,38 +72,40 @@ static enum column_need need_of(const sampling *s, const dynamic_column *column)
     return column->need == NEEDS_PAIRS && needs_force ? NEEDS_FORCE : column->need;
 }
 
+/* What has to be known for a column: of the samples, of their means, or of the row alone. */
+static void add_need(sampling *s, const dynamic_column *column, enum sample_kind kind) {
+    switch (kind) {
+    case SAMPLE_BEHIND:
+        s->mean_kind = SAMPLE_BOX;
+        s->edge_wanted = EDGE_OFFSET | EDGE_PINION;
+        break;
+    case SAMPLE_BOX:
+    case SAMPLE_HAT:
+        s->mean_kind = kind;
+        s->shows_means = 1;
+        s->shows_load |= column->need == NEEDS_MOTION;
+        s->shows_overlap |= column->need == NEEDS_MESH;
+        break;
+    case SAMPLE_VALUES:
+        s->sample_need = larger(s->sample_need, column->need);
+        s->row_need = larger(s->row_need, column->need);
+        break;
+    default:
+        s->row_need = larger(s->row_need, need_of(s, column));
+        break;
+    }
+}
+
 /* What the columns show, and what they need for that. Sets what the filter gets of each. */
 static void set_columns(sampling *s, const int columns[], enum sample_kind kinds[]) {
     for (int k = 0; k < s->column_count; ++k) {
         const dynamic_column *column = &dynamic_columns[columns[k]];
-        const enum column_need need = need_of(s, column);
 
         kinds[k] = kind_of(s, column);
         s->counts_pairs |= column->need == NEEDS_PAIRS;
         s->show[k] = takes_mean(s, column) ? column->mean : column->value;
         s->shown[k] = kinds[k] == SAMPLE_BEHIND ? &s->behind : &s->sample;
-
-        /* What has to be known for it: of the samples, of their means, or of the row alone. */
-        switch (kinds[k]) {
-        case SAMPLE_BEHIND:
-            s->mean_kind = SAMPLE_BOX;
-            s->edge_wanted = EDGE_OFFSET | EDGE_PINION;
-            break;
-        case SAMPLE_BOX:
-        case SAMPLE_HAT:
-            s->mean_kind = kinds[k];
-            s->shows_means = 1;
-            s->shows_load |= column->need == NEEDS_MOTION;
-            s->shows_overlap |= column->need == NEEDS_MESH;
-            break;
-        case SAMPLE_VALUES:
-            s->sample_need = larger(s->sample_need, column->need);
-            s->row_need = larger(s->row_need, column->need);
-            break;
-        default:
-            s->row_need = larger(s->row_need, need);
-            break;
-        }
+        add_need(s, column, kinds[k]);
     }
 }
 
@@ -221,17 +223,21 @@ static int take_sample(sampling *s, double row, int i) {
     const int of_row = i == 0;
     const enum column_need need = of_row ? s->row_need : s->sample_need;
 
-    /* Where the gears are, how they touch if a column needs to know, and what they do about that time. */
+    /* Where the gears are. */
     s->sample.time = sample_time(s, row, i);
     int failed = s->follows ? sample_means_gather(s, s->sample.time) : 0;
     if (!failed) {
         failed = see_sample_motion(s, need);
     }
+
+    /* How they touch, if a column needs to know. */
     if (!failed && of_row) {
         failed = sample_row(s);
     } else if (!failed && need >= NEEDS_FORCE) {
         failed = sample_mesh(s, need);
     }
+
+    /* And what they do about that time. */
     if (!failed) {
         if (!s->means.is_started) {
             s->means.edge = s->sample.motion;
@@ -265,11 +271,9 @@ typedef struct sample_block {
     int each;                                             /* and at the centres before them: 2 */
 } sample_block;
 
-/* The solver only goes forward: centres with the ends, where flanks that do not carry may have to be looked at there. */
-static int see_block(sampling *s, double row, sample_block *block) {
+/* The times that the solver is asked about. */
+static void set_times(const sampling *s, double row, sample_block *block) {
     const int count = s->factor, each = s->shows_overlap ? 2 : 1;
-    double *times = block->times;
-    const double *states[MODEL_EDGES_MAX];
 
     block->count = count;
     block->each = each;
@@ -278,29 +282,48 @@ static int see_block(sampling *s, double row, sample_block *block) {
         const int is_seen = !s->is_force_alone || j == count - 1;
         block->end[j] = time_of_share(s, row, s->box_end_share[j]);
         block->centre[j] = is_seen ? time_of_share(s, row, s->centre_share[j]) : block->end[j];
-        times[each * j] = block->centre[j];
-        times[each * j + each - 1] = block->end[j];
-        states[j] = block->points[each * j + each - 1].state;
-    }
 
-    /* All ends, and before the last one the state at the row's own time if it is asked for. */
+        /* Centres with the ends, where flanks that do not carry may have to be looked at there. */
+        block->times[each * j] = block->centre[j];
+        block->times[each * j + each - 1] = block->end[j];
+    }
+}
+
+/* All ends, and before the last one, as the solver only goes forward, the state at the row's own time if it is asked for. */
+static int see_points(sampling *s, double row, sample_block *block) {
     const double row_time = time_of_share(s, row, 1.0);
-    const int is_row_apart = each == 1 && row_needs_state(s);
-    const int last = each * count - 1;
-    int failed = sample_points(s, is_row_apart ? last : last + 1, times, block->points);
+    const int is_row_apart = block->each == 1 && row_needs_state(s);
+    const int last = block->each * block->count - 1;
+    int failed = sample_points(s, is_row_apart ? last : last + 1, block->times, block->points);
+
     if (!failed && is_row_apart) {
         failed = sample_motion(s, row_time, &block->of_row);
         if (!failed) {
-            failed = sample_points(s, 1, &times[last], &block->points[last]);
+            failed = sample_points(s, 1, &block->times[last], &block->points[last]);
         }
     } else if (!failed) {
-        block->of_row = each == 2 ? model_motion(s->model, row_time, block->points[last - 1].state)
-                                  : model_prescribed_motion(s->model, row_time);
-    }
-    if (!failed) {
-        model_edges(s->model, count, block->end, states, s->edge_wanted, block->edges);
+        block->of_row = block->each == 2
+                            ? model_motion(s->model, row_time, block->points[last - 1].state)
+                            : model_prescribed_motion(s->model, row_time);
     }
     return failed;
+}
+
+static int see_block(sampling *s, double row, sample_block *block) {
+    const double *states[MODEL_EDGES_MAX];
+
+    set_times(s, row, block);
+    const int failed = see_points(s, row, block);
+    if (failed) {
+        return failed;
+    }
+
+    /* What is carried at the ends. */
+    for (int j = 0; j < block->count; ++j) {
+        states[j] = block->points[block->each * (j + 1) - 1].state;
+    }
+    model_edges(s->model, block->count, block->end, states, s->edge_wanted, block->edges);
+    return 0;
 }
 
 /* Of the block the means of the force, the only column that is filtered. */
@@ -352,6 +375,8 @@ static int take_block(sampling *s, double row) {
     if (!failed) {
         failed = sample_row(s);
     }
+
+    /* Columns that are filtered, and those of the row alone. */
     if (!failed && s->is_force_alone) {
         set_forces(s, &block);
     } else if (!failed) {

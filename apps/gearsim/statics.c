@@ -65,6 +65,8 @@ typedef struct sweep {
     known_position last, before;
     int bends; /* tables do; ideal flanks and elastic teeth begin as well along the slope */
     int is_cubic;
+    double
+        stiffening; /* how the slope of the torque over x changes with x, at the last position (N/m) */
 } sweep;
 
 /* What of an equilibrium is kept until its row is written. */
@@ -168,6 +170,39 @@ static double bend_of(const sweep *known, double on) {
     return on * on * (bend + (1.0 + on * per_step) * (bend - before_bend));
 }
 
+/* Of the torque over x (N). */
+static double torque_slope(const gm_pair *pair, const gm_mesh_result *mesh) {
+    return -mesh->wheel_torque_by.wheel_angle / pair->wheel.base_radius;
+}
+
+/*
+ * Newton's step from a guess, with the bend of the torque over x as it was at the position before: it changes by a twentieth from
+ * one close position to the next, so that the step is twenty times better. Returns the guess where it cannot be evaluated.
+ */
+static double step_from(const gear_mesh *gears, const sweep *known, const static_position *at,
+                        double guess, double *slope) {
+    gm_position position;
+    gm_mesh_result mesh;
+    int status =
+        gm_position_from_pinion_angle(&gears->pair, at->pinion_angle, guess, 0.0, &position);
+
+    *slope = (double)NAN;
+    position.pinion_speed = at->conf->start_speed;
+    if (status == GM_OK) {
+        status = gear_contact_evaluate(gears, &position, GM_WANT_DERIVATIVES, &mesh);
+    }
+    if (status != GM_OK) {
+        return guess;
+    }
+
+    /* missing = slope step + stiffening step^2 / 2, from the straight line on; a bend of more than a part is none to count on. */
+    *slope = torque_slope(&gears->pair, &mesh);
+    const double straight = (known->load - mesh.wheel_torque) / *slope;
+    const double bent = 0.5 * known->stiffening / *slope * straight;
+    const double share = fabs(bent) < 0.1 ? 1.0 - bent * (1.0 - 2.0 * bent) : 1.0;
+    return guess + share * straight;
+}
+
 /* The equilibrium, from the positions before: close positions follow a cubic, others at best the slope. */
 static int find_position(const gear_mesh *gears, sweep *known, static_position *position) {
     const gm_pair *pair = &gears->pair;
@@ -175,12 +210,22 @@ static int find_position(const gear_mesh *gears, sweep *known, static_position *
     const double on = angle - known->last.angle;
     const double straight = known->last.offset + known->last.slope * on;
     const double cubic = known->bends ? straight + bend_of(known, on) : straight;
-    const int status = gear_contact_equilibrium(gears, angle, position->conf->start_speed,
-                                                known->load, known->is_cubic ? cubic : straight,
-                                                &position->offset, &position->mesh);
+
+    /* From the better guess, with what the position before knows of the torque. */
+    const double first = known->is_cubic ? cubic : straight;
+    double first_slope = (double)NAN;
+    const double guess = known->bends && !isnan(first)
+                             ? step_from(gears, known, position, first, &first_slope)
+                             : first;
+    const int status =
+        gear_contact_equilibrium(gears, angle, position->conf->start_speed, known->load, guess,
+                                 &position->offset, &position->mesh);
 
     /* Along the curve of constant torque, for the guess at the next position. */
     if (known->bends) {
+        const double change = torque_slope(pair, &position->mesh) - first_slope;
+        const double stiffening = change / (position->offset - first);
+        known->stiffening = isfinite(stiffening) ? stiffening : 0.0;
         known->is_cubic = fabs(position->offset - cubic) < fabs(position->offset - straight);
         known->before = known->last;
     }
@@ -202,6 +247,7 @@ static int write_position(const config *conf, const gear_mesh *gears, double ang
     static_position position = {
         .conf = conf, .gears = gears, .pinion_angle = angle, .load = known->load};
 
+    /* The equilibrium, if it is not known from all loads of the position at once. */
     if (state != NULL && !isnan(state->offset)) {
         position.offset = state->offset;
         position.mesh.contact = state->contact;
@@ -214,6 +260,7 @@ static int write_position(const config *conf, const gear_mesh *gears, double ang
     }
     position.apex = gear_contact_apex(gears);
 
+    /* What columns show beyond it. */
     *status = find_needed(results, needs, &position);
     if (*status != GM_OK) {
         return EXIT_RUN_FAILED;
@@ -223,6 +270,8 @@ static int write_position(const config *conf, const gear_mesh *gears, double ang
     if (*status != GM_OK) {
         return EXIT_RUN_FAILED;
     }
+
+    /* The row, and those of the load distribution. */
     for (int i = 0; i < results->columns; ++i) {
         values[results->place[i]] = static_columns[results->column[i]].value(&position);
     }
@@ -354,7 +403,7 @@ static int write_period(const config *conf, const gear_mesh *gears, double load,
                         const found_state *states, static_results *results) {
     const known_position none = {0.0, (double)NAN, 0.0};
     const int bends = conf->law != LAW_ELASTIC && !gear_contact_is_ideal(gears);
-    sweep known = {load, none, none, bends, 0};
+    sweep known = {load, none, none, bends, 0, 0.0};
 
     for (int position = 0; position < conf->positions; ++position) {
         const double angle = pinion_angle(conf, &gears->pair, position);
@@ -417,32 +466,47 @@ int statics_check(const config *conf, const gear_mesh *gears) {
     return status != 0 ? status : load_file_check(conf);
 }
 
+/* What a run needs beside its equilibria. 0, or an exit code after a message. */
+static int open_run(static_results *results, load_block *block, const config *conf,
+                    const gear_mesh *gears) {
+    int exit_code = load_file_open(&results->distribution, conf);
+
+    /* Points of a position are kept where a file takes them. */
+    if (exit_code == 0 && results->distribution != NULL) {
+        results->capacity = gear_contact_line_load_points(gears);
+        results->points = allocate((size_t)results->capacity, sizeof *results->points);
+        exit_code = results->points != NULL ? 0 : message_no_memory(conf->messages);
+    }
+
+    /* Equilibria under several loads side by side, and what modifications do to them. */
+    if (exit_code == 0) {
+        exit_code = load_block_open(block, conf, gears);
+    }
+    if (exit_code == 0) {
+        exit_code = te_slopes_open(&results->slopes, conf, gears);
+    }
+    return exit_code;
+}
+
+static void close_run(static_results *results, load_block *block) {
+    te_slopes_close(&results->slopes);
+    load_block_close(block);
+    free(results->points);
+}
+
 int statics_run(const config *conf, const gear_mesh *gears) {
     const column_names names = static_column_names(conf);
     static_results results = {.distribution = NULL};
-    int exit_code = load_file_open(&results.distribution, conf);
-
-    /* Points of a position are kept where a file takes them. */
-    if (exit_code == 0 && results.distribution != NULL) {
-        results.capacity = gear_contact_line_load_points(gears);
-        results.points = allocate((size_t)results.capacity, sizeof *results.points);
-        exit_code = results.points != NULL ? 0 : message_no_memory(conf->messages);
-    }
     load_block block = {.loads = 0};
-    if (exit_code == 0) {
-        exit_code = load_block_open(&block, conf, gears);
-    }
-    if (exit_code == 0) {
-        exit_code = te_slopes_open(&results.slopes, conf, gears);
-    }
+
+    int exit_code = open_run(&results, &block, conf, gears);
     if (exit_code != 0) {
         load_file_close(results.distribution, "no rows");
-        te_slopes_close(&results.slopes);
-        load_block_close(&block);
-        free(results.points);
+        close_run(&results, &block);
         return exit_code;
     }
 
+    /* The file of the load distribution is closed with the result, see write_all(). */
     interrupt_watch(SECOND_KILLS);
     results.output = output_open(conf, names.name, names.count, &exit_code);
     if (results.output != NULL) {
@@ -453,8 +517,7 @@ int statics_run(const config *conf, const gear_mesh *gears) {
         load_file_close(results.distribution, "there is no result");
     }
     interrupt_unwatch();
-    te_slopes_close(&results.slopes);
-    load_block_close(&block);
-    free(results.points);
+
+    close_run(&results, &block);
     return exit_code;
 }
