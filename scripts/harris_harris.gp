@@ -29,7 +29,7 @@ set label 'Peak-to-peak transmission error over torque, for a family of designs'
 set label quantity at screen 0.975, screen 0.88 right font ',12' noenhanced
 if (design_load >= torque_low && design_load <= torque_high) {
     set arrow from first design_load, graph 0 to first design_load, graph 1.015 nohead lw 1.4 dt (8,5) lc rgb grey
-    set label sprintf('design load %.4g N m', design_load) at first design_load, graph 1.035 center font ',12' \
+    set label design_text at first design_load, graph 1.035 center font ',12' \
         textcolor rgb grey
 }
 do for [i = 0:curves - 1] {

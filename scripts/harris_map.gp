@@ -50,7 +50,7 @@ set label 'Peak-to-peak transmission error, lines each ' . sprintf('%g µm; dash
 if (design_load >= torque_low && design_load <= torque_high) {
     set arrow from first design_load, graph 0 to first design_load, graph 1.015 nohead front lw 1.6 dt (8,5) \
         lc rgb '#202020'
-    set label sprintf('design load %.4g N m', design_load) at first design_load, graph 1.035 center font ',12' \
+    set label design_text at first design_load, graph 1.035 center font ',12' \
         textcolor rgb grey
 }
 if (has_chosen && chosen >= number_low && chosen <= number_high) {

@@ -409,7 +409,7 @@ class Gears:
         if not is_too_much(torques_Nm[-1]):
             return torques_Nm
         count = bisect.bisect_left(torques_Nm, True, key=is_too_much)
-        print(f"{self.path}: torques end below {abs(torques_Nm[count]):.4g} N m, which the gears cannot carry")
+        print(f"{self.path}: torques end below {torque_text(abs(torques_Nm[count]))} N m, which the gears cannot carry")
         return torques_Nm[:count]
 
     def touching_um(self):
@@ -574,6 +574,12 @@ def apart(positions, distance):
     for first, count, middle in groups:
         placed[order[first : first + count]] = middle + distance * (np.arange(count) - (count - 1) / 2)
     return placed
+
+
+def torque_text(torque_Nm):
+    """Four digits, and no exponent: 170600 and not 1.706e+05."""
+    text = f"{torque_Nm:.4g}"
+    return f"{float(text):.0f}" if "e+" in text else text
 
 
 def peak_to_peak_text(te_um):

@@ -24,15 +24,15 @@ unset key
 
 set label title_text at screen 0.025, screen 0.96 left font ',17' noenhanced
 set label (!is_face ? 'Peak-to-peak transmission error' : 'Largest face load factor of the mesh cycle') \
-    . ' over torque; grey: the range searched' \
-    . (has_band ? ', bands: ' . band_text : '') at screen 0.025, screen 0.92 left font ',12' textcolor rgb grey
+    . ' over torque' . (range_high > range_low ? '; grey: the range searched' : '') \
+    . (has_band ? (range_high > range_low ? ', bands: ' : '; bars: ') . band_text : '') at screen 0.025, screen 0.92 left font ',12' textcolor rgb grey
 if (range_high > range_low) {
     set object rectangle from first range_low, graph 0 to first range_high, graph 1 behind fillcolor rgb '#eeeeee' \
         fillstyle solid noborder
 }
 if (design_load <= torque_high) {
     set arrow from first design_load, graph 0 to first design_load, graph 1.015 nohead lw 1.4 dt (8,5) lc rgb grey
-    set label sprintf('design load %.4g N m', design_load) at first design_load, graph 1.035 center font ',12' \
+    set label design_text at first design_load, graph 1.035 center font ',12' \
         textcolor rgb grey
 }
 do for [i = 1:2] {
