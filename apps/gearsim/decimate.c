@@ -145,6 +145,8 @@ decimator *decimator_create(int factor, int channels, const enum sample_kind kin
 #if HAS_WIDE
     created->is_wide = __builtin_cpu_supports("avx2") != 0;
 #endif
+
+    /* What grows with the channels and the length. */
     created->kinds = malloc(count * sizeof *created->kinds);
     created->weights =
         malloc((SAMPLE_KINDS - 1) * (size_t)created->length * sizeof *created->weights);

@@ -161,6 +161,8 @@ SUNNonlinearSolver corrector_create(const integrator *solver, N_Vector scratch) 
     }
     own->solver = solver;
     own->change = scratch;
+
+    /* Without a setup and counters, as CVODE asks for these only where they are there. */
     module->content = own; /* freed with the module */
     module->ops->gettype = type;
     module->ops->setsysfn = set_residual;

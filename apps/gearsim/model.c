@@ -69,6 +69,7 @@ static void init_bodies(gear_model *model, const config *conf) {
     const double r_bp = model->gears->pair.pinion.base_radius;
     const double r_bw = model->gears->pair.wheel.base_radius;
 
+    /* What a force along the line of action, and a torque, do to the arcs of the base circles. */
     model->wheel_mobility = square(r_bw) / conf->wheel_inertia;
     model->torque_to_offset = r_bw / conf->wheel_inertia;
 
@@ -84,6 +85,8 @@ static void init_bodies(gear_model *model, const config *conf) {
         model->torque_to_pinion = r_bp / conf->pinion_inertia;
         model->states = 4;
     }
+
+    /* Both together, and what holds them back. */
     model->moved_mass = 1.0 / (model->pinion_mobility + model->wheel_mobility);
     model->pinion_drag = conf->pinion_drag;
     model->wheel_drag = conf->wheel_drag;

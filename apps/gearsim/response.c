@@ -101,6 +101,8 @@ static void set_recurrence(response *linear, double gain, double frequency, doub
             linear->to_given[k] = gain * linear->length / (double)(k + 1);
         }
     }
+
+    /* From the powers of p to those of p'. */
     for (int k = 1; k < TERMS; ++k) {
         linear->to_rate[k] = (double)k / linear->length;
     }

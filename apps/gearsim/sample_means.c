@@ -73,6 +73,8 @@ int sample_means_gather(sampling *s, double to) {
     if (!(length > 0.0)) {
         return 0;
     }
+
+    /* Gauss's rule of four points in each piece: the integral, and the one under a weight that rises from 0 to 1. */
     const double pieces = ceil(length / model_smooth_time(s->model, &s->means.edge));
 
     for (double piece = 0.0; piece < pieces; piece += 1.0) {

@@ -130,11 +130,15 @@ static void choose_blocks(sampling *s) {
         s->sample_need = larger(s->sample_need, NEEDS_MOTION);
         s->row_need = larger(s->row_need, NEEDS_MOTION);
     }
+
+    /* From row to row the same times, of which only boxes take nothing but their ends. */
     s->takes_blocks = s->mean_kind == SAMPLE_BOX && s->sample_need == NEEDS_TIME && !s->follows;
     for (int j = 0; j < s->factor && s->takes_blocks; ++j) {
         s->centre_share[j] = (j + 1.0) / s->factor;
         s->box_end_share[j] = (j + 1.5) / s->factor;
     }
+
+    /* Cases that are in need of less, the default among them. */
     s->is_plain_box = s->takes_blocks && s->means.is_steady &&
                       (model->noise != NULL || model->load.amplitude == 0.0);
     s->is_force_alone = s->is_plain_box && s->filtered_count == 1 && s->shows_means &&
@@ -182,6 +186,8 @@ static int see_sample_motion(sampling *s, enum column_need need) {
         s->sample.motion = s->means.next;
         return 0;
     }
+
+    /* Without the solver, if its state is not in what is wanted. */
     if (s->mean_kind == SAMPLE_BOX && s->means.is_started && need == NEEDS_TIME) {
         return 0; /* between the rows nobody looks at it */
     }

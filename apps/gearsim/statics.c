@@ -102,6 +102,8 @@ static unsigned need_of(const config *conf, enum static_column_taking taking) {
 /* What of a position goes to the result, and what has to be found for it beyond the equilibrium. */
 static void choose_columns(static_results *results, const config *conf) {
     results->needs = results->distribution != NULL ? 1u << TAKES_FACES : 0;
+
+    /* The output counts those that these gears have. */
     int place = 0;
     for (int i = 0; i < static_column_count; ++i) {
         if (!static_column_is_there(conf, i)) {
@@ -127,15 +129,20 @@ static int find_needed(static_results *results, unsigned needs, static_position 
     if (wanted == 0 && (needs & faces) == 0) {
         return GM_OK;
     }
+
+    /* The place again, with the speed that friction depends on. */
     int status = gm_position_from_pinion_angle(&at->gears->pair, at->pinion_angle, at->offset, 0.0,
                                                &position);
-
     position.pinion_speed = at->conf->start_speed;
+
+    /* Of the whole mesh, */
     if (status == GM_OK && wanted != 0) {
         status = gear_contact_evaluate(at->gears, &position, wanted, &result);
         at->mesh.wrench = result.wrench;
         at->mesh.energy = result.energy;
     }
+
+    /* and along its lines of contact. */
     if (status == GM_OK && (needs & faces)) {
         status = gear_contact_line_loads(at->gears, &position, results->points, results->capacity,
                                          &at->faces);
@@ -344,6 +351,8 @@ static int load_block_open(load_block *block, const config *conf, const gear_mes
         gear_contact_is_ideal(gears)) {
         return 0;
     }
+
+    /* Closed by the caller, whether all of it was to be had or not. */
     block->loads = loads;
     block->state = allocate((size_t)loads * (size_t)conf->positions, sizeof *block->state);
     block->torque = allocate((size_t)loads, sizeof *block->torque);
