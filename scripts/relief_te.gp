@@ -34,7 +34,7 @@ do for [format in formats] {
                 font ',12' textcolor rgb grey
             set format y '%g'
             set ylabel (moved ? 'transmission error, loads moved together' \
-                : 'transmission error (0: ideal flanks just touch)') . um offset -0.8,0
+                : 'transmission error (0: ideal flanks just touch)') . um offset -0.3,0
         } else {
             unset ylabel
             set format y '' # as at the left

@@ -370,6 +370,15 @@ class Relief(Case):
                                "--tolerance", "0")
         self.assertEqual(found["pinion_helix_slope_um"], 0)
 
+    def test_a_relief_that_is_left_out_has_no_range(self):
+        """One of 0.01 um at most gains nothing, and gearsim would warn of a range alone."""
+        text = self.accepted("relief", SPUR, *self.ELSEWHERE, *self.AMOUNTS, "--vary", "pinion_root_relief_um=0:0.01",
+                             "--starts", "1", "--tolerance", "0", "--no-pictures", "--output", "r").stdout
+        self.assertRegex(text, r"(?m)^  pinion_root_relief_um +- +0 ")
+        self.assertRegex(text, r"(?m)^  pinion_root_relief_length_mm +- +- ")
+        self.assertRegex(text, r"(?m)^  pinion_tip_relief_um +\S+ +1\d")
+        self.assertNotIn("root_relief_length", self.read("r_relief.ini"))
+
     def test_the_own_design_is_kept_if_nothing_is_better(self):
         text, found = self.search(SPUR, *self.AMOUNTS, "--torques", f"{DESIGN_NM}", "--starts", "2")
         self.assertIn("the file's own is kept", text)
@@ -496,6 +505,38 @@ class Relief(Case):
 
         # As drawn any crowning is for nothing, so that only a robust search finds it.
         self.assertRegex(self.accepted("relief", SPUR, *lead).stdout, r"(?m)^  pinion_crowning_um +- +- ")
+
+    def test_jumps_of_the_face_load_factor_stop_no_start(self):
+        """It jumps where a line of helical gears begins to touch: differences over such a jump led one start to 1.35 times the others."""
+        file = self.write("helical.ini", """[gears]
+pinion_teeth = 27
+wheel_teeth = 62
+normal_module_mm = 2.5
+normal_pressure_angle_deg = 20
+helix_angle_deg = 22
+center_distance_mm = 120
+face_width_mm = 30
+backlash_um = 100
+[modifications]
+pinion_tip_relief_share = 0.3
+wheel_tip_relief_share = 0.3
+[mesh]
+stiffness_N_per_m = 4e8
+[load]
+mean_Nm = 500
+[pose]
+skew_mrad = 0
+[analysis]
+type = static
+positions = 30
+""")
+        varied = [word for key in ("pinion_crowning_um", "pinion_tip_relief_um", "wheel_tip_relief_um")
+                  for word in ("--vary", f"{key}=0:20")]
+        text = self.accepted("relief", file, *varied, "--torques", "300:500:3", "--tolerance", "pose.skew_mrad=0.2", "--robust",
+                             "--face-load-weight", "3", "--no-pictures").stdout
+        ends = [float(end) for end in re.search(r"the starts led to ([0-9., ]*) um", text)[1].split(", ")]
+        self.assertEqual(len(ends), 4)
+        self.assertLess(max(ends), 1.02 * min(ends), text)
 
     def test_variables_by_itself_and_pictures(self):
         result = self.accepted("relief", SPUR, "--output", "r", "--torques", "36:73:2", "--starts", "1", "--tolerance",
