@@ -107,8 +107,8 @@ GM_TEST_UNUSED static int elastic_case_make(elastic_case *c, const elastic_gear 
     const gmi_elastic_params params = elastic_params_of(&c->gear, lines);
     const double contact[2] = {params.gear[0].start_roll_length, params.gear[1].start_roll_length};
     int fault, wheel;
-    c->memory = malloc(gmi_elastic_work_size(gear->stations, lines));
-    gmi_elastic_work_init(&c->work, gear->stations, lines, c->memory);
+    c->memory = malloc(gmi_elastic_work_size(gear->stations, lines, 0));
+    gmi_elastic_work_init(&c->work, gear->stations, lines, 0, c->memory);
     return gmi_elastic_init(&c->law, &params, contact, &fault, &wheel);
 }
 

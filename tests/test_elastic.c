@@ -973,11 +973,14 @@ static void pointed_tips_keep_their_contact_law(void) {
 
 /* What does not fit is refused. */
 static void sizes_out_of_range_are_refused(void) {
-    GM_ASSERT(gmi_elastic_work_size(1, 4) == 0);
-    GM_ASSERT(gmi_elastic_work_size(98, 4) == 0);
-    GM_ASSERT(gmi_elastic_work_size(17, 0) == 0);
-    GM_ASSERT(gmi_elastic_work_size(17, 13) == 0);
-    GM_ASSERT(gmi_elastic_work_size(97, 12) > 0);
+    GM_ASSERT(gmi_elastic_work_size(1, 4, 0) == 0);
+    GM_ASSERT(gmi_elastic_work_size(98, 4, 0) == 0);
+    GM_ASSERT(gmi_elastic_work_size(17, 0, 0) == 0);
+    GM_ASSERT(gmi_elastic_work_size(17, 13, 0) == 0);
+    GM_ASSERT(gmi_elastic_work_size(17, 4, -1) == 0);
+    GM_ASSERT(gmi_elastic_work_size(17, 4, 33) == 0);
+    GM_ASSERT(gmi_elastic_work_size(97, 12, 0) > 0);
+    GM_ASSERT(gmi_elastic_work_size(97, 12, 32) > gmi_elastic_work_size(97, 12, 0));
     elastic_gear gear = gear_of(1);
     elastic_case c;
     GM_ASSERT_INT(elastic_case_make(&c, &gear, 2), GM_OK);

@@ -768,6 +768,7 @@ static void force_by_flanks_is_that_of_fine_differences(void) {
         gm_pair_params pair = gears[k % 4];
         gm_mesh_params law = elastic_law();
         pair.backlash = 20e-6;
+        law.stations = 17; /* those of its own follow the flanks */
         law.corner_contact = k % 3 == 0 ? GM_CORNER_OFF : GM_CORNER_ON;
         law.pinion_bore_radius =
             k % 2 == 1 ? 0.3 * pair.normal_module * pair.pinion_teeth : (double)NAN;
@@ -1190,6 +1191,157 @@ static void few_stations_are_enough_for_edges(void) {
     }
 }
 
+/* What is relieved, on both sides of all teeth: the tip, or both ends of the face. */
+enum { TIP, LONG_ENDS, SHORT_ENDS, RELIEFS };
+
+/* To be freed. depth: transverse (m). */
+static gm_flanks *make_relieved(int teeth, int what, double depth) {
+    const double shares[RELIEFS] = {0.3, 0.3, 0.09};
+    const double rise = depth / shares[what];
+    const gm_flank_ramp tip = {depth - rise, 0.0, rise};
+    const gm_flank_ramp ends[2] = {{depth, -rise, 0.0}, {depth - rise, rise, 0.0}};
+    const gm_flanks_params sizes = {teeth, 0, 2, 2, 0, 2, 2};
+    const size_t size = gm_flanks_size(&sizes);
+    gm_flanks *flanks;
+    GM_ASSERT_INT(gm_flanks_init(&flanks, &sizes, malloc(size), size), GM_OK);
+    for (int side = GM_DRIVE; side <= GM_COAST; ++side) {
+        GM_ASSERT_INT(
+            gm_flanks_set_ramps(flanks, side, what == TIP ? &tip : ends, what == TIP ? 1 : 2, 1.0),
+            GM_OK);
+    }
+    return flanks;
+}
+
+/* x under the reference torque at places of a mesh cycle; part: of that torque. */
+enum { PLACES = 12 };
+
+static void press_all(elastic_mesh *m, double torque, double x[PLACES]) {
+    for (int n = 0; n < PLACES; ++n) {
+        const double angle = m->pair.pinion.pitch_angle * (n + 0.37) / PLACES;
+        GM_ASSERT_INT(
+            gm_static_equilibrium(m->mesh, angle, torque, (double)NAN, m->workspace, &x[n], NULL),
+            GM_OK);
+    }
+}
+
+/* Largest error of x, of what the teeth give way by from the first touch on. is_cut: where reliefs begin. */
+static double error_of_relief(const gm_pair_params *gears, const gm_flanks *flanks,
+                              gm_mesh_params law, int stations, int is_cut,
+                              const double exact[PLACES], const double touching[PLACES]) {
+    elastic_mesh m;
+    law.stations = stations;
+    GM_ASSERT_INT(make(&m, gears, &law, flanks, NULL), GM_OK);
+    m.workspace->side[GM_DRIVE].creases_max *= is_cut;
+    double x[PLACES], largest = 0.0;
+    press_all(&m, law.reference_torque, x);
+    for (int n = 0; n < PLACES; ++n) {
+        largest = fmax(largest, fabs((x[n] - exact[n]) / (exact[n] - touching[n])));
+    }
+    release(&m);
+    return largest;
+}
+
+/*
+ * Linear reliefs of any depth leave 0.4 % of what teeth give way by with the mesh's own number of stations, which needs both:
+ * more of them than the pair alone wants, and cuts where reliefs begin. Exact: the limit of 48 and 96 elements.
+ */
+static void reliefs_leave_0_4_percent(void) {
+    const gm_pair_params pairs[] = {helical(0.0, 30.0), helical(10.0, 20.0), helical(20.0, 12.0),
+                                    helical(30.0, 15.0)};
+    const double depths[] = {1.0, 4.0, 15.0};
+    double uncut = 0.0, few = 0.0, few_uncut = 0.0;
+    for (int k = 0; k < 4 * 3 * RELIEFS; ++k) {
+        const gm_pair_params *gears = &pairs[k % 4];
+        const double times = depths[k / 4 % 3];
+        gm_test_context("pair %d, relief %d of %g times the deflection", k % 4, k / 12, times);
+        gm_mesh_params law = elastic_law();
+        law.corner_contact = k % 2 == 0 ? GM_CORNER_OFF : GM_CORNER_ON;
+        const double line_load = 5e7 * gears->normal_module;
+        gm_pair pair;
+        GM_ASSERT_INT(gm_pair_init(&pair, gears), GM_OK);
+        law.reference_torque = line_load * gears->face_width * pair.wheel.base_radius;
+        gm_flanks *flanks = make_relieved(gears->pinion_teeth, k / 12,
+                                          times * 10.0 * line_load / law.pinion_youngs_modulus);
+
+        /* The limit, and where the flanks touch first. */
+        double x[2][PLACES], touching[PLACES], exact[PLACES];
+        for (int fine = 0; fine < 2; ++fine) {
+            elastic_mesh m;
+            law.stations = fine ? 97 : 49;
+            GM_ASSERT_INT(make(&m, gears, &law, flanks, NULL), GM_OK);
+            press_all(&m, law.reference_torque, x[fine]);
+            press_all(&m, 1e-7 * law.reference_torque, touching);
+            release(&m);
+        }
+        for (int n = 0; n < PLACES; ++n) {
+            exact[n] = (4.0 * x[1][n] - x[0][n]) / 3.0;
+        }
+
+        GM_ASSERT_ABS(error_of_relief(gears, flanks, law, 0, 1, exact, touching), 0.0, 0.004);
+        uncut = fmax(uncut, error_of_relief(gears, flanks, law, 0, 0, exact, touching));
+        few = fmax(few, error_of_relief(gears, flanks, law, 17, 1, exact, touching));
+        few_uncut = fmax(few_uncut, error_of_relief(gears, flanks, law, 17, 0, exact, touching));
+        free(flanks);
+    }
+    gm_test_context("%s", "");
+    GM_ASSERT(uncut > 0.005);
+    GM_ASSERT(few > 0.01);
+    GM_ASSERT(few_uncut > 2.0 * few);
+}
+
+/* The number of stations follows from the depth of the flanks, be they ramps or tables, against 10 F / (E b). */
+static void stations_follow_from_the_flanks(void) {
+    const struct {
+        double times;
+        int quarters;
+    } rows[] = {{0.29, 4}, {0.31, 5}, {1.4, 5},   {1.6, 8},
+                {5.9, 8},  {6.1, 12}, {24.0, 12}, {26.0, 16}};
+    const gm_pair_params gears = helical(20.0, 10.0);
+    gm_mesh_params law = elastic_law();
+    gm_pair pair;
+    GM_ASSERT_INT(gm_pair_init(&pair, &gears), GM_OK);
+    const int usual = gm_elastic_stations(&pair);
+    for (int k = 0; k < 16; ++k) {
+        const double times = rows[k / 2].times;
+        gm_test_context("%g times the deflection", times);
+        law.reference_torque = 2e5 * gears.face_width * pair.wheel.base_radius;
+        const double depth = times * 10.0 * 2e5 / law.pinion_youngs_modulus;
+        const int expected = 1 + (rows[k / 2].quarters * (usual - 1) + 3) / 4;
+        GM_ASSERT_INT(gm_elastic_stations_modified(&pair, &law, depth), expected);
+
+        /* Of one flank that is relieved, or crowned upwards: then the lowest nodes are 0. */
+        gm_flanks *flanks = make_relieved(gears.pinion_teeth, k / 2 % RELIEFS, depth);
+        if (k % 2 == 1) {
+            free(flanks);
+            const double table[3][2] = {{0.0, 0.0}, {depth, depth}, {0.0, 0.0}};
+            const gm_flanks_params sizes = {gears.pinion_teeth, 1, 3, 2, 0, 2, 2};
+            const size_t size = gm_flanks_size(&sizes);
+            GM_ASSERT_INT(gm_flanks_init(&flanks, &sizes, malloc(size), size), GM_OK);
+            GM_ASSERT_INT(gm_flanks_set_table(flanks, GM_DRIVE, GM_ALL_TEETH, &table[0][0], 1.0),
+                          GM_OK);
+        }
+        elastic_mesh m;
+        law.stations = 0;
+        GM_ASSERT_INT(make(&m, &gears, &law, flanks, NULL), GM_OK);
+        GM_ASSERT_INT(m.mesh->elastic->law.stations, expected);
+        release(&m);
+
+        /* Those given stay. */
+        law.stations = 11;
+        GM_ASSERT_INT(make(&m, &gears, &law, flanks, NULL), GM_OK);
+        GM_ASSERT_INT(m.mesh->elastic->law.stations, 11);
+        release(&m);
+        free(flanks);
+    }
+
+    /* No more than there can be. */
+    GM_ASSERT_INT(gm_elastic_stations_modified(NULL, &law, 0.0), 0);
+    GM_ASSERT_INT(gm_elastic_stations_modified(&pair, NULL, 0.0), 0);
+    const gm_pair_params wide = helical(30.0, 45.0);
+    GM_ASSERT_INT(gm_pair_init(&pair, &wide), GM_OK);
+    GM_ASSERT_INT(gm_elastic_stations_modified(&pair, &law, 1.0), 97);
+}
+
 /* Edges press hardest where their rounding begins to bear, between the stations: few of them find that pressure too. */
 static void few_stations_find_the_pressure_of_edges(void) {
     const gm_pair_params gears = helical(20.0, 10.0);
@@ -1252,17 +1404,19 @@ static double pinion_work(driven *d, double from, double to, double *error) {
 }
 
 /*
- * What goes in comes out over a mesh cycle in equilibrium, through edges of both gears. Each point that an edge begins to
- * load leaves a kink in the torque, where the steps of the integral are halved until it no longer counts.
+ * What goes in comes out over a mesh cycle in equilibrium, through edges of both gears, and through a tip relief whose
+ * begin moves along the lines. Each point that an edge begins to load leaves a kink in the torque, where the steps of the
+ * integral are halved until it no longer counts.
  */
-static void edges_keep_the_energy(void) {
-    const gm_pair_params kinds[4] = {spur62(), paper(), nrel3(), ring()};
-    for (int kind = 0; kind < 4; ++kind) {
+static void edges_and_reliefs_keep_the_energy(void) {
+    const gm_pair_params kinds[5] = {spur62(), paper(), nrel3(), ring(), paper()};
+    for (int kind = 0; kind < 5; ++kind) {
         gm_test_context("kind %d", kind);
         gm_mesh_params law = elastic_law();
         law.stations = 7;
+        gm_flanks *relieved = kind == 4 ? make_relieved(kinds[kind].pinion_teeth, TIP, 5e-6) : NULL;
         driven d = {.offset = (double)NAN};
-        GM_ASSERT_INT(make(&d.mesh, &kinds[kind], &law, NULL, NULL), GM_OK);
+        GM_ASSERT_INT(make(&d.mesh, &kinds[kind], &law, relieved, NULL), GM_OK);
         const gm_pair *pair = &d.mesh.pair;
 
         /* A load per face width, and work to 3e-14 of what goes through. */
@@ -1288,6 +1442,7 @@ static void edges_keep_the_energy(void) {
         /* The wheel comes one pitch further. */
         GM_ASSERT_REL(work, d.load * turned, 1e-10);
         release(&d.mesh);
+        free(relieved);
     }
 }
 
@@ -1834,8 +1989,10 @@ int main(int argc, char **argv) {
         GM_TEST(tilted_edges_carry_light_loads),
         GM_TEST(stations_follow_from_the_pair),
         GM_TEST(few_stations_are_enough_for_edges),
+        GM_TEST(stations_follow_from_the_flanks),
+        GM_TEST(reliefs_leave_0_4_percent),
         GM_TEST(few_stations_find_the_pressure_of_edges),
-        GM_TEST(edges_keep_the_energy),
+        GM_TEST(edges_and_reliefs_keep_the_energy),
         GM_TEST(cache_holds_elastic_teeth),
         GM_TEST(cache_knows_the_softer_teeth),
         GM_TEST(wrench_acts_where_the_load_is),

@@ -276,10 +276,10 @@ static double load_at(const elastic_case *c, int row, double z, const elastic_de
     /* Tooth layer and contact law there, from a line of its own through that place: a spur pair of one point. */
     double s = 0.0, rate = 0.0, ignored[2];
     gmi_elastic_work other;
-    void *memory = malloc(gmi_elastic_work_size(2, 1));
+    void *memory = malloc(gmi_elastic_work_size(2, 1, 0));
     gmi_elastic spur = c->law;
     gmi_elastic_lines_at at = w->at;
-    gmi_elastic_work_init(&other, 2, 1, memory);
+    gmi_elastic_work_init(&other, 2, 1, 0, memory);
     spur.stations = 2;
     spur.spacing = spur.face_width;
     spur.per_spacing = 1.0 / spur.spacing;

@@ -125,31 +125,6 @@ static int refuse_pose(const config *conf, const gear_mesh *mesh) {
     return EXIT_BAD_INPUT;
 }
 
-/* Whether the file has a relief of this kind, be it of 0: a search over amounts keeps its stations. */
-static int has_modification(const config *conf, int kind) {
-    for (enum gm_role role = GM_PINION; role <= GM_WHEEL; ++role) {
-        for (int place = 0; place < MODIFICATION_PLACES; ++place) {
-            if (!isnan(conf->modifications[role][place][kind].value[MODIFICATION_AMOUNT])) {
-                return 1;
-            }
-        }
-    }
-    return 0;
-}
-
-int gear_mesh_stations(const gear_mesh *mesh, const config *conf) {
-    enum { RELIEVED = 41 };
-    if (conf->stations > 0) {
-        return conf->stations;
-    }
-
-    /* The pair says it, and end reliefs, which may take off the load between stations. */
-    const int stations = gm_elastic_stations(&mesh->pair);
-    const int is_relieved =
-        has_modification(conf, GM_MOD_END_RELIEF_I) || has_modification(conf, GM_MOD_END_RELIEF_II);
-    return is_relieved && stations < RELIEVED ? RELIEVED : stations;
-}
-
 /* Of several static loads the largest, as the lines are cut for it where tip edges press: at one near 0 they are not yet. */
 static double reference_load(const config *conf) {
     const int are_several = conf->analysis == ANALYSIS_STATIC && conf->loads > 1;
@@ -182,7 +157,6 @@ static gm_mesh_params params_of(const config *conf, const gear_mesh *mesh) {
     params.wheel_bore_radius = conf->wheel_bore_radius;
     params.pinion_tooth_stiffness = mesh->tooth_stiffness[GM_PINION];
     params.wheel_tooth_stiffness = mesh->tooth_stiffness[GM_WHEEL];
-    params.stations = gear_mesh_stations(mesh, conf);
     params.corner_contact = conf->model == MODEL_3D && conf->corner_contact == CORNER_CONTACT_ON
                                 ? GM_CORNER_ON
                                 : GM_CORNER_OFF;
@@ -200,6 +174,52 @@ static gm_mesh_params params_of(const config *conf, const gear_mesh *mesh) {
     params.oil_viscosity = conf->oil_viscosity;
     params.roughness = conf->roughness;
     return params;
+}
+
+static int is_across_face(int kind) {
+    return kind == GM_MOD_END_RELIEF_I || kind == GM_MOD_END_RELIEF_II ||
+           kind == GM_MOD_TIP_CORNER_I || kind == GM_MOD_TIP_CORNER_II ||
+           kind == GM_MOD_ROOT_CORNER_I || kind == GM_MOD_ROOT_CORNER_II;
+}
+
+/*
+ * The largest amount in the file, across the flank (m). usual: what teeth give way by. A modification that is there, be it of
+ * 0, counts as one of about as much, so that a search over amounts mostly keeps its stations.
+ */
+static double deepest_modification(const config *conf, double usual) {
+    double depth = 0.0;
+    for (enum gm_role role = GM_PINION; role <= GM_WHEEL; ++role) {
+        for (int place = 0; place < MODIFICATION_PLACES; ++place) {
+            for (int kind = 0; kind < GM_MODIFICATION_KINDS; ++kind) {
+                const modification_values *given = &conf->modifications[role][place][kind];
+                const double amount = given->value[MODIFICATION_AMOUNT];
+                if (!isnan(amount)) {
+                    const double least = is_across_face(kind) ? 1.6 * usual : 0.5 * usual;
+                    depth = fmax(depth, fmax(fabs(amount), least));
+                }
+            }
+        }
+    }
+    return depth;
+}
+
+int gear_mesh_stations(const gear_mesh *mesh, const config *conf) {
+    if (conf->stations > 0) {
+        return conf->stations;
+    }
+
+    /* Amounts alone, not files of flanks: a listing of the geometry tells the same without reading any. */
+    const gm_mesh_params params = params_of(conf, mesh);
+    const gm_pair *pair = &mesh->pair;
+    const double line_load =
+        isnan(params.reference_torque)
+            ? 1e5
+            : params.reference_torque / fabs(pair->wheel.base_radius) / pair->face_width;
+    const double usual = 5 * line_load *
+                         (1 / params.pinion_youngs_modulus + 1 / params.wheel_youngs_modulus) /
+                         pair->normal_to_transverse;
+    const double depth = conf->model == MODEL_3D ? deepest_modification(conf, usual) : 0.0;
+    return gm_elastic_stations_modified(pair, &params, depth * pair->normal_to_transverse);
 }
 
 /* Gears to which ISO 6336-1 gives a stiffness, but not with the accuracy that it states. */
@@ -423,6 +443,7 @@ static void remark_few_stations(const config *conf, const gear_mesh *mesh) {
 /* All of it; none without a stiffness, which only a run requires. */
 static int prepare(gear_mesh *mesh, const config *conf) {
     gm_mesh_params params = params_of(conf, mesh);
+    params.stations = gear_mesh_stations(mesh, conf);
     if (gm_mesh_params_check(&params, NULL, NULL) != GM_OK) {
         return 0;
     }

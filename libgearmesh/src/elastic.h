@@ -13,7 +13,7 @@
  *
  * and then, if wanted, gmi_elastic_adjoint() for derivatives by anything that moves or changes the flanks.
  *
- * Points: a line of contact is cut at the stations, and at the ends of the path; each part of it is a slot and has two
+ * Points: a line of contact is cut at the stations, at the ends of the path, and where reliefs begin; each part is a slot with two
  * points. Point 0 of slot s has the number s, point 1 the number s + work->slots. All arrays over points have both halves one after the other:
  *
  *     for (int k = 0; k < work->count; ++k) {          // lines
@@ -41,7 +41,8 @@
 enum {
     GMI_ELASTIC_STATIONS_MAX = 97,
     GMI_ELASTIC_LINES_MAX = 12, /* on one flank side at once */
-    GMI_ELASTIC_CELLS = 64,     /* of the tables of a tooth */
+    GMI_ELASTIC_CREASES_MAX = 2 * GM_FLANK_RAMPS_MAX,
+    GMI_ELASTIC_CELLS = 64, /* of the tables of a tooth */
     GMI_ELASTIC_ITERATIONS = 20
 };
 
@@ -124,7 +125,8 @@ typedef struct gmi_elastic_layer {
 typedef struct gmi_elastic {
     int stations;
     int lines_max;
-    int is_wide; /* whether the processor has vectors of four doubles, see wide.h */
+    int creases_max; /* of the flanks of one side; 0 until a mesh says how many */
+    int is_wide;     /* whether the processor has vectors of four doubles, see wide.h */
     double face_width;
     double spacing, per_spacing; /* of the stations (m, 1/m) */
     double hertz_compliance;     /* B (m per N/m) */
@@ -151,9 +153,19 @@ int gmi_elastic_lines(double total_contact_ratio);
 int gmi_elastic_init(gmi_elastic *law, const gmi_elastic_params *params,
                      const double contact_start[2], int *fault, int *wheel);
 
+/* Divides the face anew, by 2 .. GMI_ELASTIC_STATIONS_MAX stations: the layers follow, all else stays. */
+void gmi_elastic_divide(gmi_elastic *law, double normal_module, double helix_angle, int stations);
+
 /* ---------------------------------------------------------------------------------------------
  * One evaluation
  * ------------------------------------------------------------------------------------------- */
+
+/* Where a linear relief of a flank begins: offset + per_z z + per_roll rho_p = 0, straight on the face and the path. */
+typedef struct gmi_elastic_crease {
+    double offset;   /* (m) */
+    double per_z;    /* (1) */
+    double per_roll; /* (1) */
+} gmi_elastic_crease;
 
 /*
  * Where the lines of contact are. Line k has rho_p = origin + k pitch + climb z on the pinion and rho_w = line_of_action -
@@ -175,6 +187,10 @@ typedef struct gmi_elastic_lines_at {
 
     /* Such lines are cut where the path ends, and once more so far below and above it, where edges leave the flank. */
     double cut[2];
+
+    /* Lines are cut at these too, [creases]; up to gmi_elastic.creases_max of them. */
+    const gmi_elastic_crease *crease;
+    int creases;
 
     int first, last; /* lines that can touch; others in between are left out by themselves */
     int slopes;      /* derivatives wanted: 0 none, 1 all but by the line of action, 2 all */
@@ -220,24 +236,24 @@ enum {
 
 /* A cut within an element, between two slots that share its stations. */
 typedef struct gmi_elastic_cut {
-    double z;    /* moves with the line (m) */
+    double z; /* moves with the line (m), ... */
+    double
+        by_roll; /* ... by this along its roll: of a crease; of an end of the path it is -1 / climb */
     int row;     /* of the line */
     int element; /* that is cut */
     int whole;   /* slot of that element */
     int before;  /* slot up to the cut ... */
     int after;   /* ... and from there on */
     int is_last; /* of its element: none follows in it */
-    int limit;   /* end of the path it belongs to: -1 lower, +1 upper */
+    int limit;   /* end of the path it belongs to: -1 lower, +1 upper; 0: a crease */
 } gmi_elastic_cut;
 
 /*
- * Cuts of all lines: each end of the path, and each place beyond, is passed on the face by no more lines than the face is
+ * Cuts of all lines at ends of the path: each end of the path, and each place beyond, is passed on the face by no more lines than the face is
  * pitches long, and one. Lines at once are more by the path, which is longer than a pitch; where not, some cuts are left out.
  */
-enum { GMI_ELASTIC_CUTS_MAX = 4 * (GMI_ELASTIC_LINES_MAX - 2) };
-
-static inline int gmi_elastic_cuts_of(int lines) {
-    return lines > 3 ? 4 * (lines - 2) : 4;
+static inline int gmi_elastic_cuts_of(int lines, int creases) {
+    return (lines > 3 ? 4 * (lines - 2) : 4) + creases * lines; /* a line passes a crease once */
 }
 
 /* One line of contact as placed. */
@@ -247,6 +263,7 @@ typedef struct gmi_elastic_line {
     int element;  /* element of the face that slot lies in: from station `element` on */
     int elements; /* how many, each with a slot */
     int slots;    /* those, and behind them one for each cut: what follows it */
+    int end;      /* slot of the part at its end */
 
     /* whether its begin and end along z are those of the path: -1 lower, +1 upper, 0: of the face */
     int limited[2];
@@ -264,7 +281,8 @@ typedef struct gmi_elastic_run {
 
 /* Memory of the solver. Points into the memory of the caller; one for each flank side and thread. */
 typedef struct gmi_elastic_work {
-    int stations, lines_max;
+    int stations, lines_max, creases_max;
+    gmi_elastic_crease *crease; /* the caller's, for gmi_elastic_lines_at: [creases_max] */
 
     /* Of the last gmi_elastic_place(). */
     int count; /* lines */
@@ -272,7 +290,7 @@ typedef struct gmi_elastic_work {
     gmi_elastic_lines_at at;
     gmi_elastic_line line[GMI_ELASTIC_LINES_MAX];
     int cuts; /* line by line, in the order of z */
-    gmi_elastic_cut cut[GMI_ELASTIC_CUTS_MAX];
+    gmi_elastic_cut *cut;
 
     /* Points beyond the path, where lines go on: below and above it. The first list has room for all points. */
     int *outer[2];
@@ -358,11 +376,12 @@ typedef struct gmi_elastic_work {
     int last_record;      /* that of the last station */
 } gmi_elastic_work;
 
-/* Bytes of memory for one flank side; 0 if the sizes are out of range. */
-size_t gmi_elastic_work_size(int stations, int lines);
+/* Bytes of memory for one flank side with so many creases; 0 if the sizes are out of range. */
+size_t gmi_elastic_work_size(int stations, int lines, int creases);
 
 /* Lays the arrays into memory of gmi_elastic_work_size() bytes, aligned for double. */
-void gmi_elastic_work_init(gmi_elastic_work *work, int stations, int lines, void *memory);
+void gmi_elastic_work_init(gmi_elastic_work *work, int stations, int lines, int creases,
+                           void *memory);
 
 /* Forgets the last solution: the next one begins from undeformed teeth. */
 void gmi_elastic_work_reset(gmi_elastic_work *work);

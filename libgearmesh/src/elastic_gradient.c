@@ -14,7 +14,8 @@
  * needs no adjoint, as its derivative by the deflections vanishes: U_p = sum W_p U_H + W (q gamma_p + B q^2 / 2 (ln rate)_p).
  *
  * A line that ends within the face has an end that moves with the line and with the path. Its last part is cut there: a
- * moving end changes weight and places of the two points of that part.
+ * moving end changes weight and places of the two points of that part. So do cuts where reliefs begin, if they move with the
+ * line.
  */
 #include "elastic.h"
 #include "hertz.h"
@@ -95,9 +96,13 @@ static double optional(const double *values, int p, double otherwise) {
     return values != NULL ? values[p] : otherwise;
 }
 
-/* What moves with the path and the lines: a part of a line, and which ends of it: 1 its begin, 2 its end, 3 both. */
+/*
+ * What moves with the path and the lines: a part of a line, and which ends of it: 1 its begin, 2 its end, 3 both. by_roll:
+ * along z, where it is not limited by the path.
+ */
 typedef struct moving_part {
     int row, node, slot, ends, limited;
+    double by_roll;
 } moving_part;
 
 /* Of the ends of a part that move, none, 1, 2 or 3: the share of it that each point makes, and how much both weights grow. */
@@ -188,12 +193,16 @@ static double move_energy(const gmi_elastic *law, const gmi_elastic_work *work,
     return effect;
 }
 
-/* An end moves along z by 1 / climb with the path, and by -1 / climb with the line. */
-static void add_end(const gmi_elastic_work *work, int limited, double effect,
+/* An end moves along z by 1 / climb with the path, and by -1 / climb with the line; a crease as it says. */
+static void add_end(const gmi_elastic_work *work, const moving_part *part, double effect,
                     gmi_elastic_gradient *gradient) {
+    if (part->limited == 0) {
+        gradient->by_roll += effect * part->by_roll;
+        return;
+    }
     const double along = effect / work->at.climb;
     gradient->by_roll -= along;
-    if (limited < 0) {
+    if (part->limited < 0) {
         gradient->by_lower += along;
     } else {
         gradient->by_upper += along;
@@ -205,10 +214,10 @@ static void add_part(const gmi_elastic *law, const gmi_elastic_work *work, const
                      const gmi_elastic_functional *functional, const double *rows,
                      gmi_elastic_gradient *gradient, gmi_elastic_gradient *energy) {
     if (gradient != NULL) {
-        add_end(work, part->limited, move_functional(law, work, functional, rows, part), gradient);
+        add_end(work, part, move_functional(law, work, functional, rows, part), gradient);
     }
     if (energy != NULL) {
-        add_end(work, part->limited, move_energy(law, work, part), energy);
+        add_end(work, part, move_energy(law, work, part), energy);
     }
 }
 
@@ -223,9 +232,10 @@ static void add_ends(const gmi_elastic *law, const gmi_elastic_work *work,
         const gmi_elastic_line *line = &work->line[row];
         for (int end = 0; end < 2; ++end) {
             const int last = end == 0 ? 0 : line->elements - 1;
-            if (line->limited[end] != 0 && is_loaded(work, line->slot + last)) {
-                const moving_part part = {row, line->element + last, line->slot + last, 1 << end,
-                                          line->limited[end]};
+            const int slot = end == 0 ? line->slot : line->end;
+            if (line->limited[end] != 0 && is_loaded(work, slot)) {
+                const moving_part part = {row,      line->element + last, slot,
+                                          1 << end, line->limited[end],   0.0};
                 add_part(law, work, &part, functional, rows, gradient, energy);
             }
         }
@@ -235,14 +245,19 @@ static void add_ends(const gmi_elastic *law, const gmi_elastic_work *work,
     int is_joined = 0;
     for (int k = 0; k < work->cuts; ++k) {
         const gmi_elastic_cut *cut = &work->cut[k];
+        if (cut->by_roll == 0.0) {
+            is_joined = 0; /* a relief at an end of the face */
+            continue;
+        }
         if (is_loaded(work, cut->before)) {
-            const moving_part before = {cut->row, cut->element, cut->before, is_joined ? 3 : 2,
-                                        cut->limit};
+            const moving_part before = {cut->row,          cut->element, cut->before,
+                                        is_joined ? 3 : 2, cut->limit,   cut->by_roll};
             add_part(law, work, &before, functional, rows, gradient, energy);
         }
-        is_joined = !cut->is_last && cut[1].limit == cut->limit;
+        is_joined = cut->limit != 0 && !cut->is_last && cut[1].limit == cut->limit;
         if (!is_joined && is_loaded(work, cut->after)) {
-            const moving_part after = {cut->row, cut->element, cut->after, 1, cut->limit};
+            const moving_part after = {cut->row, cut->element, cut->after,
+                                       1,        cut->limit,   cut->by_roll};
             add_part(law, work, &after, functional, rows, gradient, energy);
         }
     }

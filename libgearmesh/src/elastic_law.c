@@ -198,9 +198,14 @@ static void set_tails(gmi_elastic_layer *layer, int stations) {
     }
 }
 
-static void set_layers(gmi_elastic *law, const gmi_elastic_params *params) {
-    const double m_n = params->normal_module;
-    const double cosine = cos(params->helix_angle);
+void gmi_elastic_divide(gmi_elastic *law, double normal_module, double helix_angle, int stations) {
+    law->stations = stations;
+    law->spacing = law->face_width / (double)(stations - 1);
+    law->per_spacing = 1.0 / law->spacing;
+
+    /* The layers on them. */
+    const double m_n = normal_module;
+    const double cosine = cos(helix_angle);
     const double along_tooth = GMI_ELASTIC_TOOTH_LENGTH * m_n * cosine;
     const double along_rim = GMI_ELASTIC_RIM_LENGTH * m_n * cosine;
     const double per_rim = 1.0 / law->rim_compliance;
@@ -236,12 +241,10 @@ int gmi_elastic_init(gmi_elastic *law, const gmi_elastic_params *params,
     if (!check(params)) {
         return GM_ERR_PARAMETER;
     }
-    law->stations = params->stations;
     law->lines_max = params->lines;
+    law->creases_max = 0;
     law->is_wide = gmi_processor_is_wide();
     law->face_width = params->face_width;
-    law->spacing = params->face_width / (double)(params->stations - 1);
-    law->per_spacing = 1.0 / law->spacing;
 
     /* Contact and rim in the transverse measure: normal compliances count 1 / cos(beta_b). */
     const double cosine = cos(params->base_helix_angle);
@@ -251,7 +254,7 @@ int gmi_elastic_init(gmi_elastic *law, const gmi_elastic_params *params,
     law->rim_compliance =
         GMI_ELASTIC_RIM_SHARE *
         (1.0 / params->gear[0].youngs_modulus + 1.0 / params->gear[1].youngs_modulus) / cosine;
-    set_layers(law, params);
+    gmi_elastic_divide(law, params->normal_module, params->helix_angle, params->stations);
 
     /* The tables of both gears. */
     tooth_pair pair = {.share = {first / mean, second / mean},

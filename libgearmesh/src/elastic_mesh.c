@@ -88,14 +88,16 @@ const char *gmi_elastic_field_at_fault(const gm_mesh_params *params, const char 
 
 /* The workspace, and behind it the arrays of both sides. */
 size_t gmi_workspace_size(const gmi_elastic *law) {
-    return sizeof(gm_workspace) + 2 * gmi_elastic_work_size(law->stations, law->lines_max);
+    return sizeof(gm_workspace) +
+           2 * gmi_elastic_work_size(law->stations, law->lines_max, law->creases_max);
 }
 
 void gmi_workspace_init(gm_workspace *workspace, const gmi_elastic *law) {
     unsigned char *memory = (unsigned char *)(workspace + 1);
     for (int side = GM_DRIVE; side <= GM_COAST; ++side) {
-        gmi_elastic_work_init(&workspace->side[side], law->stations, law->lines_max, memory);
-        memory += gmi_elastic_work_size(law->stations, law->lines_max);
+        gmi_elastic_work_init(&workspace->side[side], law->stations, law->lines_max,
+                              law->creases_max, memory);
+        memory += gmi_elastic_work_size(law->stations, law->lines_max, law->creases_max);
     }
 }
 
@@ -113,7 +115,7 @@ static int stations_of(const gm_mesh_params *params, const gm_pair *pair) {
 }
 
 size_t gmi_elastic_mesh_size(const gm_mesh_params *params, const gm_pair *pair) {
-    const size_t work = gmi_elastic_work_size(stations_of(params, pair), lines_of(params, pair));
+    const size_t work = gmi_elastic_work_size(stations_of(params, pair), lines_of(params, pair), 0);
     return work == 0 ? 0 : sizeof(gmi_elastic_mesh) + sizeof(gmi_elastic_work) + work;
 }
 
@@ -222,12 +224,6 @@ static int is_given_well(const gm_mesh_params *params, const gm_pair *pair, cons
     return 1;
 }
 
-/* Whatever the gears, a mesh is about as stiff per face width as a tenth of their modulus. */
-static double usual_approach(const gm_mesh_params *params, double force_per_width) {
-    return 5.0 * force_per_width *
-           (1.0 / params->pinion_youngs_modulus + 1.0 / params->wheel_youngs_modulus);
-}
-
 /*
  * Where lines are cut beyond the path: where the edge would leave the flank at that x if the teeth gave way by nothing more
  * than x. Fixed, so that the cuts move with the lines alone; under other loads they lie elsewhere on what the edge bears.
@@ -285,12 +281,10 @@ int gmi_elastic_mesh_init(gmi_elastic_mesh *made, const gm_mesh_params *params, 
                         gmi_elastic_tips_init(pair, at, params->tip_rounding, &made->tips);
 
     /* The scale of forces: stiffness at the torque that is to be carried, or at 100 N/mm. */
-    const double force = isnan(params->reference_torque)
-                             ? 1e5 * pair->face_width
-                             : params->reference_torque / pair->wheel.base_radius;
-    made->usual_approach = usual_approach(params, force / face);
+    const double force = gmi_elastic_usual_force(params, pair);
+    made->usual_approach = gmi_elastic_usual_approach(params, force / face);
     gmi_elastic_work *work = (gmi_elastic_work *)(made + 1);
-    gmi_elastic_work_init(work, law.stations, law.lines, work + 1);
+    gmi_elastic_work_init(work, law.stations, law.lines, 0, work + 1);
     find_stiffness(made, pair, at, force, work);
 
     /* Which is that of the teeth; bodies come on top. */
@@ -299,6 +293,18 @@ int gmi_elastic_mesh_init(gmi_elastic_mesh *made, const gm_mesh_params *params, 
                             wind_up(&pair->wheel, params->wheel_bore_radius,
                                     params->wheel_youngs_modulus, params->wheel_poisson_ratio);
     return GM_OK;
+}
+
+void gmi_elastic_mesh_take_flanks(gmi_elastic_mesh *made, const gm_mesh *mesh, int stations) {
+    const int drive = mesh->side[GM_DRIVE].ramps, coast = mesh->side[GM_COAST].ramps;
+    made->law.creases_max = drive > coast ? drive : coast;
+
+    /* The stiffness between ideal flanks is found: from now on on as many stations as these want. */
+    if (stations == 0) {
+        const gm_pair *pair = mesh->pair;
+        gmi_elastic_divide(&made->law, pair->normal_module, pair->helix_angle,
+                           gmi_elastic_stations_of(mesh, made->usual_approach));
+    }
 }
 
 /* ---------------------------------------------------------------------------------------------
@@ -343,6 +349,23 @@ int gmi_elastic_tips_of(const gm_mesh *mesh, gmi_elastic_tips *tips) {
                             wheel->tip_roll == at->tip_roll_length[GM_WHEEL];
     return elastic->has_corners &&
            (is_prepared || gmi_elastic_tips_init(mesh->pair, at, elastic->tip_rounding, tips));
+}
+
+/* Where the linear reliefs of both flanks begin, on the face and in rho_p; returns how many. */
+static int find_creases(const gm_mesh *mesh, int side, gmi_elastic_work *work) {
+    const gmi_engagement *at = &mesh->engagement;
+    int count = 0;
+    for (int role = GM_PINION; role <= GM_WHEEL; ++role) {
+        const gmi_surface_gear gear = gmi_surface_gear_of(mesh, side, role, at->line_of_action);
+        const int ramps = gear.tables == NULL ? 0 : gear.tables->ramp_count;
+        for (int k = 0; k < ramps && count < work->creases_max; ++k) {
+            const gmi_surface_plane plane = gmi_surface_plane_of(
+                &gear, &gear.tables->ramps[k], at->face_from, 1.0 / mesh->pair->face_width);
+            const gmi_elastic_crease crease = {plane.from, plane.per_place, plane.per_roll};
+            work->crease[count++] = crease;
+        }
+    }
+    return count;
 }
 
 /* Where the lines are; GM_STATE_OUT_OF_RANGE for more of them than there is room for. */
@@ -403,8 +426,13 @@ static int place(side_view *view, const gm_position *position, int wanted, gmi_e
         .wheel_softness = is_even ? NULL : view->softness[GM_WHEEL],
     };
 
+    /* Where they are cut. */
     if (view->has_tips) {
         set_cuts(&view->tips, view->elastic->usual_approach, lines.cut);
+    }
+    if (mesh->side[view->side].ramps > 0) {
+        lines.crease = work->crease;
+        lines.creases = find_creases(mesh, view->side, work);
     }
     return gmi_elastic_place(law, &lines, work);
 }

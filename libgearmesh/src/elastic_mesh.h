@@ -113,6 +113,19 @@ size_t gmi_elastic_mesh_size(const gm_mesh_params *params, const gm_pair *pair);
 int gmi_elastic_mesh_init(gmi_elastic_mesh *made, const gm_mesh_params *params, const gm_pair *pair,
                           const gmi_engagement *at, const char **field, const char **requirement);
 
+/* What the flanks of the mesh want of its law: room for their creases, and stations where 0 are given. */
+void gmi_elastic_mesh_take_flanks(gmi_elastic_mesh *made, const gm_mesh *mesh, int stations);
+
+/*
+ * elastic_stations.c: whatever the gears, a mesh is about as stiff per face width as a tenth of their modulus. So x (m) at a
+ * force per width, and the force that is to be carried: at the reference torque, or 100 N/mm.
+ */
+double gmi_elastic_usual_approach(const gm_mesh_params *params, double force_per_width);
+double gmi_elastic_usual_force(const gm_mesh_params *params, const gm_pair *pair);
+
+/* Stations for the pair and the flanks of a mesh. */
+int gmi_elastic_stations_of(const gm_mesh *mesh, double usual_approach);
+
 /* The tips of the gears as they stand: as prepared, or found anew in a pose of this call. 0: lines end with the path. */
 int gmi_elastic_tips_of(const gm_mesh *mesh, gmi_elastic_tips *tips);
 

@@ -2,8 +2,8 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 
 /*
- * Where the lines of contact of elastic teeth and their points are. Each line is cut at the stations and at
- * the ends of the path; every part has two Gauss points. At each point the compliance of both teeth and the rate of the
+ * Where the lines of contact of elastic teeth and their points are. Each line is cut at the stations, at the ends of the
+ * path, and where linear reliefs begin, as a load with a kink is no polynomial; every part has two Gauss points. At each point the compliance of both teeth and the rate of the
  * contact law come from the tables of the law.
  */
 #include "elastic.h"
@@ -95,17 +95,22 @@ static void cut_slot(const gmi_elastic *law, gmi_elastic_work *work, int slot, i
     shorten_slot(law, work, slot, begin, from, fmax(to - from, 0.0));
 }
 
-/* Those on both sides of the cuts, each up to the next cut or station. */
-static void part_slots(const gmi_elastic *law, gmi_elastic_work *work) {
+/* Those on both sides of the cuts, each up to the next cut, station or end of the line. */
+static void part_slots(const gmi_elastic *law, gmi_elastic_work *work, const span *parts) {
     double from = 0.0;
     int is_first = 1;
     for (int k = 0; k < work->cuts; ++k) {
         const gmi_elastic_cut *cut = &work->cut[k];
+        const span *part = &parts[cut->row];
         const double begin = (double)cut->element * law->spacing;
-        from = is_first ? begin : from;
+        if (is_first) {
+            from = part->limited[0] != 0 && part->from > begin ? part->from : begin;
+        }
         shorten_slot(law, work, cut->before, begin, from, cut->z - from);
         if (cut->is_last) {
-            shorten_slot(law, work, cut->after, begin, cut->z, begin + law->spacing - cut->z);
+            const double end = begin + law->spacing;
+            const double to = part->limited[1] != 0 && part->to < end ? part->to : end;
+            shorten_slot(law, work, cut->after, begin, cut->z, to - cut->z);
         }
         is_first = cut->is_last;
         from = cut->z;
@@ -134,7 +139,7 @@ static void place_slots(const gmi_elastic *law, gmi_elastic_work *work, const sp
             cut_slot(law, work, line->slot + last, line->element + last, &parts[row]);
         }
     }
-    part_slots(law, work);
+    part_slots(law, work, parts);
 }
 
 /* ---------------------------------------------------------------------------------------------
@@ -523,47 +528,80 @@ static void follow_teeth(gmi_elastic_work *work) {
     shift_rows(work, shift, work->by_place);
 }
 
-/* A cut of a line at z, behind those before, if that is within one of its elements and not at a station. */
-static void add_cut(const gmi_elastic *law, double z, int limit, int row, gmi_elastic_work *work) {
-    gmi_elastic_line *line = &work->line[row];
-    const double place = z * law->per_spacing - (double)line->element;
+/* A cut of a line at z among those before, if that is within one of its elements and not at a station. */
+static void add_cut(const gmi_elastic *law, const gmi_elastic_cut *wanted, int first,
+                    gmi_elastic_work *work) {
+    const gmi_elastic_line *line = &work->line[wanted->row];
+    const double place = wanted->z * law->per_spacing - (double)line->element;
     if (!(place > 0.0 && place < (double)line->elements)) {
         return;
     }
-    const int number = (int)place;
-    const int element = line->element + number;
+    const int element = line->element + (int)place;
     const double begin = (double)element * law->spacing;
-    if (!(z > begin && z < begin + law->spacing) ||
-        work->cuts == gmi_elastic_cuts_of(work->lines_max)) {
+    if (!(wanted->z > begin && wanted->z < begin + law->spacing) ||
+        work->cuts == gmi_elastic_cuts_of(work->lines_max, work->creases_max)) {
         return;
     }
 
-    /* The part that it divides: what follows the last cut, or the whole element. */
-    gmi_elastic_cut *cut = &work->cut[work->cuts++];
-    const int shares = line->slots > line->elements && cut[-1].element == element;
-    cut->z = z;
-    cut->row = row;
-    cut->element = element;
-    cut->whole = line->slot + number;
-    cut->before = shares ? cut[-1].after : cut->whole;
-    cut->after = line->slot + line->slots++;
-    cut->is_last = 1;
-    cut->limit = limit;
-    if (shares) {
-        cut[-1].is_last = 0;
+    /* In the order of z. */
+    int k = work->cuts++;
+    for (; k > first && work->cut[k - 1].z > wanted->z; --k) {
+        work->cut[k] = work->cut[k - 1];
     }
+    work->cut[k] = *wanted;
+    work->cut[k].element = element;
 }
 
-/* Those of a line that goes on, in the order of z. */
-static void cut_line(const gmi_elastic *law, int row, gmi_elastic_work *work) {
+/* Those at the ends of the path, of a line that goes on. */
+static void cut_ends(const gmi_elastic *law, int row, int first, gmi_elastic_work *work) {
     const gmi_elastic_lines_at *at = &work->at;
     const double rolls[4] = {at->lower - at->cut[0], at->lower, at->upper, at->upper + at->cut[1]};
     const double origin = at->origin + (double)work->line[row].index * at->pitch;
     const double per_climb = 1.0 / at->climb;
     const int step = at->climb > 0.0 ? 1 : -1;
+    gmi_elastic_cut cut = {.by_roll = -per_climb, .row = row};
     for (int k = 0; k < 4; ++k) {
         const int which = step > 0 ? k : 3 - k;
-        add_cut(law, (rolls[which] - origin) * per_climb, which < 2 ? -1 : 1, row, work);
+        cut.z = (rolls[which] - origin) * per_climb;
+        cut.limit = which < 2 ? -1 : 1;
+        add_cut(law, &cut, first, work);
+    }
+}
+
+/* Those at creases, within the part of the line that is there: offset + per_z z + per_roll (origin + climb z) = 0. */
+static void cut_creases(const gmi_elastic *law, int row, int first, const span *part,
+                        gmi_elastic_work *work) {
+    const gmi_elastic_lines_at *at = &work->at;
+    const double origin = at->origin + (double)work->line[row].index * at->pitch;
+    gmi_elastic_cut cut = {.row = row, .limit = 0};
+    for (int k = 0; k < at->creases; ++k) {
+        const gmi_elastic_crease *crease = &at->crease[k];
+        const double along = crease->per_z + at->climb * crease->per_roll;
+
+        /* Along a crease a line has no kink, and z is no number. */
+        cut.z = -(crease->offset + crease->per_roll * origin) / along;
+        cut.by_roll = -crease->per_roll / along;
+        if (cut.z > part->from && cut.z < part->to) {
+            add_cut(law, &cut, first, work);
+        }
+    }
+}
+
+/* Slots of the cuts from `first` on, those of one line: each divides what follows the last one, or a whole element. */
+static void divide_line(int first, gmi_elastic_work *work) {
+    for (int k = first; k < work->cuts; ++k) {
+        gmi_elastic_cut *cut = &work->cut[k];
+        gmi_elastic_line *line = &work->line[cut->row];
+        const int number = cut->element - line->element;
+        const int shares = k > first && cut[-1].element == cut->element;
+        cut->whole = line->slot + number;
+        cut->before = shares ? cut[-1].after : cut->whole;
+        cut->after = line->slot + line->slots++;
+        cut->is_last = 1;
+        if (shares) {
+            cut[-1].is_last = 0;
+        }
+        line->end = number == line->elements - 1 ? cut->after : line->end;
     }
 }
 
@@ -582,9 +620,17 @@ static void add_line(const gmi_elastic *law, gmi_elastic_work *work, int k, cons
     line->limited[0] = part->limited[0];
     line->limited[1] = part->limited[1];
     line->slots = line->elements;
+    line->end = line->slot + line->elements - 1;
+
+    /* Its cuts. */
+    const int row = work->count - 1, first = work->cuts;
     if (work->at.goes_on && work->at.climb != 0.0) {
-        cut_line(law, work->count - 1, work);
+        cut_ends(law, row, first, work);
     }
+    if (work->at.creases > 0) {
+        cut_creases(law, row, first, part, work);
+    }
+    divide_line(first, work);
     work->slots += line->slots;
 }
 

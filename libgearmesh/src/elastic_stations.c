@@ -8,8 +8,13 @@
  * that are long against l, on lines that are short, leave an error of the transmission error: at its worst position some
  * 0.04 h^2 / (l s), s the length of a line across the path, along the face. The form follows from linear elements, whose
  * error falls with h^2, and one end per line; the factor was measured on random pairs: docs/elastic.md.
+ *
+ * Where modifications are a multiple of what teeth give way by, lines bear on a part of themselves and end between stations,
+ * where the flanks part: more elements are needed, by factors that were measured as well.
  */
 #include "elastic.h"
+#include "elastic_mesh.h"
+#include "flank.h"
 #include "gearmesh/gearmesh.h"
 #include "internal.h"
 
@@ -48,4 +53,89 @@ int gm_elastic_stations(const gm_pair *pair) {
         return USUAL;
     }
     return wanted < GMI_ELASTIC_STATIONS_MAX ? (int)wanted : GMI_ELASTIC_STATIONS_MAX;
+}
+
+/* ---------------------------------------------------------------------------------------------
+ * Modified flanks
+ * ------------------------------------------------------------------------------------------- */
+
+/* How many quarters of the usual elements are needed: ratio of the deepest modification to what teeth give way by. */
+static int quarters_of(double ratio) {
+    static const struct {
+        double above;
+        int quarters;
+    } rows[] = {{25.0, 16}, {6.0, 12}, {1.5, 8}, {0.3, 5}};
+    for (size_t k = 0; k < sizeof rows / sizeof rows[0]; ++k) {
+        if (ratio > rows[k].above) {
+            return rows[k].quarters;
+        }
+    }
+    return 4;
+}
+
+static int refined(const gm_pair *pair, double ratio) {
+    const int elements = (quarters_of(ratio) * (gm_elastic_stations(pair) - 1) + 3) / 4;
+    return elements < GMI_ELASTIC_STATIONS_MAX ? elements + 1 : GMI_ELASTIC_STATIONS_MAX;
+}
+
+double gmi_elastic_usual_approach(const gm_mesh_params *params, double force_per_width) {
+    return 5.0 * force_per_width *
+           (1.0 / params->pinion_youngs_modulus + 1.0 / params->wheel_youngs_modulus);
+}
+
+double gmi_elastic_usual_force(const gm_mesh_params *params, const gm_pair *pair) {
+    return isnan(params->reference_torque) ? 1e5 * pair->face_width
+                                           : params->reference_torque / pair->wheel.base_radius;
+}
+
+int gm_elastic_stations_modified(const gm_pair *pair, const gm_mesh_params *params, double depth) {
+    if (pair == NULL || params == NULL) {
+        return 0;
+    }
+    const double force = gmi_elastic_usual_force(params, pair);
+    return refined(pair,
+                   depth / fabs(gmi_elastic_usual_approach(params, force / pair->face_width)));
+}
+
+/* Most that the ramps of a flank take off: at one of its corners, as each is a plane above 0. */
+static double depth_of_ramps(const gmi_tables *tables) {
+    double depth = 0.0;
+    for (int corner = 0; corner < 4; ++corner) {
+        const double t1 = (double)(corner & 1), t2 = (double)(corner >> 1);
+        double taken = 0.0;
+        for (int k = 0; k < tables->ramp_count; ++k) {
+            const gm_flank_ramp *ramp = &tables->ramps[k];
+            taken += fmax(ramp->offset + ramp->per_t1 * t1 + ramp->per_t2 * t2, 0.0);
+        }
+        depth = fmax(depth, taken);
+    }
+    return depth;
+}
+
+/* From the highest to the lowest node of a table, the deepest of all teeth. */
+static double depth_of_tables(const gmi_tables *tables) {
+    const size_t nodes = (size_t)tables->face_nodes * (size_t)tables->profile_nodes;
+    double depth = 0.0;
+    for (int table = 0; table < tables->count; ++table) {
+        const double *node = tables->values + (size_t)table * nodes * GMI_NODE_DOUBLES;
+        for (size_t k = 0; k < nodes; ++k, node += GMI_NODE_DOUBLES) {
+            depth = fmax(depth, tables->table_peak[table] - node[GMI_NODE_VALUE]);
+        }
+    }
+    return depth;
+}
+
+int gmi_elastic_stations_of(const gm_mesh *mesh, double usual_approach) {
+    double depth = 0.0;
+    for (int side = GM_DRIVE; side <= GM_COAST; ++side) {
+        const gmi_tables *flanks[2] = {mesh->side[side].pinion, mesh->side[side].wheel};
+        for (int role = GM_PINION; role <= GM_WHEEL; ++role) {
+            if (flanks[role] != NULL) {
+                const double of_flank =
+                    depth_of_ramps(flanks[role]) + depth_of_tables(flanks[role]);
+                depth = fmax(depth, of_flank);
+            }
+        }
+    }
+    return refined(mesh->pair, depth / fabs(usual_approach));
 }

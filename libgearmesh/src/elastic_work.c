@@ -12,33 +12,36 @@
 /* Sizes of the arrays of a workspace, in doubles. */
 typedef struct work_sizes {
     size_t points, slots, nodes, front, factor, ends, carry;
+    size_t cuts; /* these in cuts */
 } work_sizes;
 
-static work_sizes find_sizes(int stations, int lines) {
+static work_sizes find_sizes(int stations, int lines, int creases) {
     const size_t n = (size_t)stations, rows = (size_t)lines + 1;
-    const size_t slots = (size_t)lines * (n - 1) + (size_t)gmi_elastic_cuts_of(lines);
+    const size_t cuts = (size_t)gmi_elastic_cuts_of(lines, creases);
+    const size_t slots = (size_t)lines * (n - 1) + cuts;
     const work_sizes sizes = {2 * slots,
                               slots,
                               rows * n,
                               rows * rows + 2 * rows * (rows + 4),
                               n * (rows * (rows + 4) + rows * (rows + 1) / 2),
                               8 * (size_t)lines,
-                              rows * (rows + 4)};
+                              rows * (rows + 4),
+                              cuts};
     return sizes;
 }
 
 enum { POINT_ARRAYS = 28, TABLE_ARRAYS = 4, PART_ARRAYS = 4, NODE_ARRAYS = 7, LISTS = 3 };
 
-static int sizes_fit(int stations, int lines) {
+static int sizes_fit(int stations, int lines, int creases) {
     return stations >= 2 && stations <= GMI_ELASTIC_STATIONS_MAX && lines >= 1 &&
-           lines <= GMI_ELASTIC_LINES_MAX;
+           lines <= GMI_ELASTIC_LINES_MAX && creases >= 0 && creases <= GMI_ELASTIC_CREASES_MAX;
 }
 
-size_t gmi_elastic_work_size(int stations, int lines) {
-    if (!sizes_fit(stations, lines)) {
+size_t gmi_elastic_work_size(int stations, int lines, int creases) {
+    if (!sizes_fit(stations, lines, creases)) {
         return 0;
     }
-    const work_sizes sizes = find_sizes(stations, lines);
+    const work_sizes sizes = find_sizes(stations, lines, creases);
     const size_t doubles = (POINT_ARRAYS + 2 * TABLE_ARRAYS) * sizes.points +
                            (GMI_ELASTIC_MATRICES + PART_ARRAYS) * sizes.slots +
                            NODE_ARRAYS * sizes.nodes + sizes.front + sizes.factor + sizes.ends +
@@ -46,6 +49,7 @@ size_t gmi_elastic_work_size(int stations, int lines) {
 
     /* Whole doubles, so that what comes behind is aligned as well. */
     const size_t bytes =
+        sizeof(gmi_elastic_crease) * (size_t)creases + sizeof(gmi_elastic_cut) * sizes.cuts +
         sizeof(gmi_elastic_run) * (size_t)stations + sizeof(int) * LISTS * sizes.points;
     return sizeof(double) * (doubles + (bytes + sizeof(double) - 1) / sizeof(double));
 }
@@ -56,13 +60,15 @@ static double *take(double **memory, size_t count) {
     return array;
 }
 
-void gmi_elastic_work_init(gmi_elastic_work *work, int stations, int lines, void *memory) {
-    const work_sizes sizes = find_sizes(stations, lines);
+void gmi_elastic_work_init(gmi_elastic_work *work, int stations, int lines, int creases,
+                           void *memory) {
+    const work_sizes sizes = find_sizes(stations, lines, creases);
     double *next = memory;
     memset(work, 0, sizeof *work);
-    memset(memory, 0, gmi_elastic_work_size(stations, lines));
+    memset(memory, 0, gmi_elastic_work_size(stations, lines, creases));
     work->stations = stations;
     work->lines_max = lines;
+    work->creases_max = creases;
 
     double **const points[POINT_ARRAYS] = {&work->z,
                                            &work->roll,
@@ -116,8 +122,10 @@ void gmi_elastic_work_init(gmi_elastic_work *work, int stations, int lines, void
     work->carry = take(&next, sizes.carry);
     work->end_record = take(&next, sizes.ends);
 
-    /* Behind the doubles, so that all are aligned. */
-    work->run = (gmi_elastic_run *)(void *)next;
+    /* Behind the doubles, so that all are aligned: first what has doubles itself. */
+    work->crease = (gmi_elastic_crease *)(void *)next;
+    work->cut = (gmi_elastic_cut *)(void *)(work->crease + creases);
+    work->run = (gmi_elastic_run *)(void *)(work->cut + sizes.cuts);
     work->outer[0] = (int *)(void *)(work->run + stations);
     work->outer[1] = work->outer[0] + sizes.points;
     work->chosen = work->outer[1] + sizes.points;

@@ -308,8 +308,10 @@ int gm_mesh_init(gm_mesh **mesh, const gm_mesh_params *params, const gm_pair *pa
 
     /* The law; that of elastic teeth lies behind the pair. */
     gm_mesh_params law = *params;
+    gmi_elastic_mesh *elastic = NULL;
     if (params->law == GM_LAW_ELASTIC) {
-        status = make_elastic(made, (gmi_elastic_mesh *)(own_pair + 1), &law);
+        elastic = (gmi_elastic_mesh *)(own_pair + 1);
+        status = make_elastic(made, elastic, &law);
         if (status != GM_OK) {
             return status;
         }
@@ -326,6 +328,9 @@ int gm_mesh_init(gm_mesh **mesh, const gm_mesh_params *params, const gm_pair *pa
     /* The simple model has ideal flanks. */
     const int has_flanks = params->model != GM_MODEL_SIMPLE;
     take_flanks(made, has_flanks ? pinion_flanks : NULL, has_flanks ? wheel_flanks : NULL);
+    if (elastic != NULL) {
+        gmi_elastic_mesh_take_flanks(elastic, made, params->stations);
+    }
     *mesh = made;
     return GM_OK;
 }

@@ -218,16 +218,10 @@ static void add_held_ramp(const gmi_surface_points *at, const gmi_surface_gear *
 
 /* Each takes off what it exceeds zero by. */
 void gmi_surface_add_ramps(const gmi_surface_points *at, const gmi_surface_gear *gear) {
-    const gmi_grid *grid = gear->grid;
     for (int r = 0; r < gear->tables->ramp_count; ++r) {
-        const gm_flank_ramp *ramp = &gear->tables->ramps[r];
-
-        /* Its height is straight in t1 and roll length, so that it is in the place between stations and in the roll. */
-        const double per_t1 = ramp->per_t1 * grid->face_scale;
-        const double per_own_roll = ramp->per_t2 / grid->profile_cells * grid->per_rho;
-        const double from = ramp->offset + ramp->per_t1 * grid->face_origin + per_t1 * at->t1_from +
-                            per_own_roll * gear->roll_from;
-        const double per_place = per_t1 * at->per_place, per_roll = per_own_roll * gear->per_roll;
+        const gmi_surface_plane plane =
+            gmi_surface_plane_of(gear, &gear->tables->ramps[r], at->t1_from, at->per_place);
+        const double from = plane.from, per_place = plane.per_place, per_roll = plane.per_roll;
         if (gear->is_held) {
             add_held_ramp(at, gear, from, per_place, per_roll);
             continue;

@@ -98,6 +98,23 @@ static inline gmi_surface_gear gmi_surface_gear_of(const gm_mesh *mesh, int side
     return role == GM_PINION ? pinion : wheel;
 }
 
+/* Height of a ramp of a gear where it is above 0: straight in the place along the face and in rho_p. */
+typedef struct gmi_surface_plane {
+    double from, per_place, per_roll;
+} gmi_surface_plane;
+
+static inline gmi_surface_plane gmi_surface_plane_of(const gmi_surface_gear *gear,
+                                                     const gm_flank_ramp *ramp, double t1_from,
+                                                     double per_place) {
+    const gmi_grid *grid = gear->grid;
+    const double per_t1 = ramp->per_t1 * grid->face_scale;
+    const double per_own_roll = ramp->per_t2 / grid->profile_cells * grid->per_rho;
+    const gmi_surface_plane plane = {ramp->offset + ramp->per_t1 * grid->face_origin +
+                                         per_t1 * t1_from + per_own_roll * gear->roll_from,
+                                     per_t1 * per_place, per_own_roll * gear->per_roll};
+    return plane;
+}
+
 /* Where the table of a tooth begins, see gmi_surface_tables. */
 static inline double gmi_surface_table(const gmi_surface_gear *gear, const gmi_flank *flank) {
     return flank->values == NULL ? -1.0 : (double)(flank->values - gear->tables->values);
