@@ -15,11 +15,11 @@ enum { CASES = 200, LOADS = 6 };
 
 /* Everything that follows lines: sums, derivatives, moments, squares, stretches, and many depths at once. */
 typedef struct results {
-    gm_mesh_result at, posed;
+    gm_mesh_result force, at, posed;
     gm_tangent tangent;
     double offsets[LOADS];
     gm_mesh_result loaded[LOADS];
-    int status[4];
+    int status[5];
 } results;
 
 static void set_wide(gm_mesh *mesh, int is_wide) {
@@ -56,6 +56,9 @@ static void evaluate_all(const gm_mesh *mesh, const gm_motion *motion, results *
     }
     r->status[3] = gm_rolling_equilibria(mesh, 0.1 * motion->position.phase, 100.0, loads, LOADS,
                                          GM_WANT_FORCE, NULL, r->offsets, r->loaded);
+
+    /* The sum alone has a way of its own. */
+    r->status[4] = gm_mesh_evaluate_at(mesh, &motion->position, GM_WANT_FORCE, NULL, &r->force);
 }
 
 /* Random pairs of all kinds with tables, ramps and none, posed and tilted, with friction and damping. */

@@ -61,11 +61,11 @@ static double *side_init(gmi_tables *side, int tables, int face_nodes, int profi
     side->face_nodes = tables == 0 ? 0 : face_nodes;
     side->profile_nodes = tables == 0 ? 0 : profile_nodes;
     side->capacity = tables;
+    side->table_doubles = (size_t)side->face_nodes * (size_t)side->profile_nodes * GMI_NODE_DOUBLES;
 
     /* Tables, their peaks and the pitch deviations one behind the other. */
     side->values = doubles;
-    doubles +=
-        (size_t)tables * (size_t)side->face_nodes * (size_t)side->profile_nodes * GMI_NODE_DOUBLES;
+    doubles += (size_t)tables * side->table_doubles;
     side->table_peak = doubles;
     doubles += tables;
     side->pitch = doubles;
@@ -163,10 +163,6 @@ double gm_flanks_profile_slope(const gm_flanks *flanks, int side) {
 
 static gmi_tables *side_of(gm_flanks *flanks, int side) {
     return is_side(side) ? &flanks->side[side] : NULL;
-}
-
-static size_t table_doubles(const gmi_tables *side) {
-    return (size_t)side->face_nodes * (size_t)side->profile_nodes * GMI_NODE_DOUBLES;
 }
 
 /* Most material of one tooth: its highest node (bilinear surfaces peak at nodes) and its pitch. */
@@ -286,9 +282,9 @@ int gm_flanks_set_table(gm_flanks *flanks, int side, int tooth, const double *de
 
     /* The next place, prepared for the walk along a line. */
     const int place = tables->count++;
-    double *table = tables->values + (size_t)place * table_doubles(tables);
+    double *table = tables->values + (size_t)place * tables->table_doubles;
     fill_table(tables, table, deviation, factor);
-    tables->table_peak[place] = table_maximum(table, table_doubles(tables));
+    tables->table_peak[place] = table_maximum(table, tables->table_doubles);
 
     /* Hand it to its tooth, or to all. */
     const double before = tooth == GM_ALL_TEETH ? 0.0 : tooth_peak(tables, tooth);

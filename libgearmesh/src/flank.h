@@ -9,16 +9,17 @@
 
 /* One side (drive or coast) of all teeth of a gear: views over the caller's memory, and ramps. */
 typedef struct gmi_tables {
-    int face_nodes;     /* grid lines along t1; without tables 0, or 2 if there are ramps */
-    int profile_nodes;  /* grid lines along t2; likewise */
-    int capacity;       /* table places */
-    int count;          /* table places taken */
-    double peak;        /* most material of any tooth, pitch included, before ramps (m) */
-    double *values;     /* [capacity][face_nodes][profile_nodes][GMI_NODE_DOUBLES] (m) */
-    double *table_peak; /* [capacity] largest node value (m) */
-    double *pitch;      /* [teeth] transverse pitch deviation, > 0 material added (m) */
-    int *table;         /* [teeth] table of a tooth, -1 = ideal */
-    int ramp_count;     /* 0 .. GM_FLANK_RAMPS_MAX */
+    int face_nodes;       /* grid lines along t1; without tables 0, or 2 if there are ramps */
+    int profile_nodes;    /* grid lines along t2; likewise */
+    int capacity;         /* table places */
+    int count;            /* table places taken */
+    double peak;          /* most material of any tooth, pitch included, before ramps (m) */
+    double *values;       /* [capacity][face_nodes][profile_nodes][GMI_NODE_DOUBLES] (m) */
+    size_t table_doubles; /* of one table; 0 without */
+    double *table_peak;   /* [capacity] largest node value (m) */
+    double *pitch;        /* [teeth] transverse pitch deviation, > 0 material added (m) */
+    int *table;           /* [teeth] table of a tooth, -1 = ideal */
+    int ramp_count;       /* 0 .. GM_FLANK_RAMPS_MAX */
     gm_flank_ramp ramps[GM_FLANK_RAMPS_MAX]; /* of all teeth, in the transverse section */
 } gmi_tables;
 
@@ -65,8 +66,7 @@ static inline gmi_flank gmi_flank_of(const gmi_tables *tables, int tooth) {
     flank.pitch = tables->pitch[tooth];
     flank.peak = flank.pitch;
     if (table >= 0) {
-        const size_t nodes = (size_t)tables->face_nodes * (size_t)tables->profile_nodes;
-        flank.values = tables->values + (size_t)table * nodes * GMI_NODE_DOUBLES;
+        flank.values = tables->values + (size_t)table * tables->table_doubles;
         flank.peak += tables->table_peak[table];
     }
     return flank;

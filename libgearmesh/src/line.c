@@ -38,15 +38,28 @@
 #define HAS_COPIES 0
 #endif
 
+/* For compilers to keep in registers what is needed otherwise. */
+#if defined(__GNUC__)
+#define RARELY(condition) __builtin_expect((condition) != 0, 0)
+#else
+#define RARELY(condition) (condition)
+#endif
+
 /* In place of a table that is not there: zeros wherever one looks. */
 static const double ideal_nodes[GMI_NODE_DOUBLES] = {0.0};
 static const gmi_grid ideal_grid = {0};
+
+/* Doubles from one face line to the next, and from one profile line to the next. */
+typedef struct strides {
+    ptrdiff_t row, step;
+} strides;
 
 /* Where the line is in one flank's table. */
 typedef struct trace {
     const double *ahead; /* node of the profile line ahead on the face line behind */
     double next_profile; /* s of the profile line ahead */
     double next_face;    /* s of the face line ahead, where the other table leads */
+    strides kept;        /* of the grid, in registers */
     int faces;           /* face lines still to cross */
     double slope;        /* d deviation / d u here (m) */
     double slope_rate;   /* its d / d s within the cell (m) */
@@ -58,8 +71,23 @@ typedef struct quadratic {
 } quadratic;
 
 static void begin_ideal(trace *path) {
-    const trace ideal = {ideal_nodes, NO_CROSSING, NO_CROSSING, 0, 0.0, 0.0};
+    const trace ideal = {ideal_nodes, NO_CROSSING, NO_CROSSING, {0, 0}, 0, 0.0, 0.0};
     *path = ideal;
+}
+
+/*
+ * gmi_cell_index() without a branch at 0, of which no processor foresees the way where lines begin at the face: half of
+ * v + |v| is v or 0.
+ */
+static inline int cell_index(double v, int last) {
+    const int cell = (int)(0.5 * (v + fabs(v)));
+    return cell < last ? cell : last;
+}
+
+/* Kept where code may be large: a task that is small has no stack to spare for them. */
+SPECIALIZED strides strides_of(const trace *path, const gmi_grid *grid) {
+    const strides read = {grid->row, grid->step};
+    return HAS_COPIES ? path->kept : read;
 }
 
 /* Adds the deviation of a table to f at the place p, q of its cell. */
@@ -85,12 +113,14 @@ SPECIALIZED void add_table(trace *path, const gmi_grid *grid, double p, double q
 SPECIALIZED double begin(trace *path, const gmi_grid *grid, const double *table, double profile,
                          double t1, int face, double p, double s, quadratic *f) {
     const double u = grid->base + (grid->direction * profile + t1 * grid->climb);
-    const int cell = gmi_cell_index(u, grid->last_profile);
+    const int cell = cell_index(u, grid->last_profile);
     const double *behind = table + (face * grid->row + cell * grid->step + grid->corner);
     const double *ahead = behind + grid->step;
 
     const double q = u - (double)cell;
     path->ahead = ahead;
+    path->kept.row = grid->row;
+    path->kept.step = grid->step;
     add_table(path, grid, p, q, f);
 
     /* The profile line ahead, and the place where the table ends. */
@@ -100,9 +130,10 @@ SPECIALIZED double begin(trace *path, const gmi_grid *grid, const double *table,
 
 /* Across the face line ahead, at `s`; `ahead` is already that of the new cell. */
 SPECIALIZED void cross_face(trace *path, const gmi_grid *grid, double s, int wanted, quadratic *f) {
-    path->ahead += grid->row;
+    const strides to = strides_of(path, grid);
+    path->ahead += to.row;
     const double ahead = path->ahead[GMI_NODE_FACE];
-    const double back = path->ahead[GMI_NODE_FACE - grid->step] - ahead;
+    const double back = path->ahead[GMI_NODE_FACE - to.step] - ahead;
 
     /* Interpolated to where the line is between two profile lines. */
     const double distance = (path->next_profile - s) * grid->rate;
@@ -116,8 +147,10 @@ SPECIALIZED void cross_face(trace *path, const gmi_grid *grid, double s, int wan
 /* Across the profile line ahead, at the place p between its nodes on the face lines behind and ahead. */
 SPECIALIZED void cross_profile(trace *path, const gmi_grid *grid, double p, int wanted,
                                quadratic *f) {
+    const strides to = strides_of(path, grid);
     const double behind = path->ahead[GMI_NODE_PROFILE];
-    const double change = path->ahead[grid->row + GMI_NODE_PROFILE] - behind;
+    const double *on_next_face = path->ahead + to.row;
+    const double change = on_next_face[GMI_NODE_PROFILE] - behind;
     const double kink = behind + p * change;
     f->half_slope += grid->profile_kick * kink;
     f->curvature += grid->bend * change;
@@ -125,7 +158,7 @@ SPECIALIZED void cross_profile(trace *path, const gmi_grid *grid, double p, int 
         path->slope += kink;
         path->slope_rate += grid->face_ratio * change;
     }
-    path->ahead += grid->step;
+    path->ahead += to.step;
     path->next_profile += grid->profile_spacing;
 }
 
@@ -501,7 +534,7 @@ SPECIALIZED void advance(walk_state *at, double end, int wanted, gmi_stretches *
             const piece part = piece_ahead(at, length, wanted);
             add_moments(&part, 0.0, length, split);
         }
-    } else if (gmi_larger(gmi_larger(value, control), end_value) > 0.0) {
+    } else if (RARELY(gmi_larger(gmi_larger(value, control), end_value) > 0.0)) {
         const piece part = piece_ahead(at, length, wanted);
         if (wanted & GMI_STRETCHES) {
             find_in_piece(&part, end_value, found);
@@ -624,9 +657,12 @@ SPECIALIZED void walk(walk_state at, const gmi_grid *first, const gmi_grid *seco
                       int wanted, int same_faces, gmi_line_sum *result) {
     const double end_in_last = end - (double)at.first.faces;
 
-    /* A copy for all cells but the last one. */
+    /*
+     * A copy for all cells but the last one. They end at 1, which is read from the grid: a constant would be fetched anew for
+     * each comparison.
+     */
     while (HAS_COPIES && at.first.faces > 0) {
-        walk_cell(&at, first, second, 1.0, wanted, same_faces, NULL, result);
+        walk_cell(&at, first, second, first->face_ratio, wanted, same_faces, NULL, result);
         enter_next_cell(&at, first, second, wanted, same_faces);
     }
     for (;;) {
@@ -910,7 +946,7 @@ SPECIALIZED void walk_tables(const gmi_line *line, const gmi_grid *first, const 
                              gmi_line_sum *result) {
     const double v1 = line->from * first->face_rate + first->face_base;
     const double to = line->to * first->face_rate + first->face_base;
-    const int face = gmi_cell_index(v1, first->last_face);
+    const int face = cell_index(v1, first->last_face);
     const double s = v1 - (double)face;
 
     int same_faces = 1;
@@ -925,7 +961,7 @@ SPECIALIZED void walk_tables(const gmi_line *line, const gmi_grid *first, const 
     at.three_sums = at.contact = at.two_first = at.two_second = 0.0;
 
     /* Into both tables. Face lines are shared, or those of the second one are counted in cells of the first. */
-    at.first.faces = gmi_cell_index(to, first->last_face) - face;
+    at.first.faces = cell_index(to, first->last_face) - face;
     double end =
         gmi_smaller(to - (double)face, begin(&at.first, first, line->pinion, line->pinion_profile,
                                              line->from, face, s, s, &at.f));
@@ -944,10 +980,10 @@ SPECIALIZED void walk_tables(const gmi_line *line, const gmi_grid *first, const 
             second = &scaled;
         }
         const double second_v1 = line->from * second->face_rate + second->face_base;
-        const int second_face = gmi_cell_index(second_v1, second->last_face);
+        const int second_face = cell_index(second_v1, second->last_face);
         const double p = second_v1 - (double)second_face;
         at.second.faces =
-            gmi_cell_index(line->to * second->face_rate + second->face_base, second->last_face) -
+            cell_index(line->to * second->face_rate + second->face_base, second->last_face) -
             second_face;
         at.second.next_face = s + (1.0 - p) / second->face_ratio;
         end = gmi_smaller(end, begin(&at.second, second, line->wheel, line->wheel_profile,
@@ -1123,9 +1159,27 @@ void gmi_line_integrate_squares(const gmi_line *line, const gmi_grid *pinion, co
     }
 }
 
+#ifdef GMI_IN_WIDE
+
+/* Apart from others, the walk for a sum alone has the registers for itself. */
+OWN_STACK void gmi_wide_line_sum(const gmi_line *line, const gmi_grid *pinion,
+                                 const gmi_grid *wheel, gmi_line_sum *result) {
+    result->sum = result->contact = 0.0;
+    walk_tables(line, pinion, wheel, GMI_SUM, WALK_SUMS, NULL, result);
+}
+
+#endif
+
 void gmi_line_integrate(const gmi_line *line, const gmi_grid *pinion, const gmi_grid *wheel,
                         int wanted, gmi_line_sum *result) {
     GMI_CALL_WIDE(pinion, gmi_wide_line_integrate(line, pinion, wheel, wanted, result))
+#ifdef GMI_IN_WIDE
+    if (wanted == GMI_SUM && line->pinion != NULL) {
+        gmi_wide_line_sum(line, pinion, wheel, result);
+        return;
+    }
+#endif
+
     result->sum = result->contact = result->pinion = result->wheel = 0.0;
     result->sum_t1 = result->contact_t1 = 0.0;
     if (wanted & GMI_CONTACT_DERIVATIVES) {

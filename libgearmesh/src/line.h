@@ -5,6 +5,7 @@
 #ifndef GEARMESH_LINE_H
 #define GEARMESH_LINE_H
 
+#include "contact.h"
 #include "grid.h"
 #include "internal.h"
 #include "wide.h"
@@ -161,6 +162,20 @@ void gmi_wide_line_integrate_squares(const gmi_line *line, const gmi_grid *pinio
                                      const gmi_grid *wheel, gmi_line_sum *result);
 void gmi_wide_line_integrate(const gmi_line *line, const gmi_grid *pinion, const gmi_grid *wheel,
                              int wanted, gmi_line_sum *result);
+void gmi_wide_line_sum(const gmi_line *line, const gmi_grid *pinion, const gmi_grid *wheel,
+                       gmi_line_sum *result); /* with a table on the pinion */
 #endif
+
+/* The sum and the touching part alone, which most evaluations want: by the shortest way. */
+static inline void gmi_line_integrate_sum(const gmi_line *line, const gmi_grid *pinion,
+                                          const gmi_grid *wheel, gmi_line_sum *result) {
+#if GMI_HAS_WIDE
+    if (pinion->is_wide && line->pinion != NULL) {
+        gmi_wide_line_sum(line, pinion, wheel, result);
+        return;
+    }
+#endif
+    gmi_line_integrate(line, pinion, wheel, GMI_SUM, result);
+}
 
 #endif

@@ -845,7 +845,7 @@ static int touches(const gmi_side *prepared, const gmi_line *line) {
         }
     }
     gmi_line_sum sum;
-    gmi_line_integrate(line, pinion, wheel, GMI_SUM, &sum);
+    gmi_line_integrate_sum(line, pinion, wheel, &sum);
     return sum.contact > 0.0;
 }
 

@@ -90,6 +90,8 @@ static inline void gmi_flanks_integrate(const gmi_side *prepared, const gmi_grid
                             wanted, sum);
     } else if (wanted & GMI_SQUARES) {
         gmi_line_integrate_squares(line, pinion_grid, wheel_grid, sum);
+    } else if (wanted == GMI_SUM) {
+        gmi_line_integrate_sum(line, pinion_grid, wheel_grid, sum);
     } else {
         gmi_line_integrate(line, pinion_grid, wheel_grid, wanted, sum);
     }
