@@ -940,6 +940,42 @@ static OWN_STACK void walk_squares(walk_state at, const gmi_grid *first, const g
 /* What a walk is for, beside sums. */
 enum walk_kind { WALK_SUMS, WALK_STRETCHES, WALK_DEPTHS, WALK_SQUARES };
 
+/*
+ * A walk of its own for each kind and each mask that solvers use: what is not wanted costs nothing in it. begin_out, end_out,
+ * parabola: see windows_along().
+ */
+SPECIALIZED void walk_entered(walk_state *at, const gmi_grid *first, const gmi_grid *second,
+                              double end, double begin_out, double end_out,
+                              const quadratic *parabola, int wanted, enum walk_kind kind,
+                              int same_faces, gmi_stretches *found, gmi_line_sum *result) {
+    enum { DAMPED = GMI_DERIVATIVES | GMI_CONTACT_DERIVATIVES };
+    if (kind != WALK_SUMS && same_faces) {
+        at->second.next_face = NO_CROSSING;
+    }
+    if (kind == WALK_STRETCHES) {
+        at->faces += (double)at->first.faces;
+        search_line(at, first, second, end, begin_out, end_out, parabola, same_faces, found,
+                    result);
+    } else if (kind == WALK_SQUARES) {
+        walk_squares(*at, first, second, end, same_faces, result);
+    } else if (kind == WALK_DEPTHS) {
+        walk_depths(*at, first, second, end, same_faces, result);
+    } else if (!same_faces) {
+        walk_apart(*at, first, second, end, wanted, result);
+    } else if (wanted == GMI_SUM) {
+        walk(*at, first, second, end, GMI_SUM, 1, result);
+    } else if (wanted == GMI_DERIVATIVES) {
+        walk(*at, first, second, end, GMI_DERIVATIVES, 1, result);
+    } else if (wanted == DAMPED) {
+        walk(*at, first, second, end, DAMPED, 1, result);
+    } else if (wanted == GMI_MOMENTS) {
+        walk(*at, first, second, end, GMI_MOMENTS, 1, result);
+    } else {
+        walk(*at, first, second, end, wanted & ~(GMI_STRETCHES | GMI_DEPTHS | GMI_SQUARES), 1,
+             result);
+    }
+}
+
 /* The pinion, which leads, has a table; the wheel may have one. found: WALK_STRETCHES. */
 SPECIALIZED void walk_tables(const gmi_line *line, const gmi_grid *first, const gmi_grid *second,
                              int wanted, enum walk_kind kind, gmi_stretches *found,
@@ -998,34 +1034,8 @@ SPECIALIZED void walk_tables(const gmi_line *line, const gmi_grid *first, const 
     }
 
     result->at_from = at.f.value;
-
-    /* A walk of its own for each mask that solvers use: what is not wanted costs nothing in it. */
-    enum { DAMPED = GMI_DERIVATIVES | GMI_CONTACT_DERIVATIVES };
-    if (kind != WALK_SUMS && same_faces) {
-        at.second.next_face = NO_CROSSING;
-    }
-    if (kind == WALK_STRETCHES) {
-        at.faces += (double)at.first.faces;
-        search_line(&at, first, second, end, begin_out, end_out, &parabola, same_faces, found,
-                    result);
-    } else if (kind == WALK_SQUARES) {
-        walk_squares(at, first, second, end, same_faces, result);
-    } else if (kind == WALK_DEPTHS) {
-        walk_depths(at, first, second, end, same_faces, result);
-    } else if (!same_faces) {
-        walk_apart(at, first, second, end, wanted, result);
-    } else if (wanted == GMI_SUM) {
-        walk(at, first, second, end, GMI_SUM, 1, result);
-    } else if (wanted == GMI_DERIVATIVES) {
-        walk(at, first, second, end, GMI_DERIVATIVES, 1, result);
-    } else if (wanted == DAMPED) {
-        walk(at, first, second, end, DAMPED, 1, result);
-    } else if (wanted == GMI_MOMENTS) {
-        walk(at, first, second, end, GMI_MOMENTS, 1, result);
-    } else {
-        walk(at, first, second, end, wanted & ~(GMI_STRETCHES | GMI_DEPTHS | GMI_SQUARES), 1,
-             result);
-    }
+    walk_entered(&at, first, second, end, begin_out, end_out, &parabola, wanted, kind, same_faces,
+                 found, result);
 }
 
 /* Where only the wheel has a table it leads: the same line with it in the pinion's place. */
