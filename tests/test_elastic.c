@@ -681,6 +681,44 @@ static void warm_start_gives_the_cold_answer(void) {
     }
 }
 
+/* Where only sums are wanted, one step is mostly enough as lines roll on, and leaves what undeformed teeth lead to. */
+static void sums_of_one_step_are_those_of_undeformed_teeth(void) {
+    uint64_t seed = 31;
+    for (int kind = 0; kind < 3; ++kind) {
+        elastic_case warm, cold;
+        make(&warm, kind, 17);
+        make(&cold, kind, 17);
+        warm.work.sums_alone = 1;
+
+        const double size = 2e-3 * warm.gear.normal_module;
+        const elastic_deviation d = random_deviation(&seed, &warm.gear, 0.1 * size);
+        double o = warm.gear.path_start, x = size;
+        int single = 0, count = 0;
+        for (int k = 0; k < 600; ++k) {
+            o += gm_test_uniform(&seed, 0.002, 0.01) * warm.gear.pitch;
+            x += k % 5 == 0 ? 0.0 : gm_test_uniform(&seed, -0.02, 0.02) * size;
+            const gmi_elastic_lines_at at = elastic_lines_at(&warm.gear, o);
+            const gmi_elastic_result got = elastic_solve_at(&warm, &at, &d, x, 1);
+            const gmi_elastic_result expected = elastic_solve_at(&cold, &at, &d, x, 0);
+            gmi_elastic_gradient force[2], energy[2];
+            gmi_elastic_differentiate(&warm.law, &warm.work, &force[0], &energy[0]);
+            gmi_elastic_differentiate(&cold.law, &cold.work, &force[1], &energy[1]);
+
+            gm_test_context("kind %d, step %d", kind, k);
+            GM_ASSERT_REL(got.force, expected.force, 8e-9);
+            GM_ASSERT_REL(got.energy, expected.energy, 2e-9);
+            GM_ASSERT_REL(got.by_approach, expected.by_approach, 5e-6);
+            GM_ASSERT_ABS(force[0].by_roll, force[1].by_roll, 2e-7 * expected.by_approach);
+            GM_ASSERT_ABS(energy[0].by_roll, energy[1].by_roll, 2e-8 * expected.force);
+            single += got.iterations == 1;
+            ++count;
+        }
+        GM_ASSERT(single > 0.7 * count);
+        elastic_case_free(&warm);
+        elastic_case_free(&cold);
+    }
+}
+
 /* The last solution goes with its teeth when the lines are counted from another one: no more steps there than elsewhere. */
 static void teeth_are_followed_over_many_pitches(void) {
     for (int hand = -1; hand <= 1; hand += 2) {
@@ -1097,6 +1135,7 @@ int main(int argc, char **argv) {
                                     GM_TEST(energy_is_kept_over_a_mesh_cycle),
                                     GM_TEST(energy_changes_by_the_work_done),
                                     GM_TEST(warm_start_gives_the_cold_answer),
+                                    GM_TEST(sums_of_one_step_are_those_of_undeformed_teeth),
                                     GM_TEST(teeth_are_followed_over_many_pitches),
                                     GM_TEST(cold_start_needs_few_steps),
                                     GM_TEST(nothing_touches_without_approach),

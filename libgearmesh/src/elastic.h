@@ -297,14 +297,22 @@ typedef struct gmi_elastic_work {
     int outer_count[2];
     int *chosen; /* the caller's, [2 slots] */
 
+    /*
+     * The caller's: whether only the sums are wanted, of force and energy, by the approach and by the roll. Points and other
+     * functionals are then known to 1e-5.
+     */
+    int sums_alone;
+
     /* Of the last gmi_elastic_solve(). */
-    int touching;      /* whether anything does: else loads and derivatives are 0 */
-    int warm;          /* solutions to begin from: 0, 1, 2 with a rate by the roll */
-    int warm_tooth;    /* tooth of row 0 */
+    int touching;   /* whether anything does: else loads and derivatives are 0 */
+    int warm;       /* solutions to begin from: 0, 1, 2 with a rate by the roll, 3 with its bend */
+    int warm_tooth; /* tooth of row 0 */
     double warm_place; /* roll of that tooth at z = 0 (m) */
     double approach;   /* x (m) */
     double rolled;     /* since the solution before (m) */
     double energy;     /* U (J) */
+    int is_foretold;   /* whether its state was near the one expected, when the lines rolled last */
+    int is_rolling;    /* whether held_by_roll is set, where the last step was not small */
     int straight;      /* whether a point is on the straight part of the contact law */
 
     /* Over points, [2][slots]. What the caller reads and writes: */
@@ -337,11 +345,14 @@ typedef struct gmi_elastic_work {
     double *rate;            /* 1 / (B e^L), the caller's to change beyond the path (1/m) */
     double *rate_by_roll;    /* d ln(rate) likewise (1/m) */
     double *rate_by_action;
-    double *deflection; /* of the tooth layer, before s */
-    double *slope;      /* B dq/d gamma */
-    double *change_at;  /* of gamma in the last step (m) */
-    double *expected;   /* W q after the step, in first order (N) */
-    double *scratch;    /* forces, ... */
+    double *deflection;   /* of the tooth layer, before s */
+    double *slope;        /* B dq/d gamma */
+    double *change_at;    /* of gamma in the last step (m) */
+    double *expected;     /* W q after the step, in first order (N) */
+    double *excess;       /* what the force exceeds that by, with the approach of that order (N) */
+    double *stiffer;      /* what the series of the contact law adds to the stiffness (N/m) */
+    double *held_by_roll; /* 1 less what the layers give way by as the lines roll (1) */
+    double *scratch;      /* forces, ... */
 
     /* [2 slots][2]: values and slopes of pinion and wheel, while they are placed; then free for the
        caller */
@@ -355,11 +366,12 @@ typedef struct gmi_elastic_work {
     double *parts[4]; /* tooth left, tooth right, rim left, rim right */
 
     /* Over stations: [lines_max + 1][stations], the last row is the rim's. */
-    double *state;    /* deflections of the layers */
-    double *change;   /* of a step: residual, then change */
-    double *adjoint;  /* of the force; also the derivative of the state by x */
-    double *last;     /* state of the solution before */
-    double *by_place; /* derivative of the state by the roll, from both */
+    double *state;       /* deflections of the layers */
+    double *change;      /* of a step: residual, then change */
+    double *adjoint;     /* of the force; also the derivative of the state by x */
+    double *last;        /* state of the solution before */
+    double *by_place;    /* derivative of the state by the roll, from both, ... */
+    double *place_curve; /* ... and half its second one, with the solution before those */
     double *last_step;
     double *other; /* adjoint of another functional */
 

@@ -43,6 +43,14 @@ APART void functional_terms(int count, const double *restrict force,
     }
 }
 
+/* What the adjoint of a matrix less `stiffer` counts too much of how the layers give way. */
+APART void stiffer_terms(int count, const double *restrict stiffer, const double *restrict pull,
+                         const double *restrict held, double *restrict terms) {
+    for (int p = 0; p < count; ++p) {
+        terms[p] = stiffer[p] * pull[p] * (1.0 - held[p]);
+    }
+}
+
 /* To the energy. half: B / 2. */
 APART void energy_terms(int count, double half, const double *restrict force,
                         const double *restrict load, const double *restrict deflection,
@@ -294,6 +302,10 @@ static void move_points(const gmi_elastic *law, gmi_elastic_work *work,
     if (work->straight) {
         gradient->by_roll -= straight_functional(law, work, work->rate_by_roll);
     }
+    if (work->is_rolling) {
+        stiffer_terms(count, work->stiffer, work->pull, work->held_by_roll, work->scratch);
+        gradient->by_roll -= gmi_elastic_sum(count, work->scratch);
+    }
 }
 
 /* The line of action alone is moved in a pose: the deviations have no slope along it. */
@@ -373,6 +385,27 @@ void gmi_elastic_differentiate(const gmi_elastic *law, gmi_elastic_work *work,
     add_ends(law, work, &unit, work->adjoint, force, energy);
 }
 
+/* terms -= factor * stiffer: to the stiffness of the matrix that was eliminated. */
+static void less_stiff(int count, const double *factor, const double *stiffer, double *terms) {
+    for (int p = 0; p < count; ++p) {
+        terms[p] -= optional(factor, p, 1.0) * stiffer[p];
+    }
+}
+
+/*
+ * What the series of the contact law leaves to a functional, in second order: of the excess beyond what it leaves to the
+ * points, which is the result, and of the stiffness. pull: that of the force.
+ */
+static double follow_series(const gmi_elastic_work *work, const double *factor, const double *pull,
+                            double *by_deviation) {
+    double sum = 0.0;
+    for (int p = 0; p < 2 * work->slots; ++p) {
+        sum += work->excess[p] * (work->pull[p] - optional(factor, p, 1.0) * pull[p]);
+        by_deviation[p] -= work->stiffer[p] * (1.0 - pull[p]) * work->pull[p];
+    }
+    return sum;
+}
+
 void gmi_elastic_differentiate_functional(const gmi_elastic *law, gmi_elastic_work *work,
                                           const gmi_elastic_functional *functional,
                                           double *by_deviation, gmi_elastic_gradient *gradient) {
@@ -388,6 +421,7 @@ void gmi_elastic_differentiate_functional(const gmi_elastic *law, gmi_elastic_wo
     /* Its adjoint. */
     memset(work->other, 0, sizeof(double) * (size_t)(work->lines_max + 1) * (size_t)work->stations);
     weigh(count, functional->factor, work->stiffness, work->scratch);
+    less_stiff(count, functional->factor, work->stiffer, work->scratch);
     gmi_elastic_gather(work, work->scratch, work->other);
     gmi_elastic_substitute(work, work->other);
 
@@ -400,10 +434,13 @@ void gmi_elastic_differentiate_functional(const gmi_elastic *law, gmi_elastic_wo
     move_points(law, work, gradient);
     move_action(law, work, gradient);
     add_ends(law, work, functional, work->other, gradient, NULL);
+
+    /* By the deviations, and the functional itself. */
     multiply(count, work->stiffness, work->pull, by_deviation);
+    const double bent = follow_series(work, functional->factor, pull, by_deviation);
     weigh(count, functional->factor, work->force, work->scratch);
     gradient->by_approach = gmi_elastic_sum(count, by_deviation);
-    gradient->value = gmi_elastic_sum(count, work->scratch);
+    gradient->value = gmi_elastic_sum(count, work->scratch) + bent;
     if (functional->factor_by_roll != NULL) {
         multiply(count, functional->factor_by_roll, work->force, work->scratch);
         gradient->by_roll += gmi_elastic_sum(count, work->scratch);

@@ -580,6 +580,9 @@ static int balance(side_view *view, const gm_position *position, int wanted, gmi
         work->is_entering = view->has_tips &&
                             gmi_elastic_edges_add(&view->elastic->law, &view->tips, view->approach,
                                                   mesh->side[view->side].peak, work);
+        work->sums_alone = (wanted & GMI_ROLL) &&
+                           !(wanted & (GMI_MOMENTS | GMI_CONTACT_DERIVATIVES)) &&
+                           !mesh->friction.is_on;
         status = solve(view->elastic, work, view->gain * view->approach, result);
     }
     if (status == GM_NO_CONVERGENCE) {

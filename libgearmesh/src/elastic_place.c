@@ -526,6 +526,7 @@ static void follow_teeth(gmi_elastic_work *work) {
     shift_rows(work, shift, work->state);
     shift_rows(work, shift, work->adjoint);
     shift_rows(work, shift, work->by_place);
+    shift_rows(work, shift, work->place_curve);
 }
 
 /* A cut of a line at z among those before, if that is within one of its elements and not at a station. */

@@ -30,7 +30,7 @@ static work_sizes find_sizes(int stations, int lines, int creases) {
     return sizes;
 }
 
-enum { POINT_ARRAYS = 28, TABLE_ARRAYS = 4, PART_ARRAYS = 4, NODE_ARRAYS = 7, LISTS = 3 };
+enum { POINT_ARRAYS = 31, TABLE_ARRAYS = 4, PART_ARRAYS = 4, NODE_ARRAYS = 8, LISTS = 3 };
 
 static int sizes_fit(int stations, int lines, int creases) {
     return stations >= 2 && stations <= GMI_ELASTIC_STATIONS_MAX && lines >= 1 &&
@@ -95,6 +95,9 @@ void gmi_elastic_work_init(gmi_elastic_work *work, int stations, int lines, int 
                                            &work->slope,
                                            &work->change_at,
                                            &work->expected,
+                                           &work->excess,
+                                           &work->stiffer,
+                                           &work->held_by_roll,
                                            &work->scratch,
                                            &work->pull,
                                            &work->tooth_adjoint};
@@ -111,9 +114,9 @@ void gmi_elastic_work_init(gmi_elastic_work *work, int stations, int lines, int 
         work->parts[k] = take(&next, sizes.slots);
     }
 
-    double **const nodes[NODE_ARRAYS] = {&work->state, &work->change,   &work->adjoint,
-                                         &work->last,  &work->by_place, &work->last_step,
-                                         &work->other};
+    double **const nodes[NODE_ARRAYS] = {&work->state,     &work->change,   &work->adjoint,
+                                         &work->last,      &work->by_place, &work->place_curve,
+                                         &work->last_step, &work->other};
     for (int k = 0; k < NODE_ARRAYS; ++k) {
         *nodes[k] = take(&next, sizes.nodes);
     }
