@@ -552,8 +552,8 @@ static void the_largest_deviations_give_numbers(void) {
     }
 }
 
-/* Bounds that a solver looks ahead with: the highest point of any tooth, and the steepest profile. */
-static void peak_and_slope_are_those_of_the_steepest_tooth(void) {
+/* Bounds that a solver looks ahead with, and the depth: the highest point of any tooth, the steepest profile. */
+static void peak_slope_and_depth_are_those_of_the_deepest_tooth(void) {
     gm_flanks_params sizes = small_sizes;
     sizes.drive_face_nodes = 3;
     sizes.drive_profile_nodes = 4;
@@ -564,16 +564,24 @@ static void peak_and_slope_are_those_of_the_steepest_tooth(void) {
     GM_ASSERT_INT(gm_flanks_set_pitch(flanks, GM_DRIVE, 7, 1e-6), GM_OK);
     GM_ASSERT_REL(gm_flanks_peak(flanks, GM_DRIVE), 5e-6, 1e-15);
     GM_ASSERT_ABS(gm_flanks_peak(flanks, GM_COAST), 0.0, 0.0);
+
     /* From 2 um to -3 um, doubled, over a third of the profile. */
     GM_ASSERT_REL(gm_flanks_profile_slope(flanks, GM_DRIVE), 10e-6 * 3.0, 1e-14);
+    GM_ASSERT_REL(gm_flanks_depth(flanks, GM_DRIVE), 10e-6, 1e-14);
+
+    /* Reliefs add their slopes; at a corner of the flank these take off 0 and 3 um together, or 1 um and 0. */
     const gm_flank_ramp ramps[2] = {{0.0, 1e-6, -4e-6}, {0.0, 0.0, 3e-6}};
     GM_ASSERT_INT(gm_flanks_set_ramps(flanks, GM_DRIVE, ramps, 2, 1.0), GM_OK);
     GM_ASSERT_REL(gm_flanks_profile_slope(flanks, GM_DRIVE), 37e-6, 1e-14);
+    GM_ASSERT_REL(gm_flanks_depth(flanks, GM_DRIVE), 13e-6, 1e-14);
+    GM_ASSERT_ABS(gm_flanks_depth(flanks, GM_COAST), 0.0, 0.0);
     GM_ASSERT_ABS(gm_flanks_profile_slope(flanks, GM_COAST), 0.0, 0.0);
 
     GM_ASSERT_ABS(gm_flanks_peak(NULL, GM_DRIVE), 0.0, 0.0);
     GM_ASSERT_ABS(gm_flanks_profile_slope(NULL, GM_COAST), 0.0, 0.0);
+    GM_ASSERT_ABS(gm_flanks_depth(NULL, GM_DRIVE), 0.0, 0.0);
     GM_ASSERT_NAN(gm_flanks_peak(flanks, 2));
+    GM_ASSERT_NAN(gm_flanks_depth(flanks, 2));
     GM_ASSERT_NAN(gm_flanks_profile_slope(flanks, -1));
     GM_ASSERT_INT(gm_flanks_teeth(flanks), 45);
     GM_ASSERT_INT(gm_flanks_teeth(NULL), 0);
@@ -629,7 +637,7 @@ int main(int argc, char **argv) {
         GM_TEST(teeth_and_sides_that_do_not_exist_are_refused),
         GM_TEST(deviations_that_are_no_numbers_change_nothing),
         GM_TEST(the_largest_deviations_give_numbers),
-        GM_TEST(peak_and_slope_are_those_of_the_steepest_tooth),
+        GM_TEST(peak_slope_and_depth_are_those_of_the_deepest_tooth),
         GM_TEST(flanks_of_another_gear_are_refused),
     };
     return gm_test_main("unit.flank", tests, GM_TEST_COUNT(tests), argc, argv);

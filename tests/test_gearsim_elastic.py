@@ -6,6 +6,7 @@
     test_gearsim_elastic.py GEARSIM
 """
 import csv
+import itertools
 import math
 import os
 import re
@@ -392,6 +393,21 @@ class Elastic(unittest.TestCase):
         # What is listed and written is what was taken: those given, else more.
         self.assertEqual(taken[1:4] + taken[5:], 2 * [17, 49, 97])
         self.assertTrue(17 < taken[0] < 49 and taken[4] == 49, taken)
+
+    def test_stations_follow_flanks_from_files(self):
+        """Flanks that are deeper than twice what the teeth give way by, in a file; then the same as a modification."""
+        with open(os.path.join(self.folder, "deep.csv"), "w", encoding="utf-8") as file:
+            file.write("tooth,flank,t1,t2,deviation_um\n")
+            for tooth, t1, t2 in itertools.product(range(62), (0, 0.5, 1), (0, 1)):
+                file.write(f"{tooth},drive,{t1},{t2},{0 if t1 == 0.5 else -15}\n")
+        case = SPUR62 | {"analysis": {"type": "static", "positions": 2}}
+        crowned = {"modifications": {"pinion_drive_crowning_um": 15}}
+        taken = []
+        for flanks in ({}, {"flanks": {"pinion": "deep.csv"}}, crowned):
+            self.rows(case | flanks)
+            with open(os.path.join(self.folder, "run.csv"), encoding="utf-8") as file:
+                taken.append(int(re.search(r"(?m)^# stations = (\d+)$", file.read())[1]))
+        self.assertEqual(taken, [17, 33, 33])
 
     def test_corner_contact_is_of_elastic_teeth(self):
         self.rows(SPUR62 | {"mesh": {"corner_contact": "on"}})

@@ -182,6 +182,19 @@ static int is_across_face(int kind) {
            kind == GM_MOD_ROOT_CORNER_I || kind == GM_MOD_ROOT_CORNER_II;
 }
 
+/* How deep the flanks are that have been read, modifications included (m). */
+static double depth_of_flanks(const gear_mesh *mesh) {
+    double depth = 0.0;
+    for (int half = 0; half < mesh->halves; ++half) {
+        for (enum gm_role role = GM_PINION; role <= GM_WHEEL; ++role) {
+            for (int side = GM_DRIVE; side <= GM_COAST; ++side) {
+                depth = fmax(depth, gm_flanks_depth(mesh->flanks[half][role].prepared, side));
+            }
+        }
+    }
+    return depth;
+}
+
 /*
  * The largest amount in the file, across the flank (m). usual: what teeth give way by. A modification that is there, be it of
  * 0, counts as one of about as much, so that a search over amounts mostly keeps its stations.
@@ -208,7 +221,7 @@ int gear_mesh_stations(const gear_mesh *mesh, const config *conf) {
         return conf->stations;
     }
 
-    /* Amounts alone, not files of flanks: a listing of the geometry tells the same without reading any. */
+    /* Flanks that have been read, and amounts, so that the reliefs of a search count before there are any. */
     const gm_mesh_params params = params_of(conf, mesh);
     const gm_pair *pair = &mesh->pair;
     const double line_load =
@@ -218,8 +231,9 @@ int gear_mesh_stations(const gear_mesh *mesh, const config *conf) {
     const double usual = 5 * line_load *
                          (1 / params.pinion_youngs_modulus + 1 / params.wheel_youngs_modulus) /
                          pair->normal_to_transverse;
-    const double depth = conf->model == MODEL_3D ? deepest_modification(conf, usual) : 0.0;
-    return gm_elastic_stations_modified(pair, &params, depth * pair->normal_to_transverse);
+    const double amount = conf->model == MODEL_3D ? deepest_modification(conf, usual) : 0.0;
+    const double depth = fmax(depth_of_flanks(mesh), amount * pair->normal_to_transverse);
+    return gm_elastic_stations_modified(pair, &params, depth);
 }
 
 /* Gears to which ISO 6336-1 gives a stiffness, but not with the accuracy that it states. */
@@ -443,7 +457,9 @@ static void remark_few_stations(const config *conf, const gear_mesh *mesh) {
 /* All of it; none without a stiffness, which only a run requires. */
 static int prepare(gear_mesh *mesh, const config *conf) {
     gm_mesh_params params = params_of(conf, mesh);
-    params.stations = gear_mesh_stations(mesh, conf);
+    if (conf->law == LAW_ELASTIC) {
+        params.stations = gear_mesh_stations(mesh, conf);
+    }
     if (gm_mesh_params_check(&params, NULL, NULL) != GM_OK) {
         return 0;
     }

@@ -3,8 +3,8 @@
 
 /*
  * Where the lines of contact of elastic teeth and their points are. Each line is cut at the stations, at the ends of the
- * path, and where linear reliefs begin, as a load with a kink is no polynomial; every part has two Gauss points. At each point the compliance of both teeth and the rate of the
- * contact law come from the tables of the law.
+ * path, and where linear reliefs begin, as a load with a kink is no polynomial; every part has two Gauss points. At each
+ * point the compliance of both teeth and the rate of the contact law come from the tables of the law.
  */
 #include "elastic.h"
 #include "hertz.h"

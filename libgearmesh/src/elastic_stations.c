@@ -97,44 +97,12 @@ int gm_elastic_stations_modified(const gm_pair *pair, const gm_mesh_params *para
                    depth / fabs(gmi_elastic_usual_approach(params, force / pair->face_width)));
 }
 
-/* Most that the ramps of a flank take off: at one of its corners, as each is a plane above 0. */
-static double depth_of_ramps(const gmi_tables *tables) {
-    double depth = 0.0;
-    for (int corner = 0; corner < 4; ++corner) {
-        const double t1 = (double)(corner & 1), t2 = (double)(corner >> 1);
-        double taken = 0.0;
-        for (int k = 0; k < tables->ramp_count; ++k) {
-            const gm_flank_ramp *ramp = &tables->ramps[k];
-            taken += fmax(ramp->offset + ramp->per_t1 * t1 + ramp->per_t2 * t2, 0.0);
-        }
-        depth = fmax(depth, taken);
-    }
-    return depth;
-}
-
-/* From the highest to the lowest node of a table, the deepest of all teeth. */
-static double depth_of_tables(const gmi_tables *tables) {
-    const size_t nodes = (size_t)tables->face_nodes * (size_t)tables->profile_nodes;
-    double depth = 0.0;
-    for (int table = 0; table < tables->count; ++table) {
-        const double *node = tables->values + (size_t)table * nodes * GMI_NODE_DOUBLES;
-        for (size_t k = 0; k < nodes; ++k, node += GMI_NODE_DOUBLES) {
-            depth = fmax(depth, tables->table_peak[table] - node[GMI_NODE_VALUE]);
-        }
-    }
-    return depth;
-}
-
 int gmi_elastic_stations_of(const gm_mesh *mesh, double usual_approach) {
     double depth = 0.0;
     for (int side = GM_DRIVE; side <= GM_COAST; ++side) {
         const gmi_tables *flanks[2] = {mesh->side[side].pinion, mesh->side[side].wheel};
         for (int role = GM_PINION; role <= GM_WHEEL; ++role) {
-            if (flanks[role] != NULL) {
-                const double of_flank =
-                    depth_of_ramps(flanks[role]) + depth_of_tables(flanks[role]);
-                depth = fmax(depth, of_flank);
-            }
+            depth = fmax(depth, gmi_tables_depth(flanks[role]));
         }
     }
     return refined(mesh->pair, depth / fabs(usual_approach));

@@ -161,6 +161,42 @@ double gm_flanks_profile_slope(const gm_flanks *flanks, int side) {
     return slope;
 }
 
+/* Most that the ramps of a flank take off: at one of its corners, as each is a plane above 0. */
+static double depth_of_ramps(const gmi_tables *tables) {
+    double depth = 0.0;
+    for (int corner = 0; corner < 4; ++corner) {
+        const double t1 = (double)(corner & 1), t2 = (double)(corner >> 1);
+        double taken = 0.0;
+        for (int k = 0; k < tables->ramp_count; ++k) {
+            const gm_flank_ramp *ramp = &tables->ramps[k];
+            taken += fmax(ramp->offset + ramp->per_t1 * t1 + ramp->per_t2 * t2, 0.0);
+        }
+        depth = fmax(depth, taken);
+    }
+    return depth;
+}
+
+/* From the highest to the lowest node of a table, the deepest of all teeth. */
+static double depth_of_tables(const gmi_tables *tables) {
+    const size_t nodes = (size_t)tables->face_nodes * (size_t)tables->profile_nodes;
+    double depth = 0.0;
+    for (int table = 0; table < tables->count; ++table) {
+        const double *node = tables->values + (size_t)table * nodes * GMI_NODE_DOUBLES;
+        for (size_t k = 0; k < nodes; ++k, node += GMI_NODE_DOUBLES) {
+            depth = fmax(depth, tables->table_peak[table] - node[GMI_NODE_VALUE]);
+        }
+    }
+    return depth;
+}
+
+double gmi_tables_depth(const gmi_tables *tables) {
+    return tables == NULL ? 0.0 : depth_of_ramps(tables) + depth_of_tables(tables);
+}
+
+double gm_flanks_depth(const gm_flanks *flanks, int side) {
+    return is_side(side) ? gmi_tables_depth(gmi_flanks_side(flanks, side)) : gmi_nan();
+}
+
 static gmi_tables *side_of(gm_flanks *flanks, int side) {
     return is_side(side) ? &flanks->side[side] : NULL;
 }

@@ -72,6 +72,9 @@ static inline gmi_flank gmi_flank_of(const gmi_tables *tables, int tooth) {
     return flank;
 }
 
+/* What gm_flanks_depth() says of this side; NULL = ideal. */
+double gmi_tables_depth(const gmi_tables *tables);
+
 int gmi_check_flanks(const gm_pair *pair, const gm_flanks *pinion_flanks,
                      const gm_flanks *wheel_flanks);
 

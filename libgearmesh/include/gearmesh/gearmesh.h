@@ -415,6 +415,13 @@ GM_API double gm_flanks_peak(const gm_flanks *flanks, int side);
 GM_API double gm_flanks_profile_slope(const gm_flanks *flanks, int side);
 
 /**
+ * How deep the flanks of a side are modified: the most that ramps take off at a point, and what lies between the highest
+ * and the lowest node of a tooth's table, of the tooth where that is most (m). Pitch does not count. Costs a look at every
+ * node. 0 for NULL; NaN for no such side.
+ */
+GM_API double gm_flanks_depth(const gm_flanks *flanks, int side);
+
+/**
  * Gives one tooth, or all teeth, a table of deviations. Each call takes one table place; a later call
  * for a tooth replaces the table of that tooth alone.
  *
@@ -880,12 +887,11 @@ GM_API int gm_elastic_stations(const gm_pair *pair);
 /**
  * The same for flanks with modifications, by the ratio of their depth to what teeth give way by under the reference torque,
  * which is 10 F / (E b): from 0.3 on a quarter more elements, from 1.5 on twice as many, from 6 on three times, and from 25
- * on four times. Depth: the most that reliefs take off at a point and what lies between the highest and the lowest node of
- * a tooth's table, of the flank where it is most.
+ * on four times.
  *
  * @param[in] pair    from gm_pair_init()
  * @param[in] params  of the mesh: its moduli and reference torque
- * @param[in] depth   of the flanks, transverse (m)
+ * @param[in] depth   gm_flanks_depth() of the flank where it is most, transverse (m)
  * @return 17 .. 97; 0 for NULL
  *
  * Valid for: depths of up to 50 times the deflection. Under much less than the reference torque modifications are deeper

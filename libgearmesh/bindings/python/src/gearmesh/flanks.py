@@ -75,6 +75,10 @@ class Flanks:
         """Most material that any tooth of a side adds to the ideal flank, pitch included (m)."""
         return float(lib.gm_flanks_peak(self._struct, enum_value("gm_flank_side", side)))
 
+    def depth(self, side: Literal["drive", "coast"]) -> float:
+        """How deep the flanks of a side are modified, pitch not included (m)."""
+        return float(lib.gm_flanks_depth(self._struct, enum_value("gm_flank_side", side)))
+
 
 def _check(status: int, error: Any) -> None:
     if status == lib.GM_IO_OK:
