@@ -35,16 +35,15 @@ static const double shortening_tolerance = 1e-5, shortening_power = 0.2;
  * Instructions, counted by callgrind (libgearmesh/docs/cache.md#cost): of a look-up; and of an exact evaluation, for each
  * line of contact by what is on it. Rather too many of the one, and too few of the other.
  */
-static const double per_look_up = 850.0, per_look_up_of_arms = 1300.0;
-static const double per_even_line = 150.0, per_line = 450.0, per_ramp = 110.0;
-static const double per_profile_node = 23.4, per_face_node = 11.7;
+static const double per_look_up = 600.0, per_look_up_of_arms = 1300.0;
+static const double per_even_line = 150.0, per_line = 450.0, per_ramp = 110.0, per_grid_line = 27.0;
 static const double per_elastic_line = 8000.0, per_cornered_line = 7000.0;
 
 /*
  * A column takes as long as so many evaluations: by a walk along its lines; or for each of its nodes and to find its start,
  * with derivatives, which take longer.
  */
-static const double per_walk = 4.6, per_walked_node = 0.18, per_start = 14.0;
+static const double per_walk = 7.8, per_walked_node = 0.155, per_start = 14.0;
 static const double with_derivatives = 1.2, with_derivatives_between_tilted_axes = 1.85,
                     with_derivatives_and_arms = 1.6;
 
@@ -108,11 +107,17 @@ static int has_arms(const config *conf) {
 
 /* What is on the flanks of the side that carries. */
 typedef struct flank_content {
-    int ramps;    /* linear reliefs, of both gears */
-    double nodes; /* what lines meet of the tables of both gears (instructions) */
+    int ramps;         /* linear reliefs, of both gears */
+    double grid_lines; /* of the tables of both gears that all lines of contact cross */
 } flank_content;
 
+/*
+ * The lines together are as long as the transverse contact ratio, in face widths, and as the overlap ratio along the path of
+ * contact, in its lengths.
+ */
 static flank_content content_of(const config *conf, const gear_mesh *gears) {
+    const double over_face = gears->pair.transverse_contact_ratio;
+    const double over_profile = gears->pair.overlap_ratio;
     const int side = carrying_side(conf);
     flank_content content = {0, 0.0};
 
@@ -122,8 +127,8 @@ static flank_content content_of(const config *conf, const gear_mesh *gears) {
             side == GM_DRIVE ? &flanks->report.drive : &flanks->report.coast;
 
         content.ramps += design->ramps;
-        content.nodes += per_profile_node * fmax(flanks->profile_nodes, design->profile_nodes) +
-                         per_face_node * fmax(flanks->face_nodes, design->face_nodes);
+        content.grid_lines += over_profile * fmax(flanks->profile_nodes, design->profile_nodes) +
+                              over_face * fmax(flanks->face_nodes, design->face_nodes);
     }
     return content;
 }
@@ -131,13 +136,16 @@ static flank_content content_of(const config *conf, const gear_mesh *gears) {
 /* Instructions of an exact evaluation. */
 static double evaluation_of(const config *conf, const gear_mesh *gears) {
     const flank_content content = content_of(conf, gears);
-    const int is_even = content.ramps == 0 && content.nodes == 0.0 && !is_tilted(conf);
+    const int is_even = content.ramps == 0 && content.grid_lines == 0.0 && !is_tilted(conf);
     const double line = conf->law == LAW_ELASTIC   ? per_elastic_line
                         : config_has_corners(conf) ? per_cornered_line
                         : is_even                  ? per_even_line
-                                  : per_line + per_ramp * content.ramps + content.nodes;
+                                                   : per_line + per_ramp * content.ramps;
+    const double tables = conf->law == LAW_ELASTIC || config_has_corners(conf)
+                              ? 0.0
+                              : per_grid_line * content.grid_lines;
 
-    return gears->pair.total_contact_ratio * line;
+    return gears->pair.total_contact_ratio * line + tables;
 }
 
 /* What a look-up takes, in evaluations. */
@@ -151,7 +159,7 @@ static int is_walked(const config *conf, const gear_mesh *gears) {
 
     return conf->law != LAW_ELASTIC && !config_has_corners(conf) && !is_tilted(conf) &&
            conf->pose.center_distance_change == 0.0 && conf->pose.offset == 0.0 &&
-           content.ramps == 0 && content.nodes > 0.0;
+           content.ramps == 0 && content.grid_lines > 0.0;
 }
 
 /* What a column takes, in evaluations. */
@@ -376,27 +384,37 @@ static int check(const config *conf, const gear_mesh *gears) {
     return 0;
 }
 
+/* Why tables would never pay, however long the run is. */
+static const char *reason_for_never(const config *conf, const gear_mesh *gears) {
+    if (look_up_of(conf, gears) >= 1.0) {
+        return "a look-up takes longer than these flanks; with measured flanks, more reliefs, "
+               "tilted "
+               "axes, edges or elastic teeth it would not";
+    }
+    if (is_shallow(conf, gears)) {
+        return "the load presses the flanks deeper than lookup_depth_um, beyond which nothing is "
+               "looked up";
+    }
+    return "tables of all pairs of teeth would take more memory than 1 GB, or the gears do not "
+           "turn";
+}
+
 /* Who asks for tables is told why there are none, and what would have to change. */
 static void tell_exact(const config *conf, const gear_mesh *gears, const lookup_choice *choice) {
     const char *reason = obstacle(conf, gears);
-    if (reason != NULL) {
-        config_remark(conf, "solver.lookup", "the run is exact: %s", reason);
-    } else if (choice->pays_from < HUGE_VAL) {
+
+    /* A longer run would have them. */
+    if (reason == NULL && choice->pays_from < HUGE_VAL) {
         config_remark(conf, "solver.lookup",
                       "the run is exact: filling the tables would take longer than they save in "
                       "%.4g s; a run like this gains from some %.2g s on",
                       conf->duration, choice->pays_from);
-    } else {
-        config_remark(conf, "solver.lookup", "the run is exact: %s",
-                      look_up_of(conf, gears) >= 1.0
-                          ? "a look-up takes longer than these flanks; with measured flanks, more "
-                            "reliefs, tilted axes, edges or elastic teeth it would not"
-                      : is_shallow(conf, gears)
-                          ? "the load presses the flanks deeper than lookup_depth_um, beyond which "
-                            "nothing is looked up"
-                          : "tables of all pairs of teeth would take more memory than 1 GB, or the "
-                            "gears do not turn");
+        return;
     }
+
+    /* No run of these gears would. */
+    config_remark(conf, "solver.lookup", "the run is exact: %s",
+                  reason != NULL ? reason : reason_for_never(conf, gears));
 }
 
 int lookup_note(const gear_mesh *gears, config *conf) {

@@ -44,10 +44,17 @@ enum { START_BISECTIONS = 12 };
 
 enum { LARGEST_CELLS = 10000 };
 
+/*
+ * A kink within a cell is weak beside all else that tables leave where cells are few, where a line that enters grows by less
+ * than this part of its length within a cell, and where flanks deviate by more than the load presses them.
+ */
+static const double weak_kink = 1.0 / 12.0;
+enum { CELLS_WITH_KINKS = 12 };
+
 #define SMALLEST_DEPTH 1e-10 /* (m) */
 
-/* Values of a node; by_delta and mixed are per step of delta, not per metre. */
-enum node { NODE_SUM, NODE_BY_DELTA, NODE_BY_PHASE, NODE_MIXED, NODE_VALUES };
+/* Values of a node: two, and how they grow with delta, per step. */
+enum node { NODE_SUM, NODE_BY_PHASE, NODE_BY_DELTA, NODE_MIXED, NODE_VALUES };
 
 /* ---------------------------------------------------------------------------------------------
  * Tooth passes
@@ -142,7 +149,7 @@ static int find_knots(const gm_cache *cache, double knots[KNOTS]) {
     int count = 0;
     insert_knot(knots, &count, 0.0);
     insert_knot(knots, &count, p_bt);
-    if (cache->has_corners) {
+    if (cache->has_corners || cache->has_weak_kinks) {
         return count;
     }
 
@@ -161,9 +168,13 @@ static int find_knots(const gm_cache *cache, double knots[KNOTS]) {
     return count;
 }
 
-/* Knots, and equal steps between them of at most p_bt / cells. Returns the number of columns before p_bt; phases may be NULL. */
-static int place_columns(const gm_cache *cache, int cells, double *phases) {
+/*
+ * Knots, and equal steps between them of at most p_bt / cells, or of one more where kinks have no columns. Returns the number
+ * of columns before p_bt; phases may be NULL.
+ */
+static int place_columns(const gm_cache *cache, int phase_cells, double *phases) {
     const double p_bt = cache->pair->transverse_base_pitch;
+    const int cells = phase_cells + (cache->has_weak_kinks ? 1 : 0);
     double knots[KNOTS];
     const int count = find_knots(cache, knots);
 
@@ -216,6 +227,15 @@ static int check_params(const gm_cache_params *params, const gm_pair *pair) {
            params->depth >= SMALLEST_DEPTH && params->depth <= 0.25 * pair->transverse_base_pitch;
 }
 
+/* Whether kinks go without columns, and better cells have their time. Where one pass is all there is, they take none. */
+static int has_weak_kinks(const gm_cache *cache, int cells, int64_t passes) {
+    const double cell = cache->pair->transverse_base_pitch / (double)cells;
+
+    return !cache->has_corners && passes > 1 && cells < CELLS_WITH_KINKS &&
+           cell < weak_kink * cache->pair->face_advance &&
+           cache->depth < cache->mesh->side[cache->side].flank_peak;
+}
+
 /* All of the cache but its memory. */
 static int describe(gm_cache *cache, const gm_cache_params *params, const gm_mesh *mesh) {
     if (params == NULL || mesh == NULL) {
@@ -254,10 +274,14 @@ static int describe(gm_cache *cache, const gm_cache_params *params, const gm_mes
     cache->nodes = params->depth_cells + 1;
     cache->step = params->depth / (double)params->depth_cells;
     cache->per_step = 1.0 / cache->step;
+
+    /* Which columns there are. */
+    const int64_t passes = (int64_t)cache->pinion_period * (cache->wheel_period / cache->common);
+    cache->has_weak_kinks = has_weak_kinks(cache, params->phase_cells, passes);
     cache->columns = place_columns(cache, params->phase_cells, NULL);
+    cache->columns_per_phase = (double)cache->columns / pair->transverse_base_pitch;
 
     /* 1e5 teeth each give 1e10 passes at most: more than fits any memory, but not into an int. */
-    const int64_t passes = (int64_t)cache->pinion_period * (cache->wheel_period / cache->common);
     if (passes * cache->columns > INT32_MAX) {
         return GM_ERR_MEMORY;
     }
@@ -600,36 +624,32 @@ int gm_cache_fill(gm_cache *cache, int first_pass, int count, gm_workspace *work
  * Looking up
  * ------------------------------------------------------------------------------------------- */
 
-/* Weights of value and slope at both ends of a cubic on [0, 1]. */
-typedef struct hermite {
-    double begin, begin_slope, end, end_slope;
-} hermite;
+/* A cubic on [0, 1] by values and slopes at both ends: value = begin + t (begin_slope + t (square + t cube)). */
+typedef struct cubic {
+    double begin, begin_slope, square, cube;
+} cubic;
 
-static inline hermite hermite_value(double t) {
-    const double rest = 1.0 - t;
-    const double end = t * t * (3.0 - 2.0 * t);
-    const hermite weights = {1.0 - end, t * rest * rest, end, -t * t * rest};
-    return weights;
+static inline cubic cubic_between(double begin, double begin_slope, double end, double end_slope) {
+    const double rise = end - begin;
+    const double cube = begin_slope + end_slope - (rise + rise);
+    const cubic between = {begin, begin_slope, rise - begin_slope - cube, cube};
+    return between;
 }
 
-/* Of its derivative. */
-static inline hermite hermite_slope(double t) {
-    const double rest = 1.0 - t;
-    const double end = 6.0 * t * rest;
-    const hermite weights = {-end, rest * (1.0 - 3.0 * t), end, t * (3.0 * t - 2.0)};
-    return weights;
+static inline double cubic_value(const cubic *of, double t) {
+    return of->begin + t * (of->begin_slope + t * (of->square + t * of->cube));
 }
 
-static inline double combine(const hermite *weights, double begin, double begin_slope, double end,
-                             double end_slope) {
-    return weights->begin * begin + weights->begin_slope * begin_slope + weights->end * end +
-           weights->end_slope * end_slope;
+static inline double cubic_slope(const cubic *of, double t) {
+    return of->begin_slope + t * (of->square + of->square + 3.0 * t * of->cube);
 }
 
-/* What a column says at a delta; by_delta and mixed per step. */
+/* What a column says at a delta: the sum and its derivative by the phase, and how both grow with delta, per step. */
 typedef struct column_value {
-    double sum, by_delta, by_phase, mixed;
+    double sum[2], grows[2];
 } column_value;
+
+enum { ITSELF, BY_PHASE };
 
 /* Where a column is at a delta, in steps; contact begins where the part of the first one is gone that is ahead of it. */
 static inline double place_in(const gm_cache *cache, size_t column, double delta) {
@@ -637,15 +657,28 @@ static inline double place_in(const gm_cache *cache, size_t column, double delta
     return (delta - start->delta) * cache->per_step + start->ahead;
 }
 
+/* Cubic in delta between two nodes, at a share of the cell; its width in steps. */
+static inline void read_cell(const float *a, const float *b, double share, double width,
+                             double per_width, column_value *value) {
+    for (int i = ITSELF; i <= BY_PHASE; ++i) {
+        const cubic of =
+            cubic_between((double)a[NODE_SUM + i], width * (double)a[NODE_BY_DELTA + i],
+                          (double)b[NODE_SUM + i], width * (double)b[NODE_BY_DELTA + i]);
+        value->sum[i] = cubic_value(&of, share);
+        value->grows[i] = per_width * cubic_slope(&of, share);
+    }
+}
+
 /* Returns 0 beyond the last node. */
-static int read_column(const gm_cache *cache, size_t column, double delta, column_value *value) {
+static OWN_STACK int read_column(const gm_cache *cache, size_t column, double delta,
+                                 column_value *value) {
     const double place = place_in(cache, column, delta);
     const double ahead = cache->starts[column].ahead;
-    const column_value none = {0.0, 0.0, 0.0, 0.0};
-    *value = none;
+    const column_value none = {{0.0, 0.0}, {0.0, 0.0}};
 
     /* Before the first node nothing touches; beyond the last one nothing is known. */
     if (!(place > ahead)) {
+        *value = none;
         return 1;
     }
     if (place >= (double)(cache->nodes - 1)) {
@@ -654,69 +687,59 @@ static int read_column(const gm_cache *cache, size_t column, double delta, colum
 
     /* The nodes around it, the first cell from where contact begins. */
     const int n = (int)place;
-    double share = place - (double)n, width = 1.0, per_width = 1.0;
-    if (n == 0) {
-        width = 1.0 - ahead;
-        per_width = 1.0 / width;
-        share = (place - ahead) * per_width;
-    }
     const float *a = values_of(cache, column) + (size_t)n * NODE_VALUES;
     const float *b = a + NODE_VALUES;
-    const double a_sum = (double)a[NODE_SUM], a_by_delta = width * (double)a[NODE_BY_DELTA];
-    const double b_sum = (double)b[NODE_SUM], b_by_delta = width * (double)b[NODE_BY_DELTA];
-    const double a_by_phase = (double)a[NODE_BY_PHASE], a_mixed = width * (double)a[NODE_MIXED];
-    const double b_by_phase = (double)b[NODE_BY_PHASE], b_mixed = width * (double)b[NODE_MIXED];
-
-    /* Cubic in delta: the sum and its slope, and their derivatives by the phase. */
-    const hermite at = hermite_value(share);
-    const hermite slope = hermite_slope(share);
-    value->sum = combine(&at, a_sum, a_by_delta, b_sum, b_by_delta);
-    value->by_delta = per_width * combine(&slope, a_sum, a_by_delta, b_sum, b_by_delta);
-    value->by_phase = combine(&at, a_by_phase, a_mixed, b_by_phase, b_mixed);
-    value->mixed = per_width * combine(&slope, a_by_phase, a_mixed, b_by_phase, b_mixed);
+    if (n > 0) {
+        read_cell(a, b, place - (double)n, 1.0, 1.0, value);
+    } else {
+        const double width = 1.0 - ahead, per_width = 1.0 / width;
+        read_cell(a, b, (place - ahead) * per_width, width, per_width, value);
+    }
     return 1;
 }
 
-/* The column before or at a phase in [0, p_bt], not the last one. */
-static int column_before(const gm_cache *cache, double phase) {
-    int before = 0, behind = cache->columns;
-    while (behind - before > 1) {
-        const int middle = (before + behind) / 2;
-        if (cache->phases[middle] <= phase) {
-            before = middle;
-        } else {
-            behind = middle;
-        }
+/* The column before or at a phase in [0, p_bt], not the last one: near where it would be at equal steps. */
+static inline int column_before(const gm_cache *cache, double phase) {
+    const int last = cache->columns - 1;
+    const int guess = (int)(phase * cache->columns_per_phase);
+    int before = guess < last ? guess : last;
+    while (before > 0 && cache->phases[before] > phase) {
+        --before;
+    }
+    while (before < last && cache->phases[before + 1] <= phase) {
+        ++before;
     }
     return before;
 }
 
 /* Between two columns. The cubic may dip below zero just where contact begins; the sum never does. */
-static void join_columns(const gm_cache *cache, int index, double phase, const column_value *a,
-                         const column_value *b, gmi_side_sum *sum) {
+static inline void join_columns(const gm_cache *cache, int index, double phase, int wanted,
+                                const column_value *a, const column_value *b, gmi_side_sum *sum) {
     const double width = cache->phases[index + 1] - cache->phases[index];
-    const double place = (phase - cache->phases[index]) / width;
+    const double per_width = 1.0 / width;
+    const double place = (phase - cache->phases[index]) * per_width;
 
     /* Sum and derivative by delta, each cubic in the phase. */
-    const hermite at = hermite_value(place);
-    const double value = combine(&at, a->sum, a->by_phase * width, b->sum, b->by_phase * width);
-    const double by_delta =
-        combine(&at, a->by_delta, a->mixed * width, b->by_delta, b->mixed * width);
+    const cubic sums = cubic_between(a->sum[ITSELF], a->sum[BY_PHASE] * width, b->sum[ITSELF],
+                                     b->sum[BY_PHASE] * width);
+    const cubic grows = cubic_between(a->grows[ITSELF], a->grows[BY_PHASE] * width,
+                                      b->grows[ITSELF], b->grows[BY_PHASE] * width);
+    const double value = cubic_value(&sums, place);
     if (!(value > 0.0)) {
         return;
     }
 
-    /* The derivative by the phase is that of the same cubic. */
-    const hermite slope = hermite_slope(place);
-    const double by_phase =
-        combine(&slope, a->sum, a->by_phase * width, b->sum, b->by_phase * width) / width;
-
     /* The touching part is the derivative by delta, but for the slope of the flanks. */
     sum->sum = value;
-    sum->by_delta = by_delta * cache->per_step;
-    sum->by_origin = cache->side == GM_DRIVE ? by_phase : -by_phase;
+    sum->by_delta = cubic_value(&grows, place) * cache->per_step;
     sum->contact = sum->by_delta > 0.0 ? sum->by_delta : 0.0;
     sum->pairs = -1;
+
+    /* The derivative by the phase is that of the same cubic. */
+    if (wanted & GMI_DERIVATIVES) {
+        const double turns = cubic_slope(&sums, place) * per_width;
+        sum->by_origin = cache->side == GM_DRIVE ? turns : -turns;
+    }
 }
 
 /* Straight in delta along one column: 0 where nothing touches. */
@@ -748,10 +771,12 @@ static void look_up_arms(const gm_cache *cache, const size_t columns[2], int ind
     }
 }
 
-int gmi_cache_look_up(gm_cache *cache, const gm_position *position, gm_workspace *workspace,
-                      gmi_side_sum *sum, gmi_cache_arm arms[2]) {
+int gmi_cache_look_up(gm_cache *cache, const gm_position *position, int wanted,
+                      gm_workspace *workspace, gmi_side_sum *sum, gmi_cache_arm arms[2]) {
     static const gmi_cache_arm none = {0.0, 0.0, 0.0};
-    arms[GM_PINION] = arms[GM_WHEEL] = none;
+    if (cache->has_corners) {
+        arms[GM_PINION] = arms[GM_WHEEL] = none;
+    }
     const double delta =
         gmi_ideal_penetration(&cache->mesh->engagement, cache->side, position->offset);
     *sum = gmi_no_contact();
@@ -775,7 +800,7 @@ int gmi_cache_look_up(gm_cache *cache, const gm_position *position, gm_workspace
     if (!read_column(cache, columns[0], delta, &a) || !read_column(cache, columns[1], delta, &b)) {
         return 0;
     }
-    join_columns(cache, index, position->phase, &a, &b, sum);
+    join_columns(cache, index, position->phase, wanted, &a, &b, sum);
     if (cache->has_corners && sum->sum > 0.0) {
         look_up_arms(cache, columns, index, position->phase, delta, arms);
     }
@@ -825,7 +850,7 @@ int gm_cache_error(gm_cache *cache, int states, unsigned seed, gm_workspace *wor
         gmi_side_sum looked_up;
         gmi_cache_arm arms[2];
         const gmi_side_sum exact = exact_at(cache, &position, start + depth, workspace, NULL);
-        if (!gmi_cache_look_up(cache, &position, workspace, &looked_up, arms)) {
+        if (!gmi_cache_look_up(cache, &position, GMI_SUM, workspace, &looked_up, arms)) {
             continue; /* beyond the cache, which answers exactly there */
         }
         add_error(looked_up.sum - exact.sum, &sum_largest, &sum_squares);

@@ -16,20 +16,22 @@ typedef struct gmi_cache_start {
 
 struct gm_cache {
     const gm_mesh *mesh;
-    const gm_pair *pair; /* of the mesh */
-    int side;            /* GM_DRIVE or GM_COAST */
-    int pinion_period;   /* 1 if all teeth of the pinion have the same flank, else z_p */
-    int wheel_period;    /* likewise */
-    int common;          /* greatest common divisor of both */
-    int passes;          /* tooth passes: least common multiple of both periods */
-    int columns;         /* phases per tooth pass before p_bt */
-    int has_corners;     /* of a constant stiffness: torques need arms too */
-    int nodes;           /* places in delta per phase */
-    double depth;        /* as in the parameters (m) */
-    double step;         /* of delta (m) */
-    double per_step;     /* its inverse (1/m) */
-    double lowest;       /* nothing touches at or below this delta (m) */
-    double *phases;      /* [columns + 1] 0 .. p_bt (m) */
+    const gm_pair *pair;      /* of the mesh */
+    int side;                 /* GM_DRIVE or GM_COAST */
+    int pinion_period;        /* 1 if all teeth of the pinion have the same flank, else z_p */
+    int wheel_period;         /* likewise */
+    int common;               /* greatest common divisor of both */
+    int passes;               /* tooth passes: least common multiple of both periods */
+    int columns;              /* phases per tooth pass before p_bt */
+    int has_weak_kinks;       /* which have no columns of their own */
+    int has_corners;          /* of a constant stiffness: torques need arms too */
+    int nodes;                /* places in delta per phase */
+    double depth;             /* as in the parameters (m) */
+    double step;              /* of delta (m) */
+    double per_step;          /* its inverse (1/m) */
+    double lowest;            /* nothing touches at or below this delta (m) */
+    double columns_per_phase; /* on average (1/m) */
+    double *phases;           /* [columns + 1] 0 .. p_bt (m) */
 
     gmi_cache_start *starts; /* [passes][columns] */
     float *values;           /* [passes][columns][nodes][4] */
@@ -42,8 +44,11 @@ typedef struct gmi_cache_arm {
     double value, by_origin, by_delta;
 } gmi_cache_arm;
 
-/* The sum of the side that the cache holds, and with corners their arms. 0 where the exact evaluation has to answer. */
-int gmi_cache_look_up(gm_cache *cache, const gm_position *position, gm_workspace *workspace,
-                      gmi_side_sum *sum, gmi_cache_arm arms[2]);
+/*
+ * The sum of the side that the cache holds, by a mask of enum gmi_wanted, and with corners their arms, else unset. 0 where the exact
+ * evaluation has to answer.
+ */
+int gmi_cache_look_up(gm_cache *cache, const gm_position *position, int wanted,
+                      gm_workspace *workspace, gmi_side_sum *sum, gmi_cache_arm arms[2]);
 
 #endif

@@ -626,40 +626,81 @@ static OWN_STACK void set_cached_side(const gm_mesh *mesh, const gm_position *po
     }
 }
 
-/* The cache holds one side; the other one hardly ever touches, and is exact. */
-static int evaluate_cached(const gm_mesh *mesh, const gm_position *position, int wanted,
-                           gm_workspace *workspace, gm_mesh_result *result) {
-    const int held = mesh->cache->side;
-    gmi_side_sum sums[2];
-    gmi_cache_arm arms[2];
-    if ((wanted & (GM_WANT_WRENCH | GM_WANT_ENERGY)) ||
-        !gmi_cache_look_up(mesh->cache, position, workspace, &sums[held], arms)) {
-        return gmi_mesh_evaluate_exact(mesh, position, wanted, workspace, result);
-    }
-    const double approach[2] = {position->offset_rate, -position->offset_rate};
-    if (mesh->has_corners) {
-        for (int side = GM_DRIVE; side <= GM_COAST; ++side) {
-            set_cached_side(mesh, position, side, approach, wanted, &sums[held], arms, result);
-        }
-        return GM_OK;
-    }
+/* The other side than that of the cache hardly ever touches, and is exact. */
+static inline int is_other_clear(const gm_mesh *mesh, const gm_position *position) {
+    const int other = mesh->cache->side == GM_DRIVE ? GM_COAST : GM_DRIVE;
+    return gmi_side_is_clear(&mesh->engagement, &mesh->side[other], other, position->offset);
+}
 
+/* What the cache says of its side, with what the exact evaluation says of the other one, and of pairs, which it alone counts. */
+static OWN_STACK int set_both_sides(const gm_mesh *mesh, const gm_position *position, int wanted,
+                                    gmi_side_sum *found, gm_workspace *workspace,
+                                    gm_mesh_result *result) {
+    const int held = mesh->cache->side;
     const int other = held == GM_DRIVE ? GM_COAST : GM_DRIVE;
     const int mask = accumulated(mesh, position->offset_rate != 0.0, wanted);
-    int status = gmi_side_sum_by_law(mesh, other, position, mask, workspace, &sums[other]);
-
-    /* Only the exact evaluation counts pairs. */
-    if (status == GM_OK && (wanted & GM_WANT_PAIRS) && sums[held].pairs < 0) {
+    const gmi_side_sum *sides[2] = {&no_contact, &no_contact};
+    gmi_side_sum exact;
+    int status = GM_OK;
+    sides[held] = found;
+    if (!is_other_clear(mesh, position)) {
+        status = gmi_side_sum_by_law(mesh, other, position, mask, workspace, &exact);
+        sides[other] = &exact;
+    }
+    if (status == GM_OK && (wanted & GM_WANT_PAIRS) && found->pairs < 0) {
         gmi_side_sum counted;
         status = gmi_side_sum_by_law(mesh, held, position, GMI_SUM, workspace, &counted);
-        sums[held].pairs = counted.pairs;
+        found->pairs = counted.pairs;
     }
     if (status != GM_OK) {
         gmi_mesh_result_set_nan(result);
         return status;
     }
-    set_result(mesh, &sums[GM_DRIVE], &sums[GM_COAST], NULL, approach, wanted, result);
+
+    const double approach[2] = {position->offset_rate, -position->offset_rate};
+    set_result(mesh, sides[GM_DRIVE], sides[GM_COAST], NULL, approach, wanted, result);
     return GM_OK;
+}
+
+/* The force alone, as a run wants it, while the other side is clear: compiled without all else. */
+SPECIALIZED void set_one_side(const gm_mesh *mesh, const gm_position *position,
+                              const gmi_side_sum *found, gm_mesh_result *result) {
+    const double approach[2] = {position->offset_rate, -position->offset_rate};
+    if (mesh->cache->side == GM_DRIVE) {
+        set_result(mesh, found, &no_contact, NULL, approach, GM_WANT_FORCE, result);
+    } else {
+        set_result(mesh, &no_contact, found, NULL, approach, GM_WANT_FORCE, result);
+    }
+}
+
+/* Both sides with corners: one from the cache. */
+static OWN_STACK void set_cached_sides(const gm_mesh *mesh, const gm_position *position, int wanted,
+                                       const gmi_side_sum *found, const gmi_cache_arm arms[2],
+                                       gm_mesh_result *result) {
+    const double approach[2] = {position->offset_rate, -position->offset_rate};
+    for (int side = GM_DRIVE; side <= GM_COAST; ++side) {
+        set_cached_side(mesh, position, side, approach, wanted, found, arms, result);
+    }
+}
+
+static int evaluate_cached(const gm_mesh *mesh, const gm_position *position, int wanted,
+                           gm_workspace *workspace, gm_mesh_result *result) {
+    gmi_side_sum found;
+    gmi_cache_arm arms[2];
+    const int mask = accumulated(mesh, position->offset_rate != 0.0, wanted);
+    if ((wanted & (GM_WANT_WRENCH | GM_WANT_ENERGY)) ||
+        !gmi_cache_look_up(mesh->cache, position, mask, workspace, &found, arms)) {
+        return gmi_mesh_evaluate_exact(mesh, position, wanted, workspace, result);
+    }
+    if (mesh->has_corners) {
+        set_cached_sides(mesh, position, wanted, &found, arms, result);
+        return GM_OK;
+    }
+    if (wanted == GM_WANT_FORCE && is_other_clear(mesh, position)) {
+        set_one_side(mesh, position, &found, result);
+        return GM_OK;
+    }
+    return set_both_sides(mesh, position, wanted, &found, workspace, result);
 }
 
 /* A sum of enum gm_wanted. */

@@ -1594,7 +1594,7 @@ GM_API int gm_double_helical_line_loads(const gm_double_helical *gears, const gm
  */
 typedef struct gm_cache_params {
     int side; /**< flanks that the cache holds, GM_DRIVE or GM_COAST; the others are exact [GM_DRIVE] */
-    int phase_cells; /**< steps of the phase per base pitch, 4 .. 10000; some more at kinks [16] */
+    int phase_cells; /**< steps of the phase per base pitch, 4 .. 10000; some more at kinks, one if these are weak [16] */
     int depth_cells; /**< steps of delta, 4 .. 10000 [40] */
     double depth;    /**< range of delta from the first touch at each phase on (m),
                           1e-10 .. p_bt / 4 [20e-6] */
