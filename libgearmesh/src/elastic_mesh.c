@@ -374,11 +374,15 @@ static int place(side_view *view, const gm_position *position, int wanted, gmi_e
     const gm_pair *pair = mesh->pair;
     const gmi_engagement *at = &mesh->engagement;
     const gmi_elastic *law = &view->elastic->law;
+
+    /* Lines are those of flanks that just touch: what the teeth give way by does not move them. */
     gm_position touching = *position;
     touching.offset = gmi_side_sign(view->side) * 0.5 * at->backlash;
     gmi_lines_find(pair, at, view->side, &touching, &view->lines);
     view->approach = gmi_ideal_penetration(at, view->side, position->offset);
     view->gain = at->is_tilted ? gmi_tilt_gain(pair, at, view->side) : 1.0;
+
+    /* Tip edges carry them on beyond the path. */
     double below = 0.0, above = 0.0;
     double lower = view->lines.lower, upper = view->lines.upper;
     view->has_tips = gmi_elastic_tips_of(mesh, &view->tips);

@@ -611,6 +611,8 @@ static void add_line(const gmi_elastic *law, gmi_elastic_work *work, int k, cons
     if (!(part->from < part->to)) {
         return;
     }
+
+    /* The elements that it passes, a slot for each. */
     gmi_elastic_line *line = &work->line[work->count++];
     const int element = first_element(part->from, law);
     const int last = last_element(part->to, law);
@@ -623,7 +625,7 @@ static void add_line(const gmi_elastic *law, gmi_elastic_work *work, int k, cons
     line->slots = line->elements;
     line->end = line->slot + line->elements - 1;
 
-    /* Its cuts. */
+    /* Its cuts, of which each needs one slot more. */
     const int row = work->count - 1, first = work->cuts;
     if (work->at.goes_on && work->at.climb != 0.0) {
         cut_ends(law, row, first, work);
