@@ -225,8 +225,10 @@ void gmi_side_by_flanks(const gm_mesh *mesh, int side, const gm_position *positi
                      .pinion_changes = pinion_changes,
                      .wheel_changes = wheel_changes,
                      .count = count,
-                     .force_by = force_by,
                      .gain = at->is_tilted ? gmi_tilt_gain(pair, at, side) : 1.0};
+    w.force_by = force_by;
+
+    /* Line by line, the part that lies within path and face. */
     for (int k = found.lines.first; k <= found.lines.last; ++k) {
         const gmi_interval none = {0.0, 0.0};
         const int is_listed = k >= ends.first && k <= ends.last;
