@@ -740,6 +740,37 @@ static void teeth_are_followed_over_many_pitches(void) {
     }
 }
 
+/* Teeth that come back from a flight: the last solution, elsewhere and under another load, tells nothing of the touch. */
+static void touch_after_a_flight_needs_few_steps(void) {
+    uint64_t seed = 32;
+    for (int kind = 0; kind < 3; ++kind) {
+        elastic_case warm, cold;
+        make(&warm, kind, 5);
+        make(&cold, kind, 5);
+        warm.work.sums_alone = 1;
+        double o = warm.gear.path_start;
+        for (int k = 0; k < 3000; ++k) {
+            const int returns = k % 4 == 3;
+            const double least = returns ? -7.0 : -3.0, most = returns ? -2.0 : -2.5;
+            const double x =
+                warm.gear.normal_module * pow(10.0, gm_test_uniform(&seed, least, most));
+            o += (returns ? gm_test_uniform(&seed, -0.3, 0.3) : 0.02) * warm.gear.pitch;
+            o = o > warm.gear.path_start + warm.gear.pitch || o < warm.gear.path_start
+                    ? warm.gear.path_start + gm_test_uniform(&seed, 0.0, 0.5) * warm.gear.pitch
+                    : o;
+            const gmi_elastic_lines_at at = elastic_lines_at(&warm.gear, o);
+            const gmi_elastic_result got = elastic_solve_at(&warm, &at, &ideal, x, 1);
+            const gmi_elastic_result expected = elastic_solve_at(&cold, &at, &ideal, x, 0);
+
+            gm_test_context("kind %d, state %d, x %g", kind, k, x);
+            GM_ASSERT(got.iterations <= 12);
+            GM_ASSERT_REL(got.force, expected.force, 2e-8);
+        }
+        elastic_case_free(&warm);
+        elastic_case_free(&cold);
+    }
+}
+
 /* From undeformed teeth, from 1 nm to 1 mm: few steps, no failure, and all finite. */
 static void cold_start_needs_few_steps(void) {
     for (int kind = 0; kind < 3; ++kind) {
@@ -1137,6 +1168,7 @@ int main(int argc, char **argv) {
                                     GM_TEST(warm_start_gives_the_cold_answer),
                                     GM_TEST(sums_of_one_step_are_those_of_undeformed_teeth),
                                     GM_TEST(teeth_are_followed_over_many_pitches),
+                                    GM_TEST(touch_after_a_flight_needs_few_steps),
                                     GM_TEST(cold_start_needs_few_steps),
                                     GM_TEST(nothing_touches_without_approach),
                                     GM_TEST(rigid_teeth_leave_the_contact_law),

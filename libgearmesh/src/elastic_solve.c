@@ -487,7 +487,7 @@ static void finish(const gmi_elastic *law, gmi_elastic_work *work, double x,
 
 /* How the search for the balance stands. */
 typedef struct search {
-    double scale;    /* of the energy */
+    double scale;    /* of the energy, of the last solution or from the first step */
     double root;     /* where it ends */
     int is_followed; /* whether the series of the contact law may be trusted with a step ... */
     int iteration;
@@ -506,13 +506,14 @@ static int is_last(const gmi_elastic *law, gmi_elastic_work *work, double x, dou
         return 0;
     }
 
-    /* With the energy that belongs to this state. */
-    const double left = look_at_step(law, work, x, &at->scale);
+    /* With the energy that belongs to this state: far from balance it may come out as anything, below 0 too. */
+    double energy;
+    const double left = look_at_step(law, work, x, &energy);
     const double limit = is_first ? NEAR : NEAR_AGAIN;
-    const int is_over = fall <= at->root * at->root * at->scale;
+    const int is_over = fall <= at->root * at->root * energy;
     work->is_rolling = !is_over && is_first;
     return is_over ||
-           (at->is_followed && fall <= limit * limit * at->scale && left >= 0.0 && left <= LEAVES);
+           (at->is_followed && fall <= limit * limit * energy && left >= 0.0 && left <= LEAVES);
 }
 
 int gmi_elastic_solve(const gmi_elastic *law, gmi_elastic_work *work, double approach,
