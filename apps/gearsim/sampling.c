@@ -79,6 +79,8 @@ static void add_need(sampling *s, const dynamic_column *column, enum sample_kind
         s->mean_kind = SAMPLE_BOX;
         s->edge_wanted = EDGE_OFFSET | EDGE_PINION;
         break;
+
+    /* Means show themselves, and the load or the overlap with them. */
     case SAMPLE_BOX:
     case SAMPLE_HAT:
         s->mean_kind = kind;
@@ -86,6 +88,8 @@ static void add_need(sampling *s, const dynamic_column *column, enum sample_kind
         s->shows_load |= column->need == NEEDS_MOTION;
         s->shows_overlap |= column->need == NEEDS_MESH;
         break;
+
+    /* Values are evaluated: of each sample, or of the row alone. */
     case SAMPLE_VALUES:
         s->sample_need = larger(s->sample_need, column->need);
         s->row_need = larger(s->row_need, column->need);

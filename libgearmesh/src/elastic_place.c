@@ -103,10 +103,14 @@ static void part_slots(const gmi_elastic *law, gmi_elastic_work *work, const spa
         const gmi_elastic_cut *cut = &work->cut[k];
         const span *part = &parts[cut->row];
         const double begin = (double)cut->element * law->spacing;
+
+        /* Before the cut: from the one before, or from where element or line begin. */
         if (is_first) {
             from = part->limited[0] != 0 && part->from > begin ? part->from : begin;
         }
         shorten_slot(law, work, cut->before, begin, from, cut->z - from);
+
+        /* Behind the last one of an element: up to where element or line end. */
         if (cut->is_last) {
             const double end = begin + law->spacing;
             const double to = part->limited[1] != 0 && part->to < end ? part->to : end;
@@ -314,6 +318,8 @@ static void list_outer(gmi_elastic_work *work) {
         const gmi_elastic_line *line = &work->line[k / 2];
         const int begin = line->slot + k % 2 * work->slots;
         const int cut = begin + line->elements, end = begin + line->slots;
+
+        /* Inwards from both ends, until one lies on the path. */
         int first = begin, last = cut - 1;
         while (first < cut && is_outer(&lists, first)) {
             ++first;
@@ -321,6 +327,7 @@ static void list_outer(gmi_elastic_work *work) {
         while (last > first && is_outer(&lists, last)) {
             --last;
         }
+
         for (int p = cut; p < end; ++p) {
             (void)is_outer(&lists, p);
         }

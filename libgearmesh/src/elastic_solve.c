@@ -464,12 +464,16 @@ static double look_at_step(const gmi_elastic *law, gmi_elastic_work *work, doubl
 static void finish(const gmi_elastic *law, gmi_elastic_work *work, double x,
                    gmi_elastic_result *result) {
     const int slots = work->slots;
+
+    /* What the layers leave of a change at each point, and the points behind the step. */
     find_adjoint(law, work);
     gmi_elastic_pull(work, NULL, work->adjoint);
     finish_points(2 * slots, 1.0 / law->hertz_compliance, x, work->slope, work->change_at,
                   work->approach_at, work->weight, work->expected, work->deviation, work->pull,
                   work->load, work->force, work->stiffness, work->by_deviation, work->excess,
                   work->stiffer, work->scratch);
+
+    /* The sums, line by line. */
     result->force = 0.0;
     for (int k = 0; k < work->count; ++k) {
         const gmi_elastic_line *line = &work->line[k];
@@ -479,6 +483,7 @@ static void finish(const gmi_elastic *law, gmi_elastic_work *work, double x,
     }
     result->by_approach = gmi_elastic_sum(2 * slots, work->by_deviation);
     result->energy = gmi_elastic_sum(2 * slots, work->scratch);
+
     work->straight = is_straight(2 * slots, work->slope);
     if (work->straight) {
         result->energy += straight_energy(law, work);

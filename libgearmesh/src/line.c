@@ -952,6 +952,8 @@ SPECIALIZED void walk_entered(walk_state *at, const gmi_grid *first, const gmi_g
     if (kind != WALK_SUMS && same_faces) {
         at->second.next_face = NO_CROSSING;
     }
+
+    /* Stretches, squares, depths, or else sums. */
     if (kind == WALK_STRETCHES) {
         at->faces += (double)at->first.faces;
         search_line(at, first, second, end, begin_out, end_out, parabola, same_faces, found,

@@ -345,6 +345,8 @@ static OWN_STACK void evaluate_followed(const gm_mesh *mesh, const gm_position *
         follow_side(mesh, position, rates == NULL ? NULL : &rates[side], side, &sums[side],
                     &forces[side], slides ? &friction[side] : NULL, &approach[side]);
     }
+
+    /* Both sides together. */
     gmi_penetration_set(mesh->pair, &sums[GM_DRIVE], &sums[GM_COAST], approach,
                         accumulated(mesh, 1, wanted), &result->contact);
     set_forces(mesh, &forces[GM_DRIVE], &forces[GM_COAST], slides ? friction : NULL, wanted,

@@ -138,12 +138,16 @@ static void walk_bends(const change_walk *w, gmi_interval part) {
     double since = nowhere, before = overlap_at(w, part.from);
     for (double from = part.from, to; from < part.to; from = to) {
         to = gmi_line_next_bend(w->mesh, w->found, w->origin, from, part.to);
+
+        /* The parabola up to the next bend, through both ends and the middle, and its roots. */
         const double length = to - from;
         const double middle = overlap_at(w, from + 0.5 * length), behind = overlap_at(w, to);
         const double bend = 2.0 * (before - 2.0 * middle + behind);
         const double slope = behind - before - bend;
         double root[2];
         const int roots = roots_of(before, slope, bend, root);
+
+        /* Between two roots it touches all along, or nowhere. */
         double s = 0.0;
         for (int k = 0; k <= roots; ++k) {
             const double next = k < roots ? root[k] : 1.0, at = 0.5 * (s + next);
@@ -158,6 +162,8 @@ static void walk_bends(const change_walk *w, gmi_interval part) {
         }
         before = behind;
     }
+
+    /* The last stretch may go on to the end. */
     if (!isnan(since)) {
         add_stretch(w, since, part.to);
     }
@@ -189,6 +195,8 @@ static void walk_line(const change_walk *w, gmi_interval part) {
     if (!(length > 0.0)) {
         return;
     }
+
+    /* All of it, or the stretch about the middle. */
     if (length >= (part.to - part.from) * (1.0 - rounding)) {
         add_stretch(w, part.from, part.to);
         return;
