@@ -878,8 +878,8 @@ GM_API int gm_mesh_params_check(const gm_mesh_params *params, const char **field
  * @param[in] pair  from gm_pair_init()
  * @return 17 .. 97; 0 for NULL
  *
- * Valid for: flanks whose load goes from end to end of their lines, tilted axes, modifications of up to twice the
- * deflection of the teeth.
+ * Valid for: flanks whose load goes from end to end of their lines, and tilted axes. Modified flanks want more:
+ * gm_elastic_stations_modified().
  * Source:    docs/elastic.md, measured on random pairs.
  */
 GM_API int gm_elastic_stations(const gm_pair *pair);
